@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace hemi {
+
+/// Things that a person should know but that do not stop the work. The library collects them here and never
+/// prints; the program shows them on stderr.
+class Diagnostics {
+public:
+    void warn(std::string message) { warnings_.push_back(std::move(message)); }
+    [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+private:
+    std::vector<std::string> warnings_;
+};
+
+} // namespace hemi

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace hemi {
+
+/// A point or direction in scene units, double precision.
+using Vec3 = glm::dvec3;
+
+/// Axis-aligned bounds; empty (lower > upper) until a point is added.
+struct Bounds {
+    Vec3 lower{std::numeric_limits<double>::infinity()};
+    Vec3 upper{-std::numeric_limits<double>::infinity()};
+
+    void add(const Vec3& point) {
+        lower = glm::min(lower, point);
+        upper = glm::max(upper, point);
+    }
+    [[nodiscard]] bool empty() const { return lower.x > upper.x; }
+    /// Length of the diagonal; 0 when empty.
+    [[nodiscard]] double diagonal() const { return empty() ? 0.0 : glm::length(upper - lower); }
+    [[nodiscard]] Vec3 centre() const { return 0.5 * (lower + upper); }
+};
+
+/// Area times unit normal of a closed polygon (Newell's method): half the sum of cross products of its
+/// corners, taken relative to the first one so that distance from the origin costs no digits.
+[[nodiscard]] Vec3 area_vector(std::span<const Vec3> polygon);
+
+/// Centroid of a planar polygon's area (not the mean of its corners).
+[[nodiscard]] Vec3 area_centroid(std::span<const Vec3> polygon);
+
+/// Distance from `point` to the nearest point of a planar convex polygon.
+[[nodiscard]] double distance_to_polygon(const Vec3& point, std::span<const Vec3> polygon);
+
+} // namespace hemi

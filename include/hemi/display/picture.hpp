@@ -1,0 +1,73 @@
+#pragma once
+
+#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/scene/scene.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hemi {
+
+enum class ToneMapping { filmic, linear };
+enum class Shading { gouraud, flat };
+
+struct PictureSettings {
+    std::uint32_t width = 800;
+    std::uint32_t height = 800;
+    std::uint32_t samples = 4; ///< supersamples along each edge of a pixel, 1 to 8
+    Shading shading = Shading::gouraud;
+    ToneMapping tone_mapping = ToneMapping::filmic;
+    double exposure = 1.0; ///< factor on radiosity before tone mapping
+    bool outlines = false; ///< patch outlines on top
+};
+
+/// Radiosity prepared for drawing: three linear sRGB channels a patch corner and a patch.
+struct PictureMesh {
+    /// 3 per corner, 4 corners a patch (triangle: third repeated), relative to `origin`
+    std::vector<float> positions;
+    std::vector<float> corners; ///< 3 per corner, Gouraud values
+    std::vector<float> patches; ///< 3 per patch, flat values
+    Vec3 origin{0.0};
+    Bounds bounds;                      ///< scene units, absolute
+    std::array<float, 3> environment{}; ///< radiosity behind all surfaces; zero: there is none
+};
+
+/// The environment is left at zero, for the caller to fill in.
+/// @param show  channels shown as red, green, blue (one channel: {0, 0, 0}).
+[[nodiscard]] PictureMesh make_picture_mesh(const PatchMesh& mesh, std::uint32_t channels,
+                                            std::span<const double> radiosity,
+                                            std::span<const double> blocked,
+                                            std::array<std::uint32_t, 3> show);
+
+/// Exposure that suits a scene: from the area-weighted distribution of luminance over patches that are not
+/// lamps and not covered. Deterministic. 1 if all is dark.
+[[nodiscard]] double automatic_exposure(const PatchMesh& mesh, const PictureMesh& picture,
+                                        std::span<const double> blocked, std::span<const double> exitance,
+                                        std::uint32_t channels);
+
+/// A camera that sees the whole scene, for scenes that have none: inside looking across for closed rooms is
+/// the scene's business; this one frames the bounds from a corner.
+[[nodiscard]] Camera default_camera(const Bounds& bounds);
+
+/// Pixels, rows from the top, 3 values a pixel.
+struct Picture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::uint8_t> srgb; ///< tone-mapped, sRGB-encoded
+    std::vector<float> linear;      ///< radiosity, no exposure, no tone mapping
+};
+
+/// Draws offscreen with a context of its own on `device` (auto, egl, egl:N, osmesa). Where no surface
+/// is seen, the environment is; where there is none, `srgb` is a dark neutral grey and `linear` zero.
+/// Afterwards no context is current on the thread.
+/// @throws NoDevice, GlError; InvalidArgument for a size outside 1 to 16384, samples outside 1 to 8, an
+///   exposure that is negative or not finite, a camera without a direction or field of view.
+[[nodiscard]] Picture draw_picture(const PictureMesh& mesh, const Camera& camera,
+                                   const PictureSettings& settings, const std::string& device);
+
+} // namespace hemi

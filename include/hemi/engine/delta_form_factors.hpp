@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// Weight of every texel of a hemicube: the share of the energy leaving the sample point, cosine-weighted
+/// over the hemisphere, that passes through that texel.
+///
+/// Dimensionless, as integers in units of 1 / total, total = 2^32 - 1: exact integrals over the texel (not
+/// midpoint values), rounded cumulatively so that they sum to exactly `total` at any resolution and any
+/// order of summation gives the same bits.
+/// Layout, as the engine's item buffers: top face `resolution` rows of `resolution` texels, then the four
+/// sides, each `resolution / 2` rows of `resolution`, row 0 touching the plane of the patch.
+/// Memory: 4 bytes for each of the 3·resolution·(resolution + 1) prefix sums.
+/// Source: M. F. Cohen, D. P. Greenberg, "The Hemi-Cube", SIGGRAPH 1985; closed forms of the corner
+/// integrals in delta_form_factors.cpp.
+class DeltaFormFactors {
+public:
+    static constexpr std::uint32_t total = 0xFFFFFFFFu;
+
+    /// @param resolution  texels along a full hemicube edge; even, 2 to 4096.
+    /// @throws InvalidArgument if `resolution` is odd or out of range.
+    explicit DeltaFormFactors(std::uint32_t resolution);
+
+    /// @throws InvalidArgument if `resolution` is odd or out of range.
+    static void check_resolution(std::uint32_t resolution);
+
+    [[nodiscard]] std::uint32_t resolution() const noexcept { return resolution_; }
+    /// Rows of texels of one hemicube: 3·resolution.
+    [[nodiscard]] std::uint32_t rows() const noexcept { return 3 * resolution_; }
+
+    /// Weight of texel (row, column).
+    [[nodiscard]] std::uint32_t weight(std::uint32_t row, std::uint32_t column) const {
+        const auto prefix = prefix_row(row);
+        return prefix[column + 1] - prefix[column];
+    }
+    /// resolution + 1 prefix sums of a row: the weight of texels [a, b) is prefix[b] - prefix[a].
+    [[nodiscard]] std::span<const std::uint32_t> prefix_row(std::uint32_t row) const {
+        return {prefix_.data() + std::size_t{row} * (resolution_ + 1), resolution_ + 1};
+    }
+
+private:
+    std::uint32_t resolution_;
+    std::vector<std::uint32_t> prefix_;
+};
+
+} // namespace hemi

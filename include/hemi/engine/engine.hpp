@@ -1,0 +1,63 @@
+#pragma once
+
+#include "hemi/engine/row_provider.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hemi {
+
+/// Settings that change the rows.
+struct HemicubeSettings {
+    std::uint32_t resolution = 128; ///< texels along a full hemicube edge; even, 2 to 4096
+    std::uint64_t seed = 0;         ///< of the hashed rotation of every hemicube about its normal
+    bool merge_lattices = true;     ///< draw lattices of coplanar parallelogram cells as one polygon
+
+    bool operator==(const HemicubeSettings&) const = default;
+};
+
+/// Where and how rows are computed; none of it changes a bit of them on the same kind of device.
+struct EngineSettings {
+    std::string device = "auto"; ///< auto, egl, egl:N or osmesa
+    std::uint32_t jobs = 0;      ///< worker processes on software OpenGL; 0: one per core
+    /// Program that is started as worker (`PROGRAM --hemicube-worker`, which must call
+    /// run_hemicube_worker). Empty: rows are computed in this process, by one context.
+    std::string worker_program;
+};
+
+/// Hemicube rows by OpenGL item buffers. Contexts are made on the first call of rows() or renderer().
+/// On software OpenGL with a worker program, rows come from `jobs` worker processes; on a GPU from one
+/// context of this process.
+/// @param mesh  must outlive the engine.
+/// @throws InvalidArgument for a bad resolution or device name; NoDevice if the device is not there;
+///   GlError, or Error if a worker ends early (then no row is delivered in its place).
+[[nodiscard]] std::unique_ptr<RowProvider>
+make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const EngineSettings& engine);
+
+/// The same rows without OpenGL: a ray through every texel centre against every surface, double precision.
+/// Slow (resolution² × surfaces a row) and obviously correct: the yardstick of the tests.
+[[nodiscard]] std::unique_ptr<RowProvider> make_reference_engine(const PatchMesh& mesh,
+                                                                 const HemicubeSettings& settings);
+
+/// First argument by which a program is started as a worker.
+inline constexpr const char* worker_argument = "--hemicube-worker";
+/// Serves rows to the process that started this one, until that closes the connection.
+/// @return exit status for main().
+int run_hemicube_worker();
+
+/// An OpenGL device that can be chosen by name.
+struct DeviceInfo {
+    std::string name;     ///< "egl:0", "osmesa"
+    std::string renderer; ///< GL_RENDERER; empty if no context could be made
+    std::string version;  ///< GL_VERSION
+    std::string problem;  ///< why it cannot be used; empty if it can
+    bool software = true; ///< rasterises on the CPU
+    bool chosen = false;  ///< what `auto` takes
+};
+/// Everything that could be used here; makes and destroys a context on each.
+[[nodiscard]] std::vector<DeviceInfo> list_devices();
+
+} // namespace hemi

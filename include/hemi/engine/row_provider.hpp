@@ -1,0 +1,51 @@
+#pragma once
+
+#include "hemi/core/progress.hpp"
+#include "hemi/matrix/form_factor_matrix.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+namespace hemi {
+
+/// Receives one row of F. `patch` is the row's index; the view is valid during the call only.
+/// May throw; the provider then stops and passes the exception on.
+using RowSink = std::function<void(std::uint32_t patch, const RowView& row)>;
+
+/// A way to find rows of F. Implementations differ in method and device, never in meaning.
+class RowProvider {
+public:
+    virtual ~RowProvider() = default;
+
+    /// Number of patches, and of rows and columns.
+    [[nodiscard]] virtual std::uint32_t size() const = 0;
+
+    /// What computes: for example the OpenGL renderer string.
+    [[nodiscard]] virtual std::string renderer() const = 0;
+
+    /// Computes the rows of `patches` (ascending, no duplicates) and hands each to `sink`, from the calling
+    /// thread. Rows of one block of FormFactorMatrix::block_rows come in order; blocks come in any order.
+    virtual void rows(std::span<const std::uint32_t> patches, const RowSink& sink) = 0;
+};
+
+/// Rows of `patches` as a matrix; the other rows stay unknown.
+/// @param progress  called after every row with the rows done so far; may be empty.
+/// @throws Cancelled when progress returns false.
+[[nodiscard]] FormFactorMatrix compute_matrix(RowProvider& provider, std::span<const std::uint32_t> patches,
+                                              const Progress& progress = {});
+
+/// All rows.
+[[nodiscard]] FormFactorMatrix compute_matrix(RowProvider& provider, const Progress& progress = {});
+
+/// What the rows of `patches` will need, from up to `samples` of them spread evenly, plus 20 %.
+struct MatrixEstimate {
+    double entries_per_row = 0.0;   ///< mean over the sample
+    std::uint64_t memory_bytes = 0; ///< of the matrix, with the 20 % on top
+    double seconds = 0.0;           ///< for all rows, at the sample's speed
+};
+[[nodiscard]] MatrixEstimate estimate_matrix(RowProvider& provider, std::span<const std::uint32_t> patches,
+                                             std::uint32_t samples = 64);
+
+} // namespace hemi

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "hemi/matrix/form_factor_matrix.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hemi::io {
+
+/// Form factors with all that is needed to use them again: what a `.hff` file holds.
+struct FactorFile {
+    FormFactorMatrix factors{0};
+    std::vector<double> areas;           ///< N
+    std::vector<std::string> groups;     ///< names
+    std::vector<std::uint32_t> group_of; ///< N, index into groups
+    std::uint64_t geometry_hash = 0;     ///< PatchMesh::geometry_hash of what the rows belong to
+    std::string preset = "plain";
+    std::string method = "hemicube";
+    std::uint32_t resolution = 0;
+    std::uint32_t eye_points = 1;
+    std::uint64_t seed = 0;
+    std::string renderer;           ///< what computed the rows
+    std::string enclosure = "auto"; ///< auto, closed or open, as the scene said
+};
+
+/// Writes `.hff`: a chunk file (see chunk_file.hpp) whose rows are independent, checksummed blocks with
+/// their own 64-bit offsets and row balance. Raw rows, complete under the final name or not there at all.
+void write_hff(const std::filesystem::path& path, const FactorFile& file);
+/// @throws InputError for anything that is not a sound `.hff`: every length, offset, index and checksum is
+/// tested.
+[[nodiscard]] FactorFile read_hff(const std::filesystem::path& path);
+
+/// Matrix Market, `coordinate real general`, 1-based, entry (i, j) = F(i, j); 9 significant digits.
+void write_mtx(const std::filesystem::path& path, const FormFactorMatrix& factors);
+/// `i,j,F` triples with that header line, 0-based; 9 significant digits.
+void write_csv(const std::filesystem::path& path, const FormFactorMatrix& factors);
+/// What scipy.sparse.load_npz reads as a CSR matrix of float32.
+void write_npz(const std::filesystem::path& path, const FormFactorMatrix& factors);
+
+/// The readers of the same three formats. Row balance is not in these files: environment and blocked are 0.
+/// .csv needs the matrix' size: one more than the largest index.
+[[nodiscard]] FormFactorMatrix read_mtx(const std::filesystem::path& path);
+[[nodiscard]] FormFactorMatrix read_csv(const std::filesystem::path& path);
+[[nodiscard]] FormFactorMatrix read_npz(const std::filesystem::path& path);
+
+} // namespace hemi::io

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace hemi::io {
+
+/// A file that appears under its name only when it is complete: writes go to a temporary name beside it,
+/// commit() flushes, syncs and renames. Destroyed without commit(), nothing is left behind.
+/// The path "-" writes to standard output.
+class OutputFile {
+public:
+    /// @throws IoError naming the path and the system's reason.
+    explicit OutputFile(std::filesystem::path path);
+    ~OutputFile();
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    /// @throws IoError, for example when the disk is full.
+    void write(std::string_view text);
+    void write(const void* data, std::size_t bytes);
+    void commit();
+
+    /// Where bytes go until commit(): for libraries that write a file by name. Empty for "-".
+    [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
+
+private:
+    std::filesystem::path path_;
+    std::filesystem::path temporary_;
+    std::FILE* stream_ = nullptr;
+};
+
+/// The whole file as bytes.
+/// @throws InputError naming the path and the reason (missing, a directory, not readable).
+[[nodiscard]] std::string read_file(const std::filesystem::path& path);
+
+} // namespace hemi::io

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/scene/scene.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hemi::io {
+
+/// A stored solution: what a `.hres` file holds. Per-patch arrays hold channel c of patch i at
+/// [i·channels + c]; the patches are PatchMesh(scene, subdivision). In the file, and after reading, every
+/// surface has the grid that was solved as its own, and the subdivision asks for nothing: the patches do
+/// not depend on how surfaces would be cut today.
+struct ResultFile {
+    Scene scene; ///< geometry, materials, camera, channels: all but file names
+    Subdivision subdivision;
+    std::vector<double> radiosity;   ///< B, N·channels
+    std::vector<double> irradiance;  ///< H = F B + e B_env, N·channels
+    std::vector<double> row_sum;     ///< N, sum_j F(i, j)
+    std::vector<double> environment; ///< N, e_i
+    std::vector<double> blocked;     ///< N, b_i
+    std::string solver;
+    std::uint32_t sweeps = 0;
+    double residual = 0.0;
+    std::string renderer;
+};
+
+/// @throws InvalidArgument for arrays of other lengths and values that are not finite; IoError
+void write_hres(const std::filesystem::path& path, const ResultFile& result);
+/// @throws InputError for anything that is not a sound `.hres`.
+[[nodiscard]] ResultFile read_hres(const std::filesystem::path& path);
+
+/// One line a patch: index,group,area,cx,cy,cz,nx,ny,nz (index from 0; shortest digits that read back equal).
+void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh);
+/// The same columns, then exitance_C, irradiance_C, radiosity_C for every channel name C.
+/// @param exitance,irradiance,radiosity  N·channels each.
+void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
+                         std::span<const std::string> channels, std::span<const double> exitance,
+                         std::span<const double> irradiance, std::span<const double> radiosity);
+
+} // namespace hemi::io

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "hemi/core/diagnostics.hpp"
+#include "hemi/scene/scene.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hemi::io {
+
+struct SceneReaderOptions {
+    std::vector<std::string> two_sided_groups; ///< OBJ: groups whose faces radiate on both sides
+    bool skip_degenerate = false; ///< leave out faces of zero area, with a warning, instead of refusing
+};
+
+/// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl).
+/// @throws ParseError or InputError with file, place, value and what would be right.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                               Diagnostics& diagnostics);
+
+/// hemi's JSON: see README, "Scene format". Meshes it names are read relative to the file.
+[[nodiscard]] Scene read_json_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                    Diagnostics& diagnostics);
+
+/// Wavefront OBJ: every face a surface, `o`/`g` its group, `Kd` reflectance and `Ke` exitance (red, green,
+/// blue). Without a material: reflectance 0.5, exitance 0.
+[[nodiscard]] Scene read_obj_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                   Diagnostics& diagnostics);
+
+/// Whether a path's extension says that it is a scene (rather than factors or a result).
+[[nodiscard]] bool is_scene_file(const std::filesystem::path& path);
+
+} // namespace hemi::io

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// One row of F, seen but not owned. `columns` ascend; `values[k]` is F(i, columns[k]), the share of what
+/// leaves patch i that arrives at patch columns[k]. Balance: sum of values + environment + blocked = 1.
+struct RowView {
+    std::span<const std::uint32_t> columns;
+    std::span<const float> values;
+    double environment = 0.0; ///< e_i, share that meets nothing
+    double blocked = 0.0;     ///< b_i, share that meets back faces
+
+    /// Sum of the values, in double, in column order.
+    [[nodiscard]] double sum() const;
+};
+
+/// Consecutive rows of a sparse matrix that are stored, written and read together.
+struct RowBlock {
+    std::uint32_t first_row = 0;
+    std::vector<std::uint64_t> begin; ///< rows + 1 offsets into columns and values, begin[0] = 0
+    std::vector<std::uint32_t> columns;
+    std::vector<float> values;
+    std::vector<double> environment; ///< e per row
+    std::vector<double> blocked;     ///< b per row
+    std::vector<std::uint8_t> known; ///< per row: 0 where the row was not computed (it is then empty)
+
+    [[nodiscard]] std::uint32_t rows() const noexcept { return static_cast<std::uint32_t>(known.size()); }
+};
+
+/// Form factors F(i, j) of N patches: compressed sparse rows (float32 values, 32-bit columns) in independent
+/// blocks of `block_rows` rows, with the balance of every row in double.
+/// Memory: 8 bytes an entry plus about 25 bytes a row. Values are the raw ones; repair makes a copy.
+class FormFactorMatrix {
+public:
+    /// Rows in every block but the last.
+    static constexpr std::uint32_t block_rows = 64;
+
+    /// A matrix whose rows are all unknown.
+    explicit FormFactorMatrix(std::uint32_t size);
+
+    [[nodiscard]] std::uint32_t size() const noexcept { return size_; }
+    [[nodiscard]] RowView row(std::uint32_t i) const;
+    /// Whether row i was computed; `solve` leaves out rows that the scene does not require.
+    [[nodiscard]] bool known(std::uint32_t i) const;
+    [[nodiscard]] bool all_known() const;
+    /// Stored entries, all rows.
+    [[nodiscard]] std::uint64_t entries() const noexcept;
+    [[nodiscard]] std::uint64_t memory_bytes() const noexcept;
+
+    [[nodiscard]] std::span<const RowBlock> blocks() const noexcept { return blocks_; }
+    /// Replaces the block that starts at `block.first_row`.
+    /// @throws InvalidArgument if it does not fit the matrix: wrong first row or row count, offsets that do
+    ///   not ascend, columns out of range or not ascending, values that are not finite or negative.
+    void set_block(RowBlock block);
+
+private:
+    std::uint32_t size_;
+    std::vector<RowBlock> blocks_;
+};
+
+} // namespace hemi

@@ -1,0 +1,92 @@
+#pragma once
+
+#include "hemi/core/geometry.hpp"
+#include "hemi/scene/scene.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// How surfaces are cut into patches, over the scene's own wishes.
+struct Subdivision {
+    std::optional<double> patch_size;              ///< Longest patch edge, scene units.
+    std::optional<std::uint32_t> patches_per_face; ///< About so many: k x k with the smallest k² >= N.
+
+    bool operator==(const Subdivision&) const = default;
+};
+
+/// Corners of one patch, counter-clockwise about its normal.
+struct PatchCorners {
+    std::array<Vec3, 4> points{};
+    std::uint32_t count = 4;
+
+    [[nodiscard]] std::span<const Vec3> polygon() const { return {points.data(), count}; }
+};
+
+/// The scene cut into patches, the unit of all that follows: row i and column i of F are patch i.
+///
+/// Order: surfaces as listed; patches of a surface row by row (u fastest); a triangle cut n² ways goes strip
+/// by strip from the edge vertex 0 -> vertex 1, the strip's upright and inverted triangles in turn; a
+/// two-sided surface's back patches follow its front patches.
+/// Memory: about 70 bytes a patch.
+class PatchMesh {
+public:
+    /// @throws InvalidArgument if there would be 2^31 patches or more; InputError as validate(scene).
+    explicit PatchMesh(const Scene& scene, const Subdivision& subdivision = {});
+
+    [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(areas_.size()); }
+
+    /// Areas of all patches, scene units squared.
+    [[nodiscard]] std::span<const double> areas() const noexcept { return areas_; }
+    /// Area centroid of each patch, also its eye point.
+    [[nodiscard]] std::span<const Vec3> centres() const noexcept { return centres_; }
+    /// Index of the surface that patch `i` belongs to, into surfaces().
+    [[nodiscard]] std::span<const std::uint32_t> surface_of() const noexcept { return surface_of_; }
+
+    [[nodiscard]] Vec3 normal(std::uint32_t patch) const;
+    [[nodiscard]] std::uint32_t group(std::uint32_t patch) const {
+        return surfaces_[surface_of_[patch]].group;
+    }
+    [[nodiscard]] std::uint32_t material(std::uint32_t patch) const {
+        return surfaces_[surface_of_[patch]].material;
+    }
+    /// Whether the patch is on the back of a two-sided surface.
+    [[nodiscard]] bool is_back(std::uint32_t patch) const;
+    [[nodiscard]] PatchCorners corners(std::uint32_t patch) const;
+    /// Grid coordinates of the patch's centroid on its surface: u in (0, grid.u), v in (0, grid.v) measured
+    /// along the surface's parameters (bilinear for quadrilaterals, barycentric times n for triangles).
+    [[nodiscard]] std::array<double, 2> grid_coordinates(std::uint32_t patch) const;
+
+    [[nodiscard]] std::span<const Surface> surfaces() const noexcept { return surfaces_; }
+    /// Subdivision of surface `s`.
+    [[nodiscard]] Grid grid(std::uint32_t s) const { return grids_[s]; }
+    /// First patch of surface `s`; `s` may equal the number of surfaces (then: size()).
+    [[nodiscard]] std::uint32_t first_patch(std::uint32_t s) const { return first_patch_[s]; }
+    /// Patches on one side of surface `s`: u·v, or n² for a triangle.
+    [[nodiscard]] std::uint32_t patches_per_side(std::uint32_t s) const;
+    /// Unit normal of the front of surface `s`.
+    [[nodiscard]] const Vec3& surface_normal(std::uint32_t s) const { return surface_normals_[s]; }
+
+    [[nodiscard]] const std::vector<std::string>& groups() const noexcept { return groups_; }
+    [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
+
+    /// Hash over the corners, subdivision and sidedness of every surface, in order: equal for equal
+    /// geometry, whatever the materials, lamps and names. 64-bit FNV-1a.
+    [[nodiscard]] std::uint64_t geometry_hash() const;
+
+private:
+    std::vector<Surface> surfaces_;
+    std::vector<Grid> grids_;
+    std::vector<std::uint32_t> first_patch_;
+    std::vector<Vec3> surface_normals_;
+    std::vector<std::string> groups_;
+    std::vector<double> areas_;
+    std::vector<Vec3> centres_;
+    std::vector<std::uint32_t> surface_of_;
+    Bounds bounds_;
+};
+
+} // namespace hemi

@@ -1,0 +1,79 @@
+#pragma once
+
+#include "hemi/core/geometry.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hemi {
+
+/// What a surface does with light (or heat): a diffuse reflector that may also radiate by itself.
+struct Material {
+    std::string name;
+    std::vector<double> reflectance; ///< Share reflected, in [0, 1), one value per channel.
+    std::vector<double> exitance;    ///< Radiated by itself, W/m² (or lm/m²), >= 0, one value per channel.
+
+    bool operator==(const Material&) const = default;
+};
+
+/// Number of patches along the two directions of a surface.
+struct Grid {
+    std::uint32_t u = 1; ///< along vertex 0 -> vertex 1
+    std::uint32_t v = 1; ///< along vertex 0 -> vertex 3 (quadrilateral); equal to u for a triangle
+
+    bool operator==(const Grid&) const = default;
+};
+
+/// A planar convex triangle or quadrilateral. Front side: vertices counter-clockwise.
+struct Surface {
+    std::array<Vec3, 4> vertices{}; ///< The fourth is unused for a triangle.
+    std::uint32_t vertex_count = 4; ///< 3 or 4
+    std::uint32_t material = 0;     ///< Index into Scene::materials.
+    std::uint32_t group = 0;        ///< Index into Scene::groups.
+    bool two_sided = false;      ///< Radiates and receives on its back too; otherwise the back only blocks.
+    std::optional<Grid> patches; ///< Subdivision of its own; beats Scene::patch_size.
+
+    [[nodiscard]] std::span<const Vec3> polygon() const { return {vertices.data(), vertex_count}; }
+};
+
+/// Perspective camera; `fov` is the vertical field of view in degrees.
+struct Camera {
+    Vec3 eye{0.0};
+    Vec3 target{0.0, 1.0, 0.0};
+    Vec3 up{0.0, 0.0, 1.0};
+    double fov = 40.0;
+};
+
+enum class Enclosure { automatic, closed, open };
+
+/// A scene as its file tells it: plain data, in the file's order and units.
+struct Scene {
+    std::string name;
+    std::vector<std::string> channels{"grey"};
+    std::vector<Material> materials;
+    std::vector<std::string> groups; ///< Unique names, in order of first appearance.
+    std::vector<Surface> surfaces;
+    std::optional<double> patch_size; ///< Longest patch edge, scene units.
+    Enclosure enclosure = Enclosure::automatic;
+    std::vector<double> environment; ///< Exitance of the environment (pi times its radiance), per channel.
+    std::optional<Camera> camera;
+
+    /// Index of the group of that name, made if it is new.
+    std::uint32_t group_index(const std::string& group_name);
+    [[nodiscard]] Bounds bounds() const;
+};
+
+/// Checks what every part of hemi relies on: at least one surface, indices in range, one value per channel,
+/// reflectance in [0, 1), exitance finite and >= 0, finite planar convex polygons of positive area.
+/// @throws InputError naming the material or the group and surface, the value and the range.
+void validate(const Scene& scene);
+
+/// What is wrong with a polygon as a surface, or nothing: two few or too many vertices, a value that is not
+/// finite, zero area, not planar (by more than 1e-5 of its size), not convex.
+[[nodiscard]] std::optional<std::string> polygon_defect(std::span<const Vec3> polygon);
+
+} // namespace hemi

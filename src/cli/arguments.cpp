@@ -1,0 +1,486 @@
+#include "cli/arguments.hpp"
+
+#include "core/nearest_word.hpp"
+#include "hemi/core/error.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <memory>
+
+namespace hemi::cli {
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr std::uint64_t any_whole = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t any_index = std::numeric_limits<std::uint32_t>::max() - 1;
+
+/// Options of one command. Values are read by our own functions, so that all messages have one form.
+class Options {
+public:
+    Options(CLI::App& app, std::string group) : app_(app), group_(std::move(group)) {}
+
+    void flag(const std::string& name, bool& target, const std::string& help, bool value = true) {
+        app_.add_flag_callback(
+                name, [&target, value] { target = value; }, help)
+            ->group(group_);
+    }
+
+    CLI::Option* value(const std::string& name, const std::string& form, const std::string& help,
+                       const std::function<void(const std::string&)>& read) {
+        return app_.add_option_function<std::string>(name, read, help)->option_text(form)->group(group_);
+    }
+
+    CLI::Option* path(const std::string& name, const std::string& form,
+                      std::optional<std::filesystem::path>& target, const std::string& help) {
+        return value(name, form, help, [name, &target](const std::string& text) {
+            if (text.empty()) {
+                throw InvalidArgument(name + " '': a file name is missing");
+            }
+            target = text;
+        });
+    }
+
+private:
+    CLI::App& app_;
+    std::string group_;
+};
+
+std::uint32_t to_index(std::string_view option, const std::string& text, std::uint64_t lower,
+                       std::uint64_t upper = any_index) {
+    return static_cast<std::uint32_t>(parse_whole(option, text, lower, upper));
+}
+
+void add_positional(CLI::App& app, const std::string& name, std::filesystem::path& target,
+                    const std::string& help) {
+    app.add_option_function<std::string>(
+           name, [&target](const std::string& text) { target = text; }, help)
+        ->required()
+        ->option_text(" ");
+}
+
+void add_common(CLI::App& app, CommonOptions& common, bool json = true) {
+    Options options(app, "General");
+    if (json) {
+        options.flag("--json", common.json, "one JSON object on stdout instead of text");
+    }
+    options.flag("-q,--quiet", common.quiet, "errors only: no progress, warnings or summary");
+    options.flag("-v,--verbose", common.verbose, "say more");
+    options.value("--color", "WHEN", "auto, always or never (NO_COLOR is honoured)",
+                  [&common](const std::string& text) {
+                      common.colour = static_cast<ColourChoice>(
+                          parse_choice("--color", text, Words{"auto", "always", "never"}));
+                  });
+}
+
+void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SCENE") {
+    add_positional(app, name, scene.path,
+                   name == "SCENE" ? "scene: .json or .obj"
+                                   : "scene (.json, .obj) or stored file (.hff, .hres)");
+    Options options(app, "Scene");
+    auto* size = options.value("--patch-size", "S", "patch edges no longer than S scene units",
+                               [&scene](const std::string& text) {
+                                   scene.subdivision.patch_size = parse_positive("--patch-size", text);
+                               });
+    options
+        .value("--patches-per-face", "N", "about N patches a face (k x k, smallest k*k >= N)",
+               [&scene](const std::string& text) {
+                   scene.subdivision.patches_per_face = to_index("--patches-per-face", text, 1, 100'000'000);
+               })
+        ->excludes(size);
+    options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
+    app.add_option("--two-sided", scene.two_sided, "OBJ: faces of GROUP radiate on both sides; repeatable")
+        ->allow_extra_args(false)
+        ->option_text("GROUP")
+        ->group("Scene");
+}
+
+void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows) {
+    Options options(app, "Scene");
+    options.value("--enclosure", "KIND", "auto, closed or open; overrides the scene",
+                  [&scene](const std::string& text) {
+                      scene.enclosure = static_cast<Enclosure>(
+                          parse_choice("--enclosure", text, Words{"auto", "closed", "open"}));
+                  });
+    options.value(
+        "--max-row-error", "T", "share of a row that may leak or be blocked (1e-4)",
+        [&rows](const std::string& text) { rows.max_row_error = parse_positive("--max-row-error", text); });
+}
+
+void add_device(CLI::App& app, std::string& device) {
+    Options(app, "Computing")
+        .value("--device", "NAME", "auto, egl, egl:N or osmesa; see `hemi devices`",
+               [&device](const std::string& text) {
+                   const bool numbered = text.starts_with("egl:");
+                   if (numbered) {
+                       (void)parse_whole("--device egl:", text.substr(4), 0, 1000);
+                   } else {
+                       (void)parse_choice("--device", text, Words{"auto", "egl", "egl:N", "osmesa"});
+                       if (text == "egl:N") {
+                           throw InvalidArgument("--device egl:N: N stands for a number, such as egl:0");
+                       }
+                   }
+                   device = text;
+               });
+}
+
+void add_rows(CLI::App& app, RowOptions& rows) {
+    Options options(app, "Form factors");
+    options.value("--preset", "NAME", "plain: the textbook hemicube (the default)",
+                  [&rows](const std::string& text) {
+                      (void)parse_choice("--preset", text, Words{"plain"}, Words{"fast", "default", "exact"});
+                      rows.preset = text;
+                  });
+    options.value("--method", "NAME", "hemicube (the default)", [&rows](const std::string& text) {
+        (void)parse_choice("--method", text, Words{"hemicube"},
+                           Words{"montecarlo", "contour", "direct", "hemisphere"});
+        rows.method = text;
+    });
+    options.value("--eye-points", "K", "sample points per patch; 1 is the only value so far",
+                  [&rows](const std::string& text) {
+                      rows.eye_points = to_index("--eye-points", text, 1);
+                      if (rows.eye_points != 1) {
+                          throw InvalidArgument(fmt::format("--eye-points {}: patches are sampled at their "
+                                                            "centre only; 1 is the only value so far",
+                                                            text));
+                      }
+                  });
+    options.value("--resolution", "R", "texels along a full hemicube edge: even, 2 to 4096 (128)",
+                  [&rows](const std::string& text) {
+                      rows.resolution = to_index("--resolution", text, 2, 4096);
+                      if (*rows.resolution % 2 != 0) {
+                          throw InvalidArgument(fmt::format("--resolution {}: must be even, for example {}",
+                                                            text, *rows.resolution + 1));
+                      }
+                  });
+    options.value("--seed", "N", "of the rotation of every hemicube (0)", [&rows](const std::string& text) {
+        rows.seed = parse_whole("--seed", text, 0, any_whole);
+    });
+    options.flag("--no-merge", rows.merge, "draw every face by itself, even in lattices of coplanar faces",
+                 false);
+    add_device(app, rows.device);
+    Options(app, "Computing")
+        .value("--jobs", "N", "worker processes on software OpenGL (one per core)",
+               [&rows](const std::string& text) { rows.jobs = to_index("--jobs", text, 1, 1024); });
+}
+
+void add_max_memory(CLI::App& app, RowOptions& rows) {
+    Options(app, "Computing")
+        .value("--max-memory", "SIZE", "such as 512M or 2G (80 % of what is free)",
+               [&rows](const std::string& text) { rows.max_memory = parse_memory("--max-memory", text); });
+}
+
+void add_solver(CLI::App& app, SolverSettings& solver) {
+    Options options(app, "Solver");
+    options.value("--solver", "NAME", "gauss-seidel (the default) or jacobi",
+                  [&solver](const std::string& text) {
+                      const std::size_t choice =
+                          parse_choice("--solver", text, Words{"gauss-seidel", "jacobi"}, Words{"cg"});
+                      solver.method = choice == 0 ? SolverMethod::gauss_seidel : SolverMethod::jacobi;
+                  });
+    options.value("--tolerance", "T", "relative residual to reach (1e-6)",
+                  [&solver](const std::string& text) {
+                      solver.tolerance = parse_positive("--tolerance", text);
+                      if (solver.tolerance >= 1.0) {
+                          throw InvalidArgument(fmt::format("--tolerance {}: must be below 1", text));
+                      }
+                  });
+}
+
+/// @param output  the option without which these make no sense; may be none.
+void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
+    Options options(app, "Picture");
+    std::vector<CLI::Option*> added;
+    added.push_back(options.value(
+        "--size", "WxH", fmt::format("pixels ({}x{})", picture.size[0], picture.size[1]),
+        [&picture](const std::string& text) { picture.size = parse_picture_size("--size", text); }));
+    added.push_back(options.value("--show", "A,B,C", "channels shown as red, green, blue; or one, as grey",
+                                  [&picture](const std::string& text) { picture.show = parse_list(text); }));
+    added.push_back(options.value(
+        "--camera", "EYE:TARGET[:UP][:FOV]", "such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
+        [&picture](const std::string& text) { picture.camera = parse_camera("--camera", text); }));
+    options.flag("--flat", picture.flat, "one colour a patch instead of smooth shading");
+    added.push_back(app.get_option("--flat")->option_text(" "));
+    added.push_back(options.value("--exposure", "X", "factor on radiosity, or auto (the default)",
+                                  [&picture](const std::string& text) {
+                                      picture.exposure.reset();
+                                      if (text != "auto") {
+                                          picture.exposure = parse_positive("--exposure", text);
+                                      }
+                                  }));
+    added.push_back(options.value(
+        "--tone-mapping", "NAME", "filmic (the default) or linear", [&picture](const std::string& text) {
+            picture.tone_mapping =
+                static_cast<ToneMapping>(parse_choice("--tone-mapping", text, Words{"filmic", "linear"}));
+        }));
+    for (CLI::Option* option : added) {
+        if (output != nullptr) {
+            option->needs(output);
+        }
+    }
+}
+
+void add_solve(CLI::App& app, SolveArguments& a) {
+    add_scene(app, a.scene);
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_max_memory(app, a.rows);
+    add_solver(app, a.solver);
+    Options output(app, "Output");
+    auto* picture = output.path("-o,--output", "PICTURE", a.picture.output,
+                                "picture: .png or .hdr; - for .png on stdout");
+    output.path("--factors", "FILE.hff", a.factors,
+                "use these form factors if the file exists, else write them there");
+    output.path("--result", "FILE.hres", a.result, "the whole solution, for `hemi render` and `hemi view`");
+    output.path("--radiosity", "FILE.csv", a.radiosity, "exitance, irradiance and radiosity of every patch");
+    output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
+    add_picture(app, a.picture, picture);
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi solve scenes/cornell-box.json -o cornell-box.png\n"
+               "  hemi solve room.obj --patch-size 0.1 --factors room.hff --result room.hres");
+}
+
+void add_factors(CLI::App& app, FactorsArguments& a) {
+    add_scene(app, a.scene, "SCENE|FILE");
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_max_memory(app, a.rows);
+    Options output(app, "Output");
+    auto* file = output.path("-o,--output", "FILE", a.output,
+                             "form factors: .hff .mtx .csv .npz; - for .csv on stdout");
+    output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
+    auto* row = output.value("--row", "I", "print one row, largest first, with names",
+                             [&a](const std::string& text) { a.row = to_index("--row", text, 0); });
+    output.flag("--by-group", a.by_group, "sum over named groups: a table, or with -o FILE.csv the file");
+    row->excludes(file);
+    row->excludes(app.get_option("--by-group"));
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi factors scenes/cube.json --by-group\n"
+               "  hemi factors room.obj -o room.npz --patches room.csv");
+}
+
+void add_check(CLI::App& app, CheckArguments& a) {
+    add_scene(app, a.scene, "SCENE|FILE");
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_max_memory(app, a.rows);
+    add_common(app, a.common);
+    app.footer(
+        "Looks at row balance, bounds, reciprocity, leaks, covered, unseen and turned-round patches.\n"
+        "Exit 5 if, beyond --max-row-error, a row of a closed scene leaks, an uncovered patch meets back\n"
+        "faces, or a row does not balance. With `auto`, a scene in which fewer than 5 % of the patches "
+        "leak,\n"
+        "or which loses less than 0.1 % in all, is called nearly closed: that is a warning, --enclosure\n"
+        "closed makes it an error. Covered and unseen patches are told, and are no error.\n\n"
+        "Examples:\n"
+        "  hemi check scenes/l-room.json --enclosure closed\n"
+        "  hemi check room.hff --max-row-error 1e-3 --json");
+}
+
+void add_render(CLI::App& app, RenderArguments& a) {
+    add_positional(app, "RESULT", a.input, "stored solution: .hres");
+    Options output(app, "Output");
+    output.path("-o,--output", "PICTURE", a.picture.output,
+                "picture: .png or .hdr (RESULT's name with .png, here); - for .png on stdout");
+    add_picture(app, a.picture, nullptr);
+    add_device(app, a.device);
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi render room.hres -o room.png --size 1600x900 --exposure 0.8\n"
+               "  hemi render room.hres -o flat.png --flat --camera 0,-3,1:0,0,1");
+}
+
+void add_view(CLI::App& app, ViewArguments& a) {
+    add_scene(app, a.scene, "SCENE|RESULT");
+    add_rows(app, a.rows);
+    add_max_memory(app, a.rows);
+    add_solver(app, a.solver);
+    a.picture.size = {1280, 720};
+    add_picture(app, a.picture, nullptr);
+    Options(app, "Window")
+        .value("--script", "FILE", "keys, drags and screenshots from a file, for tests",
+               [&a](const std::string& text) { a.script = text; });
+    add_common(app, a.common, false);
+    app.footer("Examples:\n"
+               "  hemi view scenes/cornell-box.json\n"
+               "  hemi view room.hres --flat");
+}
+
+void add_convert(CLI::App& app, ConvertArguments& a) {
+    add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz");
+    add_positional(app, "OUT", a.output,
+                   "form factors: .mtx .csv .npz (.hff from .hff); - for .csv on stdout");
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi convert room.hff room.npz\n"
+               "  hemi convert room.mtx room.csv");
+}
+
+void add_info(CLI::App& app, InfoArguments& a) {
+    add_scene(app, a.scene, "SCENE|FILE");
+    add_rows(app, a.rows);
+    Options(app, "Output").flag("--measure", a.measure, "compute up to 64 rows for the estimate");
+    for (const char* name : {"--device", "--seed", "--no-merge"}) {
+        app.get_option(name)->needs(app.get_option("--measure"));
+    }
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi info scenes/office.json --measure\n"
+               "  hemi info room.hff --json");
+}
+
+void add_devices(CLI::App& app, DevicesArguments& a) {
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi devices\n"
+               "  hemi devices --json");
+}
+
+/// Help without the double blank lines between groups.
+std::string help_text(const CLI::App& app, const std::string& previous = "") {
+    std::string text = app.help(previous);
+    for (std::size_t gap = text.find("\n\n\n"); gap != std::string::npos; gap = text.find("\n\n\n")) {
+        text.erase(gap, 1);
+    }
+    return text;
+}
+
+Words option_names(const CLI::App& app) {
+    Words names;
+    for (const CLI::Option* option : app.get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+            names.push_back("--" + name);
+        }
+    }
+    return names;
+}
+
+[[noreturn]] void refuse_command(const CLI::App& app, const std::string& word) {
+    if (word == "trade" || word == "bake") {
+        throw InvalidArgument(fmt::format("this build does not have `hemi {}` yet", word));
+    }
+    Words names;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        names.push_back(command->get_name());
+    }
+    std::string message = fmt::format("there is no command '{}'", word);
+    if (const auto nearest = nearest_word(word, names)) {
+        message += fmt::format("; did you mean {}?", *nearest);
+    }
+    throw InvalidArgument(message + " (see `hemi --help`)");
+}
+
+/// A word on the command line that no option of `command` takes: does another command have it, or is it
+/// mistyped?
+[[noreturn]] void refuse_word(const CLI::App& app, const CLI::App& command, const std::string& word) {
+    const std::string where = fmt::format("`hemi {}`", command.get_name());
+    const std::string see = fmt::format(" (see `hemi {} --help`)", command.get_name());
+    if (!word.starts_with("-")) {
+        throw InvalidArgument(fmt::format("{}: unexpected argument '{}'", where, word) + see);
+    }
+    const std::string name = word.substr(0, word.find('='));
+    Words others;
+    for (const CLI::App* other : app.get_subcommands({})) {
+        if (other->get_option_no_throw(name) != nullptr) {
+            others.push_back(other->get_name());
+        }
+    }
+    if (!others.empty()) {
+        throw InvalidArgument(
+            fmt::format("{} does not apply to {}; it belongs to {}", name, where, fmt::join(others, ", ")) +
+            see);
+    }
+    const auto nearest = nearest_word(name, option_names(command));
+    throw InvalidArgument(fmt::format("{} has no option {}", where, name) +
+                          (nearest ? fmt::format("; did you mean {}?", *nearest) : std::string()) + see);
+}
+
+/// The command that was named, with what it was given.
+template <class A>
+void add_command(CLI::App& app, const std::string& name, const std::string& help, void (*add)(CLI::App&, A&),
+                 std::optional<Arguments>& chosen) {
+    CLI::App* command = app.add_subcommand(name, help);
+    command->set_help_flag("-h,--help", "this text")->group("General");
+    const auto values = std::make_shared<A>();
+    add(*command, *values);
+    command->final_callback([command, values, &chosen] {
+        for (const CLI::Option* option : command->get_options()) {
+            if (option->count() > 0 && !option->get_lnames().empty()) {
+                values->common.given.push_back("--" + option->get_lnames().front());
+            }
+        }
+        chosen = *values;
+    });
+}
+
+} // namespace
+
+std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* argv) {
+    CLI::App app("hemi: form factors by OpenGL hemicubes, radiosity, pictures", "hemi");
+    app.set_help_flag("-h,--help", "this text");
+    app.set_version_flag("--version", "hemi " HEMI_VERSION);
+    app.footer("Every command has its own --help. Exit status: 0 ok, 1 failure, 2 usage, 3 bad input,\n"
+               "4 no usable OpenGL device, 5 a check is out of tolerance, 130 interrupted.\n\n"
+               "Examples:\n"
+               "  hemi solve scenes/cornell-box.json -o cornell-box.png\n"
+               "  hemi factors scenes/cube.json --by-group");
+    app.require_subcommand(1);
+    std::optional<Arguments> chosen;
+    add_command(app, "solve", "Form factors, radiosity and a picture of a scene", add_solve, chosen);
+    add_command(app, "factors", "Form factors only", add_factors, chosen);
+    add_command(app, "check", "Which rows are wrong, and why", add_check, chosen);
+    add_command(app, "render", "Picture of a stored solution", add_render, chosen);
+    add_command(app, "view", "Window with an orbiting camera", add_view, chosen);
+    add_command(app, "convert", "Form factors from one file format to another", add_convert, chosen);
+    add_command(app, "info", "What a file holds and what it would cost", add_info, chosen);
+    add_command(app, "devices", "OpenGL devices that can be used", add_devices, chosen);
+
+    if (argc > 1 && std::string_view(argv[1]) == "help") {
+        const std::vector<const char*> asked = argc > 2 ? std::vector<const char*>{argv[0], argv[2], "--help"}
+                                                        : std::vector<const char*>{argv[0], "--help"};
+        return parse_arguments(static_cast<int>(asked.size()), asked.data());
+    }
+    if (argc > 1 && argv[1][0] != '-') {
+        const auto named =
+            app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; });
+        if (named.empty()) {
+            refuse_command(app, argv[1]);
+        }
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        const auto commands = app.get_subcommands();
+        return Answer{commands.empty() ? help_text(app) : help_text(*commands.front(), "hemi")};
+    } catch (const CLI::CallForVersion& version) {
+        return Answer{std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& error) {
+        const auto commands = app.get_subcommands();
+        if (commands.empty()) {
+            const Words rest = app.remaining();
+            if (rest.empty()) {
+                throw InvalidArgument("a command is missing (see `hemi --help`)");
+            }
+            throw InvalidArgument(
+                fmt::format("unexpected '{}' before the command (see `hemi --help`)", rest.front()));
+        }
+        const Words rest = app.remaining(true);
+        if (!rest.empty()) {
+            const auto option = std::find_if(rest.begin(), rest.end(),
+                                             [](const std::string& w) { return w.starts_with("-"); });
+            refuse_word(app, *commands.front(), option != rest.end() ? *option : rest.front());
+        }
+        throw InvalidArgument(
+            fmt::format("{} (see `hemi {} --help`)", error.what(), commands.front()->get_name()));
+    }
+    return *chosen;
+}
+
+} // namespace hemi::cli

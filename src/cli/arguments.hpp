@@ -1,0 +1,135 @@
+#pragma once
+
+#include "cli/terminal.hpp"
+#include "cli/values.hpp"
+#include "hemi/display/picture.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/scene/scene.hpp"
+#include "hemi/solver/solver.hpp"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// What the command line says, as plain values: one struct for every group of options and every command.
+/// An empty optional is an option that was not given.
+namespace hemi::cli {
+
+struct CommonOptions {
+    bool quiet = false;
+    bool verbose = false;
+    ColourChoice colour = ColourChoice::automatic;
+    bool json = false;
+    std::vector<std::string> given; ///< names of all options on the command line, "--resolution"
+};
+
+struct SceneOptions {
+    std::filesystem::path path; ///< the scene, or the stored file where a command takes either
+    Subdivision subdivision;
+    std::optional<Enclosure> enclosure;
+    std::vector<std::string> two_sided;
+    bool skip_degenerate = false;
+};
+
+struct RowOptions {
+    std::string device = "auto";
+    std::string preset = "plain";
+    std::string method = "hemicube";
+    std::uint32_t eye_points = 1;
+    std::optional<std::uint32_t> resolution;
+    std::optional<std::uint64_t> seed;
+    bool merge = true;
+    std::uint32_t jobs = 0;                  ///< 0: one per core
+    std::optional<std::uint64_t> max_memory; ///< bytes
+    double max_row_error = 1e-4;
+};
+
+struct PictureOptions {
+    std::optional<std::filesystem::path> output;
+    std::array<std::uint32_t, 2> size{800, 800};
+    std::optional<double> exposure; ///< none: automatic
+    ToneMapping tone_mapping = ToneMapping::filmic;
+    bool flat = false;
+    std::vector<std::string> show; ///< channel names; empty: all of one or three channels
+    std::optional<CameraOption> camera;
+};
+
+struct SolveArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    SolverSettings solver;
+    PictureOptions picture;
+    std::optional<std::filesystem::path> factors;
+    std::optional<std::filesystem::path> result;
+    std::optional<std::filesystem::path> radiosity;
+    std::optional<std::filesystem::path> patches;
+};
+
+struct FactorsArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    std::optional<std::filesystem::path> output;
+    std::optional<std::filesystem::path> patches;
+    std::optional<std::uint32_t> row;
+    bool by_group = false;
+};
+
+struct CheckArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+};
+
+struct RenderArguments {
+    CommonOptions common;
+    std::filesystem::path input;
+    PictureOptions picture;
+    std::string device = "auto";
+};
+
+struct ViewArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    SolverSettings solver;
+    PictureOptions picture; ///< to start with; its output is not used
+    std::string script;     ///< file that drives the window in a test; empty: a person does
+};
+
+struct ConvertArguments {
+    CommonOptions common;
+    std::filesystem::path input;
+    std::filesystem::path output;
+};
+
+struct InfoArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    bool measure = false;
+};
+
+struct DevicesArguments {
+    CommonOptions common;
+};
+
+using Arguments = std::variant<SolveArguments, FactorsArguments, CheckArguments, RenderArguments,
+                               ViewArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+
+/// Text that was asked for instead of work: help or the version.
+struct Answer {
+    std::string text;
+};
+
+/// Reads the command line.
+/// @throws InvalidArgument for anything that is not understood, with the nearest right word where there is
+/// one.
+[[nodiscard]] std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* argv);
+
+} // namespace hemi::cli

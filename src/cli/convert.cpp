@@ -1,0 +1,63 @@
+#include "cli/commands.hpp"
+#include "cli/outputs.hpp"
+#include "cli/pipeline.hpp"
+#include "cli/report.hpp"
+#include "cli/stored_factors.hpp"
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+
+namespace hemi::cli {
+
+namespace {
+
+io::FactorFile read_input(const std::filesystem::path& path) {
+    if (extension_of(path) == ".hff") {
+        return io::read_hff(path);
+    }
+    io::FactorFile file;
+    file.factors = read_bare_factors(path);
+    return file;
+}
+
+} // namespace
+
+ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
+    Outputs outputs;
+    outputs.add("OUT", arguments.output, {".hff", ".mtx", ".csv", ".npz"}, true);
+    if (outputs.uses_standard_output() && arguments.common.json) {
+        throw InvalidArgument("--json and an output to - cannot both go to standard output");
+    }
+    const bool from_hff = extension_of(arguments.input) == ".hff";
+    const bool to_hff = extension_of(arguments.output) == ".hff";
+    if (to_hff && !from_hff && is_bare_factor_file(arguments.input)) {
+        throw InvalidArgument(
+            fmt::format("{}: a .hff holds areas, names, row balance and the geometry's hash, which "
+                        "{} does not have; `hemi factors SCENE -o FILE.hff` makes one",
+                        arguments.output.string(), arguments.input.string()));
+    }
+    const io::FactorFile file = read_input(arguments.input);
+    write_factors(arguments.output, file);
+    if (from_hff && !to_hff) {
+        terminal.note(
+            fmt::format("not in {}: areas, group names, row balance (environment, blocked), settings and "
+                        "the geometry's hash",
+                        is_standard_output(arguments.output) ? "a .csv" : arguments.output.string()));
+        if (!file.factors.all_known()) {
+            terminal.warn("rows that were not computed become empty rows");
+        }
+    }
+    if (arguments.common.json) {
+        print_json({{"schema", "hemi/convert/1"},
+                    {"input", arguments.input.string()},
+                    {"output", arguments.output.string()},
+                    {"patches", file.factors.size()},
+                    {"entries", file.factors.entries()}});
+    }
+    return ExitStatus::ok;
+}
+
+} // namespace hemi::cli

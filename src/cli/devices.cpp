@@ -1,0 +1,60 @@
+#include "cli/commands.hpp"
+#include "cli/report.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/engine/engine.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace hemi::cli {
+
+namespace {
+
+Json to_json(const std::vector<DeviceInfo>& devices) {
+    Json list = Json::array();
+    for (const DeviceInfo& device : devices) {
+        const bool usable = device.problem.empty();
+        list.push_back({{"name", device.name},
+                        {"renderer", device.renderer},
+                        {"version", device.version},
+                        {"usable", usable},
+                        {"problem", usable ? Json(nullptr) : Json(device.problem)},
+                        {"software", device.software},
+                        {"auto", device.chosen}});
+    }
+    return {{"schema", "hemi/devices/1"}, {"devices", list}};
+}
+
+std::string to_table(const std::vector<DeviceInfo>& devices) {
+    Table table({"device", "auto", "kind", "renderer", "version"}, 5);
+    for (const DeviceInfo& device : devices) {
+        const bool usable = device.problem.empty();
+        table.add({device.name, device.chosen ? "*" : "",
+                   !usable           ? "-"
+                   : device.software ? "software"
+                                     : "gpu",
+                   usable ? device.renderer : "not usable: " + device.problem, device.version});
+    }
+    return table.text();
+}
+
+} // namespace
+
+ExitStatus run(const DevicesArguments& arguments, const Terminal& terminal) {
+    const std::vector<DeviceInfo> devices = list_devices();
+    if (arguments.common.json) {
+        print_json(to_json(devices));
+    } else if (!devices.empty()) {
+        print(to_table(devices));
+    }
+    const bool usable = std::any_of(devices.begin(), devices.end(),
+                                    [](const DeviceInfo& device) { return device.problem.empty(); });
+    if (!usable) {
+        terminal.error("no usable OpenGL device: neither EGL nor OSMesa gives an OpenGL 4.5 core context");
+        return ExitStatus::no_device;
+    }
+    return ExitStatus::ok;
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,326 @@
+#include "cli/commands.hpp"
+#include "cli/outputs.hpp"
+#include "cli/pipeline.hpp"
+#include "cli/report.hpp"
+#include "cli/stored_factors.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/io/output_file.hpp"
+#include "hemi/io/result_file.hpp"
+#include "hemi/io/scene_reader.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+namespace hemi::cli {
+
+namespace {
+
+struct Seconds {
+    double load = 0.0;
+    double factors = 0.0;
+    double total = 0.0;
+};
+
+/// Rows of a scene or of a file, with what is known of their patches.
+struct Subject {
+    std::optional<LoadedScene> loaded;
+    Rows rows;
+    Seconds seconds;
+
+    [[nodiscard]] PatchNames names() const {
+        return loaded ? loaded->names() : PatchNames{rows.file.groups, rows.file.group_of, {}};
+    }
+};
+
+/// Where a group table goes: into the .csv that -o names, else to stdout.
+bool table_goes_to_file(const FactorsArguments& arguments) {
+    return arguments.by_group && arguments.output &&
+           (is_standard_output(*arguments.output) || extension_of(*arguments.output) == ".csv");
+}
+
+Outputs check_outputs(const FactorsArguments& arguments) {
+    Outputs outputs;
+    if (arguments.output) {
+        outputs.add("-o", *arguments.output, {".hff", ".mtx", ".csv", ".npz"}, true);
+    }
+    if (arguments.patches) {
+        outputs.add("--patches", *arguments.patches, {".csv"}, true);
+    }
+    const bool prints =
+        arguments.common.json || arguments.row || (arguments.by_group && !table_goes_to_file(arguments));
+    if (outputs.uses_standard_output() && prints) {
+        throw InvalidArgument("an output to - and a table or --json cannot both go to standard output");
+    }
+    return outputs;
+}
+
+Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal) {
+    Subject subject;
+    subject.loaded = load_scene(arguments.scene, terminal);
+    const PatchMesh& mesh = subject.loaded->mesh;
+    if (arguments.row && *arguments.row >= mesh.size()) {
+        throw InvalidArgument(fmt::format("--row {}: the scene has {}, counted from 0", *arguments.row,
+                                          plural(mesh.size(), "patch", "patches")));
+    }
+    const Stopwatch watch;
+    const auto patches =
+        arguments.row ? std::vector<std::uint32_t>{*arguments.row} : all_patches(mesh.size());
+    subject.rows = compute_rows(*subject.loaded, patches, arguments.rows, terminal);
+    subject.seconds.load = subject.loaded->seconds;
+    subject.seconds.factors = watch.seconds();
+    if (arguments.patches) {
+        io::write_patches_csv(*arguments.patches, mesh);
+    }
+    return subject;
+}
+
+Subject from_file(const FactorsArguments& arguments) {
+    const std::filesystem::path& path = arguments.scene.path;
+    if (extension_of(path) != ".hff") {
+        throw InvalidArgument(fmt::format(
+            "{}: must be a scene (.json, .obj) or form factors with names (.hff)", path.string()));
+    }
+    refuse_all_but(arguments.common, std::vector<std::string>{"--row", "--by-group", "--output"}, path);
+    if (!arguments.row && !arguments.by_group) {
+        throw InvalidArgument(
+            fmt::format("{}: of a file, --row or --by-group can be shown; `hemi info` tells what "
+                        "is in it, `hemi convert` writes it in other formats",
+                        path.string()));
+    }
+    if (arguments.output && !table_goes_to_file(arguments)) {
+        throw InvalidArgument("-o: of a file only the table of --by-group can be written, as .csv; for other "
+                              "formats there is `hemi convert`");
+    }
+    Subject subject;
+    const Stopwatch watch;
+    subject.rows.file = io::read_hff(path);
+    subject.rows.reused = true;
+    subject.seconds.load = watch.seconds();
+    const std::uint32_t size = subject.rows.file.factors.size();
+    if (arguments.row && *arguments.row >= size) {
+        throw InvalidArgument(fmt::format("--row {}: the file has {}, counted from 0", *arguments.row,
+                                          plural(size, "row", "rows")));
+    }
+    if (arguments.row && !subject.rows.file.factors.known(*arguments.row)) {
+        throw InputError(fmt::format("{}: row {} was not computed", path.string(), *arguments.row));
+    }
+    return subject;
+}
+
+void show_row(const FactorsArguments& arguments, const Subject& subject) {
+    const std::uint32_t index = *arguments.row;
+    const RowView row = subject.rows.file.factors.row(index);
+    const PatchNames names = subject.names();
+    std::vector<std::size_t> order(row.columns.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&row](std::size_t a, std::size_t b) { return row.values[a] > row.values[b]; });
+    if (arguments.common.json) {
+        Json entries = Json::array();
+        for (const std::size_t k : order) {
+            entries.push_back({{"patch", row.columns[k]},
+                               {"group", names.group(row.columns[k])},
+                               {"factor", row.values[k]}});
+        }
+        print_json({{"schema", "hemi/factors/1"},
+                    {"renderer", subject.rows.file.renderer},
+                    {"patches", subject.rows.file.factors.size()},
+                    {"row", index},
+                    {"group", names.group(index)},
+                    {"entries", entries},
+                    {"sum", row.sum()},
+                    {"environment", row.environment},
+                    {"blocked", row.blocked}});
+        return;
+    }
+    Table table({"group", "patch", "F"});
+    for (const std::size_t k : order) {
+        table.add({names.group(row.columns[k]), std::to_string(row.columns[k]),
+                   fmt::format("{:.9f}", row.values[k])});
+    }
+    print(fmt::format("row {}: what leaves {}\nsum {:.9f}, to the environment {:.9f}, blocked {:.9f}\n\n",
+                      index, names.describe(index), row.sum(), row.environment, row.blocked) +
+          table.text());
+}
+
+GroupFactors sum_groups(const io::FactorFile& file, const std::filesystem::path& path) {
+    if (!file.factors.all_known()) {
+        throw InputError(fmt::format("{}: some rows were not computed; --by-group needs all", path.string()));
+    }
+    return group_factors(file.factors, file.areas, file.group_of,
+                         static_cast<std::uint32_t>(file.groups.size()));
+}
+
+Json groups_json(const Subject& subject, const GroupFactors& groups) {
+    const io::FactorFile& file = subject.rows.file;
+    return {{"schema", "hemi/factors/1"},
+            {"renderer", file.renderer},
+            {"patches", file.factors.size()},
+            {"groups", file.groups},
+            {"areas", groups.areas},
+            {"factors", rows_json(groups.factors, groups.groups)},
+            {"environment", groups.environment},
+            {"blocked", groups.blocked},
+            {"row_sum", row_sum_json(row_sums(file.factors))},
+            {"seconds",
+             {{"load", subject.seconds.load},
+              {"factors", subject.seconds.factors},
+              {"total", subject.seconds.total}}}};
+}
+
+/// A matrix while it fits a screen, else a line per pair of groups that see each other.
+std::string groups_table(const io::FactorFile& file, const GroupFactors& groups) {
+    constexpr std::uint32_t widest = 10;
+    if (groups.groups > widest) {
+        Table table({"from", "to", "F"}, 2);
+        for (std::uint32_t g = 0; g < groups.groups; ++g) {
+            for (std::uint32_t h = 0; h < groups.groups; ++h) {
+                const double factor = groups.factors[std::size_t{g} * groups.groups + h];
+                if (factor > 0.0) {
+                    table.add({file.groups[g], file.groups[h], fmt::format("{:.6f}", factor)});
+                }
+            }
+            if (groups.environment[g] > 0.0) {
+                table.add({file.groups[g], "(environment)", fmt::format("{:.6f}", groups.environment[g])});
+            }
+            if (groups.blocked[g] > 0.0) {
+                table.add({file.groups[g], "(blocked)", fmt::format("{:.6f}", groups.blocked[g])});
+            }
+        }
+        return table.text();
+    }
+    std::vector<std::string> header{"F from / to"};
+    header.insert(header.end(), file.groups.begin(), file.groups.end());
+    header.insert(header.end(), {"(environment)", "(blocked)", "area"});
+    Table table(header);
+    for (std::uint32_t g = 0; g < groups.groups; ++g) {
+        std::vector<std::string> line{file.groups[g]};
+        for (std::uint32_t h = 0; h < groups.groups; ++h) {
+            line.push_back(fmt::format("{:.6f}", groups.factors[std::size_t{g} * groups.groups + h]));
+        }
+        line.push_back(fmt::format("{:.6f}", groups.environment[g]));
+        line.push_back(fmt::format("{:.6f}", groups.blocked[g]));
+        line.push_back(number_text(groups.areas[g]));
+        table.add(line);
+    }
+    return table.text();
+}
+
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) {
+        return text;
+    }
+    std::string quoted = "\"";
+    for (const char c : text) {
+        quoted += c == '"' ? "\"\"" : std::string(1, c);
+    }
+    return quoted + '"';
+}
+
+/// group,area,<every group>,environment,blocked: a line per leaving group.
+void write_groups_csv(const std::filesystem::path& path, const io::FactorFile& file,
+                      const GroupFactors& groups) {
+    std::string text = "group,area";
+    for (const std::string& name : file.groups) {
+        text += ',' + csv_field(name);
+    }
+    text += ",environment,blocked\n";
+    for (std::uint32_t g = 0; g < groups.groups; ++g) {
+        text += fmt::format("{},{}", csv_field(file.groups[g]), groups.areas[g]);
+        for (std::uint32_t h = 0; h < groups.groups; ++h) {
+            text += fmt::format(",{}", groups.factors[std::size_t{g} * groups.groups + h]);
+        }
+        text += fmt::format(",{},{}\n", groups.environment[g], groups.blocked[g]);
+    }
+    io::OutputFile output(path);
+    output.write(text);
+    output.commit();
+}
+
+std::string summary(const Subject& subject, const RowSums& sums, const EnclosureFinding& enclosure,
+                    const FactorsArguments& arguments) {
+    const PatchMesh& mesh = subject.loaded->mesh;
+    std::string text =
+        summary_line("scene", fmt::format("{}, {}, {}", plural(mesh.size(), "patch", "patches"),
+                                          plural(mesh.surfaces().size(), "surface", "surfaces"),
+                                          plural(mesh.groups().size(), "group", "groups")));
+    text += rows_summary(subject.rows, sums, enclosure);
+    text +=
+        summary_line("seconds", fmt::format("load {:.3f}, factors {:.3f}, total {:.3f}", subject.seconds.load,
+                                            subject.seconds.factors, subject.seconds.total));
+    if (arguments.output && !is_standard_output(*arguments.output)) {
+        text += summary_line("written", arguments.output->string());
+    }
+    return text;
+}
+
+Json summary_json(const Subject& subject, const RowSums& sums) {
+    const FormFactorMatrix& factors = subject.rows.file.factors;
+    return {{"schema", "hemi/factors/1"},
+            {"renderer", subject.rows.file.renderer},
+            {"patches", factors.size()},
+            {"groups", subject.rows.file.groups},
+            {"entries", factors.entries()},
+            {"memory", factors.memory_bytes()},
+            {"row_sum", row_sum_json(sums)},
+            {"environment_max", sums.environment_max},
+            {"blocked_max", sums.blocked_max},
+            {"seconds",
+             {{"load", subject.seconds.load},
+              {"factors", subject.seconds.factors},
+              {"total", subject.seconds.total}}}};
+}
+
+} // namespace
+
+ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
+    const Stopwatch total;
+    const Outputs outputs = check_outputs(arguments);
+    const bool is_scene = io::is_scene_file(arguments.scene.path);
+    Subject subject = is_scene ? from_scene(arguments, terminal) : from_file(arguments);
+    const io::FactorFile& file = subject.rows.file;
+    if (arguments.row) {
+        show_row(arguments, subject);
+        return ExitStatus::ok;
+    }
+    if (arguments.output && !table_goes_to_file(arguments)) {
+        write_factors(*arguments.output, file);
+    }
+    const RowSums sums = row_sums(file.factors);
+    const EnclosureFinding enclosure = find_leaks(file.factors, file.enclosure, arguments.rows.max_row_error);
+    if (arguments.by_group) {
+        const GroupFactors groups = sum_groups(file, arguments.scene.path);
+        if (table_goes_to_file(arguments)) {
+            write_groups_csv(*arguments.output, file, groups);
+        }
+        subject.seconds.total = total.seconds();
+        if (arguments.common.json) {
+            print_json(groups_json(subject, groups));
+        } else if (!table_goes_to_file(arguments)) {
+            print(groups_table(file, groups));
+        }
+    } else {
+        subject.seconds.total = total.seconds();
+        if (arguments.common.json) {
+            print_json(summary_json(subject, sums));
+        } else if (!terminal.quiet()) {
+            const std::string text = summary(subject, sums, enclosure, arguments);
+            if (outputs.uses_standard_output()) {
+                std::fputs(text.c_str(), stderr);
+            } else {
+                print(text);
+            }
+        }
+    }
+    if (is_scene) {
+        report_covered(sums, terminal);
+    }
+    report_leaks(enclosure, file.factors, subject.names(), arguments.rows.max_row_error, terminal);
+    return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
+}
+
+} // namespace hemi::cli

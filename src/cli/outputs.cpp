@@ -1,0 +1,66 @@
+#include "cli/outputs.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <unistd.h>
+
+namespace hemi::cli {
+
+namespace fs = std::filesystem;
+
+std::string extension_of(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+bool is_standard_output(const fs::path& path) {
+    return path == "-";
+}
+
+void Outputs::add(std::string_view option, const fs::path& path,
+                  std::initializer_list<std::string_view> extensions, bool allow_standard_output) {
+    if (is_standard_output(path)) {
+        if (!allow_standard_output) {
+            throw InvalidArgument(fmt::format("{} -: this cannot be written to standard output", option));
+        }
+        if (uses_standard_output_) {
+            throw InvalidArgument(fmt::format("{} -: something else goes to standard output", option));
+        }
+        uses_standard_output_ = true;
+        return;
+    }
+    const std::string extension = extension_of(path);
+    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
+        throw InvalidArgument(fmt::format("{} {}: the name must end in {}", option, path.string(),
+                                          fmt::join(extensions, ", ")));
+    }
+    std::error_code problem;
+    const fs::path directory = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    if (!fs::is_directory(directory, problem)) {
+        throw IoError(
+            fmt::format("{} {}: there is no directory {}", option, path.string(), directory.string()));
+    }
+    if (fs::is_directory(path, problem)) {
+        throw IoError(fmt::format("{} {}: is a directory", option, path.string()));
+    }
+    if (access(directory.c_str(), W_OK | X_OK) != 0) {
+        throw IoError(
+            fmt::format("{} {}: {}: {}", option, path.string(), directory.string(), std::strerror(errno)));
+    }
+    const fs::path whole = fs::weakly_canonical(path, problem);
+    if (std::find(paths_.begin(), paths_.end(), whole) != paths_.end()) {
+        throw InvalidArgument(
+            fmt::format("{} {}: another output goes to the same file", option, path.string()));
+    }
+    paths_.push_back(whole);
+}
+
+} // namespace hemi::cli

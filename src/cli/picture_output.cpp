@@ -1,0 +1,92 @@
+#include "cli/picture_output.hpp"
+
+#include "cli/report.hpp"
+#include "core/nearest_word.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/display/picture.hpp"
+#include "hemi/io/image_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hemi::cli {
+
+void add_picture_output(Outputs& outputs, const PictureOptions& options) {
+    if (options.output) {
+        outputs.add("-o", *options.output, {".png", ".hdr"}, true);
+    }
+}
+
+std::array<std::uint32_t, 3> channels_to_show(const std::vector<std::string>& channels,
+                                              const std::vector<std::string>& show) {
+    if (show.empty()) {
+        if (channels.size() == 1) {
+            return {0, 0, 0};
+        }
+        if (channels.size() == 3) {
+            return {0, 1, 2};
+        }
+        throw InvalidArgument(fmt::format("a picture of {} channels needs --show, with one or three of: {}",
+                                          channels.size(), fmt::join(channels, ", ")));
+    }
+    if (show.size() != 1 && show.size() != 3) {
+        throw InvalidArgument(fmt::format("--show {}: must name one channel or three", fmt::join(show, ",")));
+    }
+    std::array<std::uint32_t, 3> indices{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::string& name = show[show.size() == 1 ? 0 : k];
+        const auto found = std::find(channels.begin(), channels.end(), name);
+        if (found == channels.end()) {
+            throw InvalidArgument(fmt::format("--show: there is no channel '{}' among {}{}", name,
+                                              fmt::join(channels, ", "), did_you_mean(name, channels)));
+        }
+        indices[k] = static_cast<std::uint32_t>(found - channels.begin());
+    }
+    return indices;
+}
+
+Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const std::optional<CameraOption>& option) {
+    Camera camera = scene.camera ? *scene.camera : default_camera(mesh.bounds());
+    if (option) {
+        camera.eye = option->eye;
+        camera.target = option->target;
+        camera.up = option->up.value_or(camera.up);
+        camera.fov = option->fov.value_or(camera.fov);
+        const Vec3 view = camera.target - camera.eye;
+        const double sine = glm::length(glm::cross(view, camera.up));
+        if (!(sine > 1e-9 * glm::length(view) * glm::length(camera.up))) {
+            throw InvalidArgument(
+                "--camera: looks along its up direction; name another, as in EYE:TARGET:0,1,0");
+        }
+    }
+    return camera;
+}
+
+std::string write_picture(const PictureSubject& subject, const PictureOptions& options,
+                          const std::string& device) {
+    const auto channels = static_cast<std::uint32_t>(subject.scene.channels.size());
+    const PictureMesh drawn = make_picture_mesh(subject.mesh, channels, subject.radiosity, subject.blocked,
+                                                channels_to_show(subject.scene.channels, options.show));
+    PictureSettings settings;
+    settings.width = options.size[0];
+    settings.height = options.size[1];
+    settings.shading = options.flat ? Shading::flat : Shading::gouraud;
+    settings.tone_mapping = options.tone_mapping;
+    settings.exposure = options.exposure ? *options.exposure
+                                         : automatic_exposure(subject.mesh, drawn, subject.blocked,
+                                                              subject.exitance, channels);
+    const Picture picture =
+        draw_picture(drawn, choose_camera(subject.scene, subject.mesh, options.camera), settings, device);
+    if (extension_of(*options.output) == ".hdr") {
+        io::write_hdr(*options.output, picture.width, picture.height, picture.linear);
+    } else {
+        io::write_png(*options.output, picture.width, picture.height, picture.srgb);
+    }
+    return fmt::format("{} ({} x {}, exposure {}{})",
+                       is_standard_output(*options.output) ? "standard output" : options.output->string(),
+                       picture.width, picture.height, number_text(settings.exposure),
+                       options.exposure ? "" : ", automatic");
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,304 @@
+#include "cli/pipeline.hpp"
+
+#include "cli/outputs.hpp"
+#include "cli/progress_bar.hpp"
+#include "cli/signals.hpp"
+#include "core/nearest_word.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/io/scene_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <numeric>
+
+namespace hemi::cli {
+
+namespace {
+
+constexpr std::uint32_t sample_rows = 64;
+constexpr std::size_t sample_above = 256;
+
+/// Passes rows on and stops when the user has interrupted, so that sampling, too, can be stopped.
+class StoppableEngine : public RowProvider {
+public:
+    explicit StoppableEngine(std::unique_ptr<RowProvider> engine) : engine_(std::move(engine)) {}
+
+    [[nodiscard]] std::uint32_t size() const override { return engine_->size(); }
+    [[nodiscard]] std::string renderer() const override { return engine_->renderer(); }
+    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
+        engine_->rows(patches, [&sink](std::uint32_t patch, const RowView& row) {
+            stop_if_interrupted();
+            sink(patch, row);
+        });
+    }
+
+private:
+    std::unique_ptr<RowProvider> engine_;
+};
+
+void check_two_sided_groups(const Scene& scene, const SceneOptions& options) {
+    if (options.two_sided.empty()) {
+        return;
+    }
+    if (extension_of(options.path) != ".obj") {
+        throw InvalidArgument("--two-sided is for OBJ files; a JSON scene says \"two_sided\": true");
+    }
+    for (const std::string& name : options.two_sided) {
+        if (std::find(scene.groups.begin(), scene.groups.end(), name) == scene.groups.end()) {
+            throw InvalidArgument(fmt::format("--two-sided {}: {} has no such group{}", name,
+                                              options.path.string(), did_you_mean(name, scene.groups)));
+        }
+    }
+}
+
+/// MemAvailable of /proc/meminfo in bytes; without it nothing is refused.
+std::uint64_t available_memory() {
+    std::ifstream meminfo("/proc/meminfo");
+    std::string name;
+    std::uint64_t kibibytes = 0;
+    std::string unit;
+    while (meminfo >> name >> kibibytes) {
+        if (name == "MemAvailable:") {
+            return kibibytes * 1024;
+        }
+        std::getline(meminfo, unit);
+    }
+    return std::numeric_limits<std::uint64_t>::max();
+}
+
+void check_memory(const MatrixEstimate& estimate, std::size_t rows, const RowOptions& options) {
+    const std::uint64_t limit = memory_limit(options);
+    if (estimate.memory_bytes <= limit) {
+        return;
+    }
+    throw OutOfMemory(fmt::format(
+        "{} rows of about {:.0f} entries would need {}; the limit is {} ({}). Larger patches (--patch-size), "
+        "a lower --resolution or a higher --max-memory would help",
+        count_text(rows), estimate.entries_per_row, memory_text(estimate.memory_bytes), memory_text(limit),
+        options.max_memory ? "--max-memory" : "80 % of the memory that is free"));
+}
+
+io::FactorFile describe(const LoadedScene& loaded, const RowOptions& options) {
+    const HemicubeSettings settings = hemicube_settings(options);
+    io::FactorFile file;
+    file.areas.assign(loaded.mesh.areas().begin(), loaded.mesh.areas().end());
+    file.groups = loaded.mesh.groups();
+    file.group_of = loaded.group_of;
+    file.geometry_hash = loaded.mesh.geometry_hash();
+    file.preset = options.preset;
+    file.method = options.method;
+    file.resolution = settings.resolution;
+    file.eye_points = options.eye_points;
+    file.seed = settings.seed;
+    file.enclosure = enclosure_name(loaded.scene.enclosure);
+    return file;
+}
+
+template <class A, class B>
+void check_setting(const CommonOptions& common, const std::filesystem::path& path, const std::string& option,
+                   const A& given, const B& stored) {
+    if (std::find(common.given.begin(), common.given.end(), option) != common.given.end() &&
+        given != stored) {
+        throw InvalidArgument(fmt::format("{0} {1} conflicts with --factors {2}, whose rows were made with "
+                                          "{0} {3}; leave {0} out, or name another file",
+                                          option, given, path.string(), stored));
+    }
+}
+
+} // namespace
+
+std::string enclosure_name(Enclosure enclosure) {
+    switch (enclosure) {
+    case Enclosure::closed:
+        return "closed";
+    case Enclosure::open:
+        return "open";
+    case Enclosure::automatic:
+        break;
+    }
+    return "auto";
+}
+
+LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
+    const Stopwatch watch;
+    Diagnostics diagnostics;
+    Scene scene = io::read_scene(options.path, {options.two_sided, options.skip_degenerate}, diagnostics);
+    terminal.warn(diagnostics);
+    check_two_sided_groups(scene, options);
+    if (options.enclosure) {
+        scene.enclosure = *options.enclosure;
+    }
+    PatchMesh mesh(scene, options.subdivision);
+    std::vector<std::uint32_t> group_of(mesh.size());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        group_of[i] = mesh.group(i);
+    }
+    stop_if_interrupted();
+    return {std::move(scene), std::move(mesh), std::move(group_of), watch.seconds()};
+}
+
+void refuse_all_but(const CommonOptions& common, std::span<const std::string> allowed,
+                    const std::filesystem::path& file) {
+    static const std::vector<std::string> always{"--json", "--quiet", "--verbose", "--color"};
+    for (const std::string& option : common.given) {
+        if (std::find(allowed.begin(), allowed.end(), option) == allowed.end() &&
+            std::find(always.begin(), always.end(), option) == always.end()) {
+            throw InvalidArgument(
+                fmt::format("{} does not apply to {}, which is not a scene", option, file.string()));
+        }
+    }
+}
+
+std::uint64_t memory_limit(const RowOptions& options) {
+    if (options.max_memory) {
+        return *options.max_memory;
+    }
+    const std::uint64_t available = available_memory();
+    return available / 10 * 8;
+}
+
+HemicubeSettings hemicube_settings(const RowOptions& options) {
+    HemicubeSettings settings;
+    settings.resolution = options.resolution.value_or(settings.resolution);
+    settings.seed = options.seed.value_or(settings.seed);
+    settings.merge_lattices = options.merge;
+    return settings;
+}
+
+std::unique_ptr<RowProvider> make_engine(const PatchMesh& mesh, const RowOptions& options) {
+    EngineSettings settings;
+    settings.device = options.device;
+    settings.jobs = options.jobs;
+    settings.worker_program = std::filesystem::read_symlink("/proc/self/exe").string();
+    return std::make_unique<StoppableEngine>(
+        make_hemicube_engine(mesh, hemicube_settings(options), settings));
+}
+
+Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
+                  const RowOptions& options, const Terminal& terminal) {
+    Rows rows;
+    rows.file = describe(loaded, options);
+    if (patches.empty()) {
+        rows.file.factors = FormFactorMatrix(loaded.mesh.size());
+        rows.file.renderer = "none";
+        return rows;
+    }
+    const auto engine = make_engine(loaded.mesh, options);
+    if (patches.size() > sample_above) {
+        const MatrixEstimate estimate = estimate_matrix(*engine, patches, sample_rows);
+        terminal.detail(fmt::format("{} rows will need about {} and {}", count_text(patches.size()),
+                                    memory_text(estimate.memory_bytes), seconds_text(estimate.seconds)));
+        check_memory(estimate, patches.size(), options);
+    }
+    stop_if_interrupted();
+    const Stopwatch watch;
+    ProgressBar bar(terminal, "form factors", "rows");
+    rows.file.factors = compute_matrix(*engine, patches, bar.callback());
+    rows.seconds = watch.seconds();
+    rows.computed = patches.size();
+    rows.file.renderer = engine->renderer();
+    stop_if_interrupted();
+    return rows;
+}
+
+Rows reuse_rows(const std::filesystem::path& path, const LoadedScene& loaded, const RowOptions& options,
+                const CommonOptions& common) {
+    Rows rows;
+    rows.file = io::read_hff(path);
+    rows.reused = true;
+    const io::FactorFile& file = rows.file;
+    if (file.geometry_hash != loaded.mesh.geometry_hash() || file.factors.size() != loaded.mesh.size()) {
+        throw InputError(fmt::format(
+            "{}: these form factors belong to another geometry ({}; this scene has {}); "
+            "remove the file or name another one",
+            path.string(), plural(file.factors.size(), "patch", "patches"), count_text(loaded.mesh.size())));
+    }
+    check_setting(common, path, "--resolution", options.resolution.value_or(0), file.resolution);
+    check_setting(common, path, "--seed", options.seed.value_or(0), file.seed);
+    check_setting(common, path, "--preset", options.preset, file.preset);
+    check_setting(common, path, "--method", options.method, file.method);
+    check_setting(common, path, "--eye-points", options.eye_points, file.eye_points);
+    return rows;
+}
+
+std::vector<std::uint32_t> all_patches(std::uint32_t size) {
+    std::vector<std::uint32_t> patches(size);
+    std::iota(patches.begin(), patches.end(), 0u);
+    return patches;
+}
+
+EnclosureFinding find_leaks(const FormFactorMatrix& factors, const std::string& enclosure,
+                            double max_row_error) {
+    EnclosureFinding finding;
+    finding.declared = enclosure == "closed";
+    bool leaks = false;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        const double share = factors.known(i) ? factors.row(i).environment : 0.0;
+        leaks = leaks || share > 0.0;
+        if (finding.declared && share > max_row_error) {
+            finding.leaks.push_back(i);
+        }
+    }
+    finding.closed = finding.declared || (enclosure == "auto" && !leaks);
+    std::stable_sort(finding.leaks.begin(), finding.leaks.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return factors.row(a).environment > factors.row(b).environment;
+    });
+    return finding;
+}
+
+void report_leaks(const EnclosureFinding& finding, const FormFactorMatrix& factors, const PatchNames& names,
+                  double max_row_error, const Terminal& terminal) {
+    if (finding.leaks.empty()) {
+        return;
+    }
+    constexpr std::size_t shown = 3;
+    std::string message =
+        fmt::format("the enclosure is said to be closed, but {} more than {} into the open. Worst: ",
+                    finding.leaks.size() == 1 ? std::string("1 patch loses")
+                                              : plural(finding.leaks.size(), "patch", "patches") + " lose",
+                    max_row_error);
+    for (std::size_t k = 0; k < std::min(shown, finding.leaks.size()); ++k) {
+        const std::uint32_t patch = finding.leaks[k];
+        message += fmt::format("{}{} {}", k == 0 ? "" : "; ", names.describe(patch),
+                               number_text(factors.row(patch).environment));
+    }
+    terminal.error(message);
+}
+
+void report_covered(const RowSums& sums, const Terminal& terminal) {
+    if (sums.covered > 0) {
+        terminal.warn(
+            fmt::format("{} covered: the centre lies under or inside something (`hemi check` lists them)",
+                        plural(sums.covered, "patch is", "patches are")));
+    }
+}
+
+std::string rows_summary(const Rows& rows, const RowSums& sums, const EnclosureFinding& enclosure) {
+    const FormFactorMatrix& factors = rows.file.factors;
+    std::string text = summary_line("renderer", rows.file.renderer);
+    std::string cubes = fmt::format("resolution {}, seed {}", rows.file.resolution, rows.file.seed);
+    if (rows.reused) {
+        cubes += ", rows from a file";
+    } else if (rows.computed > 0) {
+        cubes += fmt::format(", {} in {}: {:.0f}/s", count_text(rows.computed), seconds_text(rows.seconds),
+                             static_cast<double>(rows.computed) / std::max(rows.seconds, 1e-9));
+    }
+    text += summary_line("hemicubes", cubes);
+    const double per_row = static_cast<double>(factors.entries()) / std::max<double>(sums.known, 1.0);
+    text += summary_line("entries", fmt::format("{} ({:.0f} a row), {}", count_text(factors.entries()),
+                                                per_row, memory_text(factors.memory_bytes())));
+    text += summary_line("row sums", row_sum_text(sums));
+    text +=
+        summary_line("", fmt::format("to the environment up to {}, blocked up to {}{}",
+                                     number_text(sums.environment_max), number_text(sums.blocked_max),
+                                     sums.covered > 0 ? fmt::format(", {} covered", count_text(sums.covered))
+                                                      : std::string()));
+    text += summary_line("enclosure", std::string(enclosure.closed ? "closed" : "open") +
+                                          (enclosure.declared ? " (declared)" : ""));
+    return text;
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,157 @@
+#include "cli/report.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace hemi::cli {
+
+namespace {
+
+/// Characters rather than bytes, so that names with accents keep columns straight.
+std::size_t width_of(std::string_view text) {
+    return static_cast<std::size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+}
+
+} // namespace
+
+Table::Table(std::vector<std::string> header, std::size_t left) : rows_{std::move(header)}, left_(left) {}
+
+void Table::add(std::vector<std::string> row) {
+    rows_.push_back(std::move(row));
+}
+
+std::string Table::text() const {
+    std::vector<std::size_t> widths(rows_.front().size(), 0);
+    for (const auto& row : rows_) {
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            widths[c] = std::max(widths[c], width_of(row[c]));
+        }
+    }
+    std::string text;
+    for (const auto& row : rows_) {
+        std::string line;
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            const std::string padding(widths[c] - width_of(row[c]), ' ');
+            line += c == 0 ? "" : "  ";
+            line += c < left_ ? row[c] + padding : padding + row[c];
+        }
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += line + '\n';
+    }
+    return text;
+}
+
+std::string summary_line(std::string_view name, std::string_view value) {
+    return fmt::format("{:<13} {}\n", name, value);
+}
+
+std::string count_text(std::uint64_t value) {
+    const std::string digits = std::to_string(value);
+    std::string text;
+    for (std::size_t k = 0; k < digits.size(); ++k) {
+        if (k > 0 && (digits.size() - k) % 3 == 0) {
+            text += ',';
+        }
+        text += digits[k];
+    }
+    return text;
+}
+
+std::string number_text(double value) {
+    return fmt::format("{:.6g}", value);
+}
+
+std::string memory_text(std::uint64_t bytes) {
+    constexpr std::array<const char*, 5> units{"B", "KiB", "MiB", "GiB", "TiB"};
+    double value = static_cast<double>(bytes);
+    std::size_t unit = 0;
+    while (value >= 1024.0 && unit + 1 < units.size()) {
+        value /= 1024.0;
+        ++unit;
+    }
+    return fmt::format("{:.{}f} {}", value, unit == 0 || value >= 100.0 ? 0 : 1, units[unit]);
+}
+
+std::string seconds_text(double seconds) {
+    if (seconds >= 120.0) {
+        const auto whole = static_cast<long long>(std::lround(seconds));
+        return whole >= 3600 ? fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60)
+                             : fmt::format("{} min {:02} s", whole / 60, whole % 60);
+    }
+    return fmt::format("{:.{}f} s", seconds, seconds < 10.0 ? 2 : 1);
+}
+
+std::string plural(std::uint64_t count, std::string_view one, std::string_view many) {
+    return fmt::format("{} {}", count_text(count), count == 1 ? one : many);
+}
+
+void print(std::string_view text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+        throw IoError(fmt::format("standard output: {}", std::strerror(errno)));
+    }
+}
+
+void print_json(const Json& object) {
+    print(object.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+std::string PatchNames::describe(std::uint32_t patch) const {
+    if (centres.empty()) {
+        return fmt::format("patch {} ({})", patch, group(patch));
+    }
+    const Vec3& centre = centres[patch];
+    return fmt::format("patch {} ({}, at {} {} {})", patch, group(patch), number_text(centre.x),
+                       number_text(centre.y), number_text(centre.z));
+}
+
+Json PatchNames::json(std::uint32_t patch) const {
+    Json object{{"index", patch}, {"group", group(patch)}, {"centre", nullptr}};
+    if (!centres.empty()) {
+        const Vec3& centre = centres[patch];
+        object["centre"] = {centre.x, centre.y, centre.z};
+    }
+    return object;
+}
+
+std::string row_sum_text(const RowSums& sums) {
+    if (sums.known == 0) {
+        return "no rows computed";
+    }
+    return fmt::format("min {:.6f}, mean {:.6f}, max {:.6f}", sums.min, sums.mean, sums.max);
+}
+
+Json row_sum_json(const RowSums& sums) {
+    if (sums.known == 0) {
+        return {{"min", nullptr}, {"max", nullptr}, {"mean", nullptr}};
+    }
+    return {{"min", sums.min}, {"max", sums.max}, {"mean", sums.mean}};
+}
+
+Json reciprocity_json(const Reciprocity& reciprocity) {
+    return {{"rms", reciprocity.rms},
+            {"max", reciprocity.max},
+            {"relative_rms", reciprocity.relative_rms},
+            {"worst", {reciprocity.worst_i, reciprocity.worst_j}},
+            {"pairs", reciprocity.pairs}};
+}
+
+Json rows_json(std::span<const double> values, std::size_t columns) {
+    Json rows = Json::array();
+    for (std::size_t begin = 0; begin < values.size(); begin += columns) {
+        const auto row = values.subspan(begin, columns);
+        rows.push_back(Json(std::vector<double>(row.begin(), row.end())));
+    }
+    return rows;
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "hemi/core/geometry.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Values of options: text to numbers, with messages that name the option, the value and what would be right.
+/// All throw InvalidArgument.
+namespace hemi::cli {
+
+/// A finite number.
+[[nodiscard]] double parse_number(std::string_view option, const std::string& text);
+/// A finite number above zero.
+[[nodiscard]] double parse_positive(std::string_view option, const std::string& text);
+/// A whole number from `lower` to `upper`.
+[[nodiscard]] std::uint64_t parse_whole(std::string_view option, const std::string& text, std::uint64_t lower,
+                                        std::uint64_t upper);
+/// Memory: a number and K, M, G or T (powers of 1024, as KiB …), KB, MB … (powers of 1000), or bytes.
+[[nodiscard]] std::uint64_t parse_memory(std::string_view option, const std::string& text);
+/// WIDTHxHEIGHT in pixels, each 1 to 16384.
+[[nodiscard]] std::array<std::uint32_t, 2> parse_picture_size(std::string_view option,
+                                                              const std::string& text);
+/// Comma-separated words.
+[[nodiscard]] std::vector<std::string> parse_list(const std::string& text);
+
+/// What `--camera` says; what it leaves out comes from the scene.
+struct CameraOption {
+    Vec3 eye{0.0};
+    Vec3 target{0.0};
+    std::optional<Vec3> up;
+    std::optional<double> fov;
+};
+/// EYE:TARGET[:UP][:FOV] — three numbers with commas for a point or direction, one number for the angle.
+[[nodiscard]] CameraOption parse_camera(std::string_view option, const std::string& text);
+
+/// Index of `text` in `known`. A word of `planned` is refused as not there yet, any other with the nearest
+/// known word.
+[[nodiscard]] std::size_t parse_choice(std::string_view option, const std::string& text,
+                                       std::span<const std::string> known,
+                                       std::span<const std::string> planned = {});
+
+} // namespace hemi::cli

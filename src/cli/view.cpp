@@ -1,0 +1,95 @@
+#include "cli/commands.hpp"
+#include "cli/outputs.hpp"
+#include "cli/picture_output.hpp"
+#include "cli/pipeline.hpp"
+#include "cli/solution.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/io/result_file.hpp"
+#include "hemi/io/scene_reader.hpp"
+#include "viewer/viewer.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+namespace hemi::cli {
+
+namespace {
+
+void check_display() {
+    const auto is_set = [](const char* variable) {
+        const char* value = std::getenv(variable);
+        return value != nullptr && *value != '\0';
+    };
+    if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY")) {
+        throw NoDevice(
+            "no display to open a window on (DISPLAY is not set); `hemi solve SCENE -o PICTURE` draws "
+            "without one");
+    }
+}
+
+/// All that does not depend on where the solution comes from.
+viewer::ViewerInput make_input(const ViewArguments& arguments, const Scene& scene, const PatchMesh& mesh) {
+    const PictureOptions& options = arguments.picture;
+    viewer::ViewerInput input;
+    input.title = scene.name.empty() ? arguments.scene.path.filename().string() : scene.name;
+    input.mesh = &mesh;
+    input.channels = static_cast<std::uint32_t>(scene.channels.size());
+    input.show = channels_to_show(scene.channels, options.show);
+    input.camera = choose_camera(scene, mesh, options.camera);
+    input.picture.width = options.size[0];
+    input.picture.height = options.size[1];
+    input.picture.shading = options.flat ? Shading::flat : Shading::gouraud;
+    input.picture.tone_mapping = options.tone_mapping;
+    input.picture.exposure = options.exposure.value_or(1.0);
+    input.automatic_exposure = !options.exposure;
+    input.script = arguments.script;
+    return input;
+}
+
+void view_scene(const ViewArguments& arguments, const Terminal& terminal) {
+    const LoadedScene loaded = load_scene(arguments.scene, terminal);
+    viewer::ViewerInput input = make_input(arguments, loaded.scene, loaded.mesh);
+    Solution solution;
+    {
+        const Rows rows = compute_rows(loaded, reflecting_patches(loaded), arguments.rows, terminal);
+        solution = solve_scene(loaded, rows.file.factors, arguments.solver, false, terminal);
+    }
+    input.radiosity = std::move(solution.radiosity);
+    input.exitance = std::move(solution.exitance);
+    input.blocked = std::move(solution.blocked);
+    viewer::run_viewer(input);
+}
+
+void view_result(const ViewArguments& arguments) {
+    const std::filesystem::path& path = arguments.scene.path;
+    if (extension_of(path) != ".hres") {
+        throw InvalidArgument(
+            fmt::format("{}: view shows a scene (.json, .obj) or a stored solution (.hres)", path.string()));
+    }
+    refuse_all_but(arguments.common,
+                   std::vector<std::string>{"--size", "--show", "--camera", "--flat", "--exposure",
+                                            "--tone-mapping", "--script"},
+                   path);
+    const io::ResultFile result = io::read_hres(path);
+    const PatchMesh mesh(result.scene, result.subdivision);
+    viewer::ViewerInput input = make_input(arguments, result.scene, mesh);
+    input.radiosity = result.radiosity;
+    input.exitance = patch_exitance(result.scene, mesh);
+    input.blocked = result.blocked;
+    viewer::run_viewer(input);
+}
+
+} // namespace
+
+ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
+    check_display();
+    if (io::is_scene_file(arguments.scene.path)) {
+        view_scene(arguments, terminal);
+    } else {
+        view_result(arguments);
+    }
+    return ExitStatus::ok;
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,123 @@
+#include "display/orbit_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hemi {
+
+namespace {
+
+Vec3 any_perpendicular(const Vec3& direction) {
+    const Vec3 other = std::abs(direction.y) < 0.9 ? Vec3(0.0, 1.0, 0.0) : Vec3(1.0, 0.0, 0.0);
+    return glm::normalize(other - glm::dot(other, direction) * direction);
+}
+
+/// The same view with `up` of unit length and perpendicular to it.
+Camera squared(Camera camera) {
+    const Vec3 forward = glm::normalize(camera.target - camera.eye);
+    const Vec3 up = camera.up - glm::dot(camera.up, forward) * forward;
+    camera.up =
+        glm::length(up) > 1e-9 * glm::length(camera.up) ? glm::normalize(up) : any_perpendicular(forward);
+    return camera;
+}
+
+/// `point` turned by `angle` about the unit vector `axis` through the origin (Rodrigues).
+Vec3 turned(const Vec3& point, const Vec3& axis, double angle) {
+    return std::cos(angle) * point + std::sin(angle) * glm::cross(axis, point) +
+           (1.0 - std::cos(angle)) * glm::dot(axis, point) * axis;
+}
+
+double half_fov(const Camera& camera) {
+    return camera.fov * std::numbers::pi / 360.0;
+}
+
+} // namespace
+
+OrbitCamera::OrbitCamera(const Camera& home, const Bounds& bounds)
+    : home_(home), bounds_(bounds), camera_(home) {
+    upward_ = glm::length(home.up) > 0.0 ? glm::normalize(home.up) : Vec3(0.0, 0.0, 1.0);
+    grab(home.target);
+}
+
+ViewRay OrbitCamera::ray(double x, double y) const {
+    const Camera view = squared(camera_);
+    const Vec3 forward = glm::normalize(view.target - view.eye);
+    const double scale = 2.0 * std::tan(half_fov(view));
+    return {view.eye, forward + scale * (x * glm::cross(forward, view.up) + y * view.up)};
+}
+
+void OrbitCamera::grab(const Vec3& pivot) {
+    start_ = camera_;
+    grabbed_ = squared(camera_);
+    pivot_ = pivot;
+}
+
+void OrbitCamera::orbit(double across, double up) {
+    camera_ = start_;
+    const Vec3 forward = glm::normalize(grabbed_.target - grabbed_.eye);
+    const Vec3 right = glm::cross(forward, grabbed_.up);
+    // Height of the view above the horizon; exact at the poles, where up and not forward tells.
+    const double height = std::atan2(glm::dot(forward, upward_), glm::dot(grabbed_.up, upward_));
+    const double pole = 0.5 * std::numbers::pi;
+    const double tip = std::abs(height) <= pole ? std::clamp(height - up, -pole, pole) - height : -up;
+    if (across == 0.0 && tip == 0.0) {
+        return;
+    }
+    const auto move = [&](const Vec3& v) { return turned(turned(v, right, tip), upward_, -across); };
+    camera_.eye = pivot_ + move(grabbed_.eye - pivot_);
+    camera_.target = pivot_ + move(grabbed_.target - pivot_);
+    camera_.up = move(grabbed_.up);
+}
+
+void OrbitCamera::pan(double x, double y) {
+    camera_ = start_;
+    const Vec3 forward = glm::normalize(grabbed_.target - grabbed_.eye);
+    const double depth = std::max(glm::dot(pivot_ - grabbed_.eye, forward), 1e-6 * bounds_.diagonal());
+    const double scale = 2.0 * std::tan(half_fov(grabbed_)) * depth;
+    const Vec3 shift = scale * (x * glm::cross(forward, grabbed_.up) + y * grabbed_.up);
+    camera_.eye -= shift;
+    camera_.target -= shift;
+}
+
+void OrbitCamera::zoom(double factor) {
+    camera_ = start_;
+    if (factor == 1.0) {
+        return;
+    }
+    // Never so near or far that the view's direction drowns in rounding.
+    const double distance = glm::length(start_.eye - start_.target);
+    const double nearest = 1e-6 * bounds_.diagonal();
+    const double farthest = 1e4 * bounds_.diagonal();
+    const double limited =
+        std::clamp(factor, std::min(1.0, nearest / distance), std::max(1.0, farthest / distance));
+    camera_.eye = pivot_ + limited * (start_.eye - pivot_);
+    camera_.target = pivot_ + limited * (start_.target - pivot_);
+}
+
+void OrbitCamera::frame_all(double aspect) {
+    const Vec3 forward = glm::normalize(camera_.target - camera_.eye);
+    const double radius = bounds_.diagonal() > 0.0 ? 0.5 * bounds_.diagonal() : 1.0;
+    const double half = std::min(half_fov(camera_), std::atan(aspect * std::tan(half_fov(camera_))));
+    camera_.target = bounds_.empty() ? Vec3(0.0) : bounds_.centre();
+    camera_.eye = camera_.target - radius / std::sin(half) * forward;
+    grab(camera_.target);
+}
+
+void OrbitCamera::reset() {
+    camera_ = home_;
+    grab(camera_.target);
+}
+
+void OrbitCamera::look_along(Axis axis, double aspect) {
+    // Seen from the front the scene's x axis points right where its upward axis allows.
+    Vec3 right = Vec3(1.0, 0.0, 0.0) - upward_.x * upward_;
+    right = glm::length(right) > 0.1 ? glm::normalize(right) : any_perpendicular(upward_);
+    const Vec3 ahead = glm::cross(upward_, right);
+    const Vec3 forward = axis == Axis::front ? ahead : (axis == Axis::right ? -right : -upward_);
+    camera_.up = axis == Axis::top ? ahead : upward_;
+    camera_.eye = camera_.target - forward;
+    frame_all(aspect);
+}
+
+} // namespace hemi

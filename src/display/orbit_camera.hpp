@@ -1,0 +1,61 @@
+#pragma once
+
+#include "hemi/core/geometry.hpp"
+#include "hemi/scene/scene.hpp"
+
+#include <cstdint>
+
+namespace hemi {
+
+/// A half-line from the eye through a point of the picture.
+struct ViewRay {
+    Vec3 origin;
+    Vec3 direction; ///< not of unit length: origin + direction lies at depth 1
+};
+
+/// A camera that a hand moves: orbit, pan and zoom about a pivot that stays where it is on the screen. Knows
+/// nothing of windows; lengths on the screen are in heights of the picture, x to the right and y upwards,
+/// from its centre.
+///
+/// Orbiting is a turntable: sideways about the scene's upward axis, up and down about the camera's right. It
+/// stops looking straight up or down and never rolls over.
+/// A gesture goes from grab() to the next grab(); its moves are measured from where it began, so that a hand
+/// that comes back to its start brings back the same camera, bit for bit.
+class OrbitCamera {
+public:
+    enum class Axis { front, right, top };
+
+    /// @param home  where reset() goes; its upward direction is the axis of the turntable.
+    OrbitCamera(const Camera& home, const Bounds& bounds);
+
+    [[nodiscard]] const Camera& camera() const noexcept { return camera_; }
+    [[nodiscard]] ViewRay ray(double x, double y) const;
+
+    /// Begins a gesture about `pivot`.
+    void grab(const Vec3& pivot);
+    /// Turns by angles in radians since grab(): `across` to the right about the upward axis, `up` so that the
+    /// scene tips towards the eye from above. The pivot keeps its place on the screen.
+    void orbit(double across, double up);
+    /// Moves along the picture, so that the pivot follows the hand by (x, y) since grab().
+    void pan(double x, double y);
+    /// Multiplies the distance to the pivot by `factor` (> 0) since grab(). The pivot keeps its place.
+    void zoom(double factor);
+
+    /// Goes back or forth along the view until the whole scene is in the picture, and looks at its centre.
+    /// @param aspect  width by height of the picture.
+    void frame_all(double aspect);
+    void reset();
+    /// Looks along an axis of the scene at all of it.
+    void look_along(Axis axis, double aspect);
+
+private:
+    Camera home_;
+    Bounds bounds_;
+    Vec3 upward_;
+    Camera camera_;
+    Camera grabbed_; ///< at the gesture's beginning, with `up` perpendicular to the view
+    Camera start_;   ///< the same as it was given
+    Vec3 pivot_{0.0};
+};
+
+} // namespace hemi

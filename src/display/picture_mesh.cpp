@@ -1,0 +1,135 @@
+#include "hemi/display/picture.hpp"
+
+#include "display/vertex_colours_detail.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace hemi {
+
+namespace {
+
+/// Radiosity that fills most of the display's range: filmic tone mapping makes 0.67 of it, linear 0.6.
+constexpr double bright_level = 0.6;
+/// Share of the lit area that is darker than what is brought to that level; what is above may clip, so that
+/// spots of light near a small lamp do not darken all the rest.
+constexpr double bright_share = 0.9;
+
+double luminance(const float* rgb) {
+    return 0.2126 * static_cast<double>(rgb[0]) + 0.7152 * static_cast<double>(rgb[1]) +
+           0.0722 * static_cast<double>(rgb[2]);
+}
+
+/// Luminance below which `share` of the area lies; 0 if nothing is lit.
+double area_percentile(std::vector<std::pair<double, double>> luminance_and_area, double share) {
+    std::sort(luminance_and_area.begin(), luminance_and_area.end());
+    double total = 0.0;
+    for (const auto& entry : luminance_and_area) {
+        total += entry.second;
+    }
+    double below = 0.0;
+    for (const auto& [value, area] : luminance_and_area) {
+        below += area;
+        if (below >= share * total) {
+            return value;
+        }
+    }
+    return 0.0;
+}
+
+} // namespace
+
+PictureMesh make_picture_mesh(const PatchMesh& mesh, std::uint32_t channels,
+                              std::span<const double> radiosity, std::span<const double> blocked,
+                              std::array<std::uint32_t, 3> show) {
+    if (radiosity.size() != std::size_t{mesh.size()} * channels) {
+        throw InvalidArgument(fmt::format("make_picture_mesh: {} values for {} patches of {} channels",
+                                          radiosity.size(), mesh.size(), channels));
+    }
+    std::vector<double> shown;
+    shown.reserve(std::size_t{mesh.size()} * 3);
+    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        for (const std::uint32_t channel : show) {
+            if (channel >= channels) {
+                throw InvalidArgument(fmt::format("make_picture_mesh: channel {} is shown, but there are {}",
+                                                  channel, channels));
+            }
+            shown.push_back(radiosity[std::size_t{patch} * channels + channel]);
+        }
+    }
+
+    const SmoothSurfaces surfaces(mesh);
+    PictureMesh picture;
+    picture.bounds = mesh.bounds();
+    picture.origin = mesh.bounds().centre();
+    picture.corners = corner_values(mesh, surfaces, 3, shown, blocked);
+    picture.positions.reserve(picture.corners.size());
+    picture.patches.reserve(shown.size());
+    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        const auto ring = surfaces.corners(patch);
+        // Welded positions, so that neighbours share every bit of their corners and no background shows
+        // between them.
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 point = surfaces.position(ring[std::min(k, ring.size() - 1)]) - picture.origin;
+            for (int axis = 0; axis < 3; ++axis) {
+                picture.positions.push_back(static_cast<float>(point[axis]));
+            }
+        }
+        float* corners = picture.corners.data() + std::size_t{patch} * 12;
+        if (ring.size() == 3) {
+            std::copy_n(corners + 6, 3, corners + 9);
+        }
+        // The visible part of a covered patch is lit as its surroundings are, not as its covered eye.
+        for (std::size_t c = 0; c < 3; ++c) {
+            float value = static_cast<float>(shown[std::size_t{patch} * 3 + c]);
+            if (is_covered(blocked, patch)) {
+                value = 0.0F;
+                for (std::size_t k = 0; k < ring.size(); ++k) {
+                    value += corners[k * 3 + c];
+                }
+                value /= static_cast<float>(ring.size());
+            }
+            picture.patches.push_back(value);
+        }
+    }
+    return picture;
+}
+
+double automatic_exposure(const PatchMesh& mesh, const PictureMesh& picture, std::span<const double> blocked,
+                          std::span<const double> exitance, std::uint32_t channels) {
+    std::vector<std::pair<double, double>> lit; // surfaces that only reflect
+    std::vector<std::pair<double, double>> lamps;
+    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        const double value = luminance(picture.patches.data() + std::size_t{patch} * 3);
+        if (is_covered(blocked, patch) || !(value > 0.0)) {
+            continue;
+        }
+        const auto own =
+            exitance.empty() ? exitance : exitance.subspan(std::size_t{patch} * channels, channels);
+        const bool lamp = std::any_of(own.begin(), own.end(), [](double e) { return e > 0.0; });
+        (lamp ? lamps : lit).emplace_back(value, mesh.areas()[patch]);
+    }
+    double level = area_percentile(std::move(lit), bright_share);
+    if (!(level > 0.0)) {
+        level = area_percentile(std::move(lamps), bright_share);
+    }
+    return level > 0.0 ? bright_level / level : 1.0;
+}
+
+Camera default_camera(const Bounds& bounds) {
+    Camera camera;
+    camera.fov = 40.0;
+    camera.target = bounds.empty() ? Vec3(0.0) : bounds.centre();
+    const double radius = bounds.diagonal() > 0.0 ? 0.5 * bounds.diagonal() : 1.0;
+    const double distance = radius / std::sin(0.5 * camera.fov * std::numbers::pi / 180.0);
+    camera.eye = camera.target + distance * glm::normalize(Vec3(0.5, -0.8, 0.45));
+    return camera;
+}
+
+} // namespace hemi

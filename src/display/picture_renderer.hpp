@@ -1,0 +1,79 @@
+#pragma once
+
+#include "gl/objects.hpp"
+
+#include "hemi/display/picture.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace hemi {
+
+/// Draws a PictureMesh with the current OpenGL 4.5 context, whatever made it: the same code, and on the same
+/// renderer the same pixels, for a window, a screenshot and a headless picture.
+///
+/// Make, use and destroy it with one context current on the calling thread. Draws expect OpenGL's default
+/// state and leave it behind; the caller's framebuffer binding and viewport are not kept.
+/// Memory: about 230 bytes a patch on the device, and one tile of samples (at most 335 MB).
+class PictureRenderer {
+public:
+    /// Largest width and height of a picture.
+    static constexpr std::uint32_t max_size = 16384;
+
+    /// @throws GlError if a shader does not compile.
+    PictureRenderer();
+
+    /// Replaces what is drawn. `mesh` is not needed afterwards.
+    void upload(const PictureMesh& mesh);
+
+    /// Draws the picture into the lower left of framebuffer `target` (0: the window), tile by tile where the
+    /// samples do not fit into one texture.
+    /// @throws InvalidArgument for a size of 0 or above max_size, samples outside 1 to 8, a camera without a
+    ///   direction or with a field of view outside (0, 180), an exposure that is not finite; GlError
+    void draw(const Camera& camera, const PictureSettings& settings, GLuint target);
+
+    /// The same pixels, read back. @throws as draw()
+    [[nodiscard]] Picture picture(const Camera& camera, const PictureSettings& settings);
+
+private:
+    /// Pixels of the picture, from its lower left.
+    struct Tile {
+        std::uint32_t x;
+        std::uint32_t y;
+        std::uint32_t width;
+        std::uint32_t height;
+    };
+    /// Texture and what it is big enough for.
+    struct Image {
+        gl::Texture2D texture;
+        std::uint32_t width = 0;
+        std::uint32_t height = 0;
+    };
+
+    [[nodiscard]] std::vector<Tile> tiles(const PictureSettings& settings) const;
+    void draw_samples(const Camera& camera, const PictureSettings& settings, const Tile& tile);
+    void resolve(const PictureSettings& settings, const Tile& tile, GLuint target, std::uint32_t x,
+                 std::uint32_t y);
+    /// At least so large.
+    void make_sample_target(std::uint32_t width, std::uint32_t height);
+
+    gl::Program picture_program_;
+    gl::Program resolve_program_;
+    gl::VertexArray vertex_array_;
+    gl::VertexArray no_vertices_;
+    gl::Buffer vertices_;
+    gl::Buffer indices_;
+    GLsizei index_count_ = 0;
+    Vec3 origin_{0.0};
+    double diagonal_ = 1.0;
+    std::array<float, 3> environment_{};
+
+    gl::Framebuffer sample_target_;
+    std::optional<Image> colour_;
+    std::optional<Image> depth_;
+    GLint max_texture_ = 0;
+};
+
+} // namespace hemi

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// Patches with their coincident corners made one, and which patches meet where.
+class SmoothSurfaces {
+public:
+    /// Largest angle between the normals of two patches of one smooth surface, degrees.
+    static constexpr double crease_angle = 20.0;
+    /// Corners nearer to each other than this share of the scene's diagonal are one vertex.
+    static constexpr double weld_tolerance = 1e-7;
+
+    explicit SmoothSurfaces(const PatchMesh& mesh);
+
+    [[nodiscard]] std::uint32_t vertex_count() const noexcept {
+        return static_cast<std::uint32_t>(vertices_.size());
+    }
+    /// The one position of all corners welded into vertex `v`.
+    [[nodiscard]] const Vec3& position(std::uint32_t v) const { return vertices_[v]; }
+    /// Vertices of a patch's corners, 3 or 4.
+    [[nodiscard]] std::span<const std::uint32_t> corners(std::uint32_t patch) const {
+        return {corners_.data() + std::size_t{patch} * 4, counts_[patch]};
+    }
+    /// Patches that have vertex `v` as a corner or in the middle of an edge, ascending.
+    [[nodiscard]] std::span<const std::uint32_t> patches_at(std::uint32_t v) const {
+        return {incident_.data() + first_incident_[v], first_incident_[v + 1] - first_incident_[v]};
+    }
+    /// Whether light runs smoothly from one patch to the other where they meet: same material, same group,
+    /// normals within the crease angle.
+    [[nodiscard]] bool continues(std::uint32_t a, std::uint32_t b) const;
+
+private:
+    void weld(const PatchMesh& mesh);
+    void connect();
+
+    struct Appearance {
+        Vec3 normal;
+        std::uint32_t material;
+        std::uint32_t group;
+    };
+    std::vector<Vec3> vertices_;
+    std::vector<std::uint32_t> corners_; ///< 4 a patch
+    std::vector<std::uint8_t> counts_;
+    std::vector<Appearance> looks_;
+    std::vector<std::size_t> first_incident_;
+    std::vector<std::uint32_t> incident_;
+    double tolerance_ = 0.0;
+};
+
+} // namespace hemi

@@ -1,0 +1,37 @@
+#include "display/visible_point.hpp"
+
+#include <limits>
+
+namespace hemi {
+
+std::optional<Vec3> visible_point(const PatchMesh& mesh, const Vec3& origin, const Vec3& direction) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
+        const Surface& surface = mesh.surfaces()[s];
+        const Vec3& normal = mesh.surface_normal(s);
+        const double slope = glm::dot(direction, normal);
+        if (slope == 0.0 || (slope > 0.0 && !surface.two_sided)) {
+            continue;
+        }
+        const double along = glm::dot(surface.vertices[0] - origin, normal) / slope;
+        if (!(along > 0.0 && along < nearest)) {
+            continue;
+        }
+        const Vec3 point = origin + along * direction;
+        bool inside = true;
+        for (std::size_t k = 0; k < surface.vertex_count && inside; ++k) {
+            const Vec3& from = surface.vertices[k];
+            const Vec3& to = surface.vertices[(k + 1) % surface.vertex_count];
+            inside = glm::dot(glm::cross(to - from, point - from), normal) >= 0.0;
+        }
+        if (inside) {
+            nearest = along;
+        }
+    }
+    if (nearest == std::numeric_limits<double>::infinity()) {
+        return std::nullopt;
+    }
+    return origin + nearest * direction;
+}
+
+} // namespace hemi

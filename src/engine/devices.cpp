@@ -1,0 +1,33 @@
+#include "gl/context.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/engine/engine.hpp"
+
+namespace hemi {
+
+std::vector<DeviceInfo> list_devices() {
+    std::vector<DeviceInfo> devices;
+    for (const std::string& name : gl::device_names()) {
+        DeviceInfo info;
+        info.name = name;
+        try {
+            const auto context = gl::make_context(name);
+            info.renderer = context->renderer();
+            info.version = context->version();
+            info.software = context->software();
+        } catch (const GlError& error) {
+            info.problem = error.what();
+        }
+        devices.push_back(std::move(info));
+    }
+    // As make_context("auto"): the first GPU, else OSMesa, which comes last.
+    for (DeviceInfo& info : devices) {
+        if (info.problem.empty() && (!info.software || info.name == "osmesa")) {
+            info.chosen = true;
+            break;
+        }
+    }
+    return devices;
+}
+
+} // namespace hemi

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "engine/draw_list.hpp"
+#include "engine/eye.hpp"
+#include "hemi/engine/engine.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hemi {
+
+/// All that an engine needs to know of a mesh: what to draw, and from where. Can be sent to a worker.
+struct EngineGeometry {
+    DrawList list;
+    std::vector<EyePoint> eyes; ///< one a patch
+};
+[[nodiscard]] EngineGeometry make_engine_geometry(const PatchMesh& mesh, bool merge_lattices);
+
+/// Rows by item buffers on one context of this process and thread.
+class GlRows {
+public:
+    /// @throws NoDevice, GlError
+    GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, const std::string& device);
+    ~GlRows();
+    GlRows(const GlRows&) = delete;
+    GlRows& operator=(const GlRows&) = delete;
+
+    [[nodiscard]] const std::string& renderer() const;
+    [[nodiscard]] bool software() const;
+
+    /// Computes rows in the order given and hands each on.
+    void rows(std::span<const std::uint32_t> patches, const RowSink& sink);
+
+    /// The item buffer of one eye: 3·resolution rows of `resolution` items (nothing, blocked, or
+    /// item_first_patch + patch). For tests and for looking at what a patch sees.
+    [[nodiscard]] std::vector<std::uint32_t> items(std::uint32_t patch);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace hemi

@@ -1,0 +1,54 @@
+#include "engine/gl_rows.hpp"
+#include "engine/worker_pool.hpp"
+#include "gl/context.hpp"
+#include "hemi/engine/delta_form_factors.hpp"
+#include "hemi/engine/engine.hpp"
+
+namespace hemi {
+
+namespace {
+
+/// Rows by one context of this process.
+class InProcessEngine final : public RowProvider {
+public:
+    InProcessEngine(std::unique_ptr<const EngineGeometry> geometry, const HemicubeSettings& settings,
+                    std::string device)
+        : geometry_(std::move(geometry)), settings_(settings), device_(std::move(device)) {}
+
+    [[nodiscard]] std::uint32_t size() const override {
+        return static_cast<std::uint32_t>(geometry_->eyes.size());
+    }
+    [[nodiscard]] std::string renderer() const override { return engine().renderer(); }
+    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
+        engine().rows(patches, sink);
+    }
+
+private:
+    GlRows& engine() const {
+        if (!engine_) {
+            engine_ = std::make_unique<GlRows>(*geometry_, settings_, device_);
+        }
+        return *engine_;
+    }
+
+    std::unique_ptr<const EngineGeometry> geometry_;
+    HemicubeSettings settings_;
+    std::string device_;
+    mutable std::unique_ptr<GlRows> engine_;
+};
+
+} // namespace
+
+std::unique_ptr<RowProvider> make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
+                                                  const EngineSettings& engine) {
+    DeltaFormFactors::check_resolution(settings.resolution);
+    gl::check_device_name(engine.device);
+    auto geometry =
+        std::make_unique<const EngineGeometry>(make_engine_geometry(mesh, settings.merge_lattices));
+    if (engine.worker_program.empty()) {
+        return std::make_unique<InProcessEngine>(std::move(geometry), settings, engine.device);
+    }
+    return make_worker_pool(std::move(geometry), settings, engine);
+}
+
+} // namespace hemi

@@ -1,0 +1,189 @@
+#include "engine/item_buffers.hpp"
+
+#include "gl/shaders.hpp"
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace hemi {
+
+namespace {
+
+constexpr GLint atlas_size_location = 0;
+
+void describe_vertices(GLuint layout) {
+    const auto attribute = [layout](GLuint index, GLint count, bool integer, std::size_t offset) {
+        glEnableVertexArrayAttrib(layout, index);
+        glVertexArrayAttribBinding(layout, index, 0);
+        const auto at = static_cast<GLuint>(offset);
+        if (integer) {
+            glVertexArrayAttribIFormat(layout, index, count, GL_UNSIGNED_INT, at);
+        } else {
+            glVertexArrayAttribFormat(layout, index, count, GL_FLOAT, GL_FALSE, at);
+        }
+    };
+    attribute(0, 3, false, offsetof(DrawVertex, x));
+    attribute(1, 2, false, offsetof(DrawVertex, grid_u));
+    attribute(2, 2, false, offsetof(DrawVertex, twist_u));
+    attribute(3, 3, true, offsetof(DrawVertex, first_id));
+}
+
+} // namespace
+
+ItemBuffers::ItemBuffers(const gl::Context& context, std::uint32_t resolution, std::uint32_t slots)
+    : resolution_(resolution), slots_(slots), software_(context.software()),
+      affine_(gl::make_program("hemicube", gl::shaders::hemicube_vert, gl::shaders::hemicube_frag)),
+      bilinear_(
+          gl::make_program("hemicube quads", gl::shaders::hemicube_vert, gl::shaders::hemicube_quad_frag)) {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    const auto rows = static_cast<std::uint32_t>(largest);
+    if (3 * resolution > rows) {
+        throw GlError(fmt::format("resolution {} needs a texture of {} rows; this device allows {}",
+                                  resolution, 3 * resolution, rows));
+    }
+    slots_ = std::clamp(slots, 1u, rows / (3 * resolution));
+    describe_vertices(layout_.get());
+    targets_.resize(software_ ? 1 : 3);
+    for (std::uint32_t i = 0; i < targets_.size(); ++i) {
+        prepare_target(targets_[i], i);
+    }
+    if (software_) {
+        ids_.resize(std::size_t{3} * resolution_ * resolution_ * slots_);
+    }
+    gl::check_errors("item buffers");
+}
+
+void ItemBuffers::prepare_target(Target& target, std::uint32_t index) const {
+    const auto width = static_cast<GLsizei>(resolution_);
+    const auto height = static_cast<GLsizei>(3 * resolution_ * slots_);
+    glTextureStorage2D(target.ids.get(), 1, GL_R32UI, width, height);
+    glTextureParameteri(target.ids.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(target.ids.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    glTextureStorage2D(target.depth.get(), 1, GL_DEPTH_COMPONENT32F, width, height);
+    glNamedFramebufferTexture(target.framebuffer.get(), GL_COLOR_ATTACHMENT0, target.ids.get(), 0);
+    glNamedFramebufferTexture(target.framebuffer.get(), GL_DEPTH_ATTACHMENT, target.depth.get(), 0);
+    if (glCheckNamedFramebufferStatus(target.framebuffer.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+        throw GlError("item buffers: the driver refuses a framebuffer of R32UI and 32-bit float depth");
+    }
+    if (!software_) {
+        glNamedBufferStorage(target.pixels.get(), GLsizeiptr{4} * width * height, nullptr, GL_MAP_READ_BIT);
+    }
+    gl::label(GL_TEXTURE, target.ids.get(), fmt::format("item ids {}", index));
+    gl::label(GL_TEXTURE, target.depth.get(), fmt::format("item depth {}", index));
+    gl::label(GL_FRAMEBUFFER, target.framebuffer.get(), fmt::format("item atlas {}", index));
+}
+
+void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
+    if (mapped_ != nullptr) {
+        glUnmapNamedBuffer(targets_[mapped_target_].pixels.get());
+        mapped_ = nullptr;
+    }
+    Target& target = targets_[(oldest_ + under_way_) % targets_.size()];
+    ++under_way_;
+    target.used = used;
+    const auto width = static_cast<GLsizei>(resolution_);
+    const auto height = static_cast<GLsizei>(3 * resolution_ * slots_);
+
+    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
+    glViewport(0, 0, width, height);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    for (GLenum plane = 0; plane < 4; ++plane) {
+        glEnable(GL_CLIP_DISTANCE0 + plane);
+    }
+    const std::array<GLuint, 4> nothing{item_nothing, 0, 0, 0};
+    const GLfloat infinity = 0.0f;
+    glClearNamedFramebufferuiv(target.framebuffer.get(), GL_COLOR, 0, nothing.data());
+    glClearNamedFramebufferfv(target.framebuffer.get(), GL_DEPTH, 0, &infinity);
+
+    struct Part {
+        const std::vector<DrawVertex>& vertices;
+        const gl::Program& program;
+        bool behind; ///< loses ties in depth
+    };
+    const std::array<Part, 3> parts{{{stream.affine, affine_, false},
+                                     {stream.bilinear, bilinear_, false},
+                                     {stream.blocked, affine_, true}}};
+    const std::size_t total = stream.affine.size() + stream.bilinear.size() + stream.blocked.size();
+    glNamedBufferData(target.vertices.get(), static_cast<GLsizeiptr>(total * sizeof(DrawVertex)), nullptr,
+                      GL_STREAM_DRAW);
+    glBindVertexArray(layout_.get());
+    glVertexArrayVertexBuffer(layout_.get(), 0, target.vertices.get(), 0, sizeof(DrawVertex));
+    // Depth is interpolated with an error that grows with its slope: backs are set behind by the change of
+    // depth over 1/256 texel, the rasteriser's own grain, and a few units in the last place.
+    glPolygonOffset(-1.0f / 32.0f, -4.0f);
+    std::size_t first = 0;
+    for (const Part& part : parts) {
+        if (part.vertices.empty()) {
+            continue;
+        }
+        const auto count = part.vertices.size();
+        glNamedBufferSubData(target.vertices.get(), static_cast<GLintptr>(first * sizeof(DrawVertex)),
+                             static_cast<GLsizeiptr>(count * sizeof(DrawVertex)), part.vertices.data());
+        (part.behind ? glEnable : glDisable)(GL_POLYGON_OFFSET_FILL);
+        glUseProgram(part.program.get());
+        glUniform2f(atlas_size_location, static_cast<float>(resolution_),
+                    static_cast<float>(3 * resolution_ * slots_));
+        glDrawArrays(GL_TRIANGLES, static_cast<GLint>(first), static_cast<GLsizei>(count));
+        first += count;
+    }
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    const auto used_rows = static_cast<GLsizei>(3 * resolution_ * used);
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    if (!software_) {
+        glBindBuffer(GL_PIXEL_PACK_BUFFER, target.pixels.get());
+        glReadPixels(0, 0, width, used_rows, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+        glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+        target.fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+        glFlush();
+    }
+}
+
+const std::uint32_t* ItemBuffers::finish() {
+    Target& target = targets_[oldest_];
+    const auto rows = static_cast<GLsizei>(3 * resolution_ * target.used);
+    const std::uint32_t* result = nullptr;
+    if (software_) {
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.get());
+        glReadPixels(0, 0, static_cast<GLsizei>(resolution_), rows, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                     ids_.data());
+        result = ids_.data();
+    } else {
+        if (mapped_ != nullptr) {
+            glUnmapNamedBuffer(targets_[mapped_target_].pixels.get());
+        }
+        constexpr GLuint64 ten_seconds = 10'000'000'000u;
+        GLenum state = GL_TIMEOUT_EXPIRED;
+        while (state == GL_TIMEOUT_EXPIRED) {
+            state = glClientWaitSync(target.fence, GL_SYNC_FLUSH_COMMANDS_BIT, ten_seconds);
+        }
+        glDeleteSync(target.fence);
+        target.fence = nullptr;
+        if (state == GL_WAIT_FAILED) {
+            throw GlError("item buffers: waiting for the GPU failed");
+        }
+        mapped_ = static_cast<const std::uint32_t*>(
+            glMapNamedBufferRange(target.pixels.get(), 0,
+                                  GLsizeiptr{4} * rows * static_cast<GLsizei>(resolution_), GL_MAP_READ_BIT));
+        if (mapped_ == nullptr) {
+            throw GlError("item buffers: the read-back buffer cannot be mapped");
+        }
+        mapped_target_ = oldest_;
+        result = mapped_;
+    }
+    gl::check_errors("item buffers");
+    oldest_ = (oldest_ + 1) % targets_.size();
+    --under_way_;
+    return result;
+}
+
+} // namespace hemi

@@ -1,0 +1,109 @@
+#include "engine/row_accumulator.hpp"
+
+#include <bit>
+#include <cmath>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace hemi {
+
+namespace {
+
+/// Bit k is set where row[k] differs from row[k + 1], for k in [0, 64).
+std::uint64_t changes_of_64(const std::uint32_t* row) {
+    std::uint64_t mask = 0;
+#if defined(__SSE2__)
+    for (int k = 0; k < 64; k += 4) {
+        const __m128i here = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + k));
+        const __m128i next = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + k + 1));
+        const int same = _mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(here, next)));
+        mask |= static_cast<std::uint64_t>(~same & 0xF) << k;
+    }
+#else
+    for (int k = 0; k < 64; ++k) {
+        mask |= static_cast<std::uint64_t>(row[k] != row[k + 1]) << k;
+    }
+#endif
+    return mask;
+}
+
+} // namespace
+
+RowAccumulator::RowAccumulator(const DeltaFormFactors& weights, std::span<const std::uint32_t> item_of_id,
+                               std::uint32_t patches)
+    : weights_(weights), item_of_id_(item_of_id), sums_(item_first_patch + patches),
+      touched_((sums_.size() + 63) / 64) {}
+
+void RowAccumulator::add(const std::uint32_t* ids) {
+    const std::uint32_t resolution = weights_.resolution();
+    for (std::uint32_t y = 0; y < weights_.rows(); ++y) {
+        const std::uint32_t* row = ids + std::size_t{y} * resolution;
+        const std::uint32_t* prefix = weights_.prefix_row(y).data();
+        std::uint32_t before = prefix[0];
+        const auto end_run = [&](std::uint32_t last) {
+            const std::uint32_t item = item_of_id_[row[last]];
+            const std::uint32_t upto = prefix[last + 1];
+            sums_[item] += upto - before;
+            touched_[item >> 6] |= std::uint64_t{1} << (item & 63);
+            before = upto;
+        };
+        std::uint32_t x = 0;
+        // The comparison reads one texel past the 64, so the row's last texel is left to the loop below.
+        for (; x + 64 < resolution; x += 64) {
+            for (std::uint64_t mask = changes_of_64(row + x); mask != 0; mask &= mask - 1) {
+                end_run(x + static_cast<std::uint32_t>(std::countr_zero(mask)));
+            }
+        }
+        for (; x + 1 < resolution; ++x) {
+            if (row[x] != row[x + 1]) {
+                end_run(x);
+            }
+        }
+        end_run(resolution - 1);
+    }
+}
+
+RowView RowAccumulator::take() {
+    constexpr double unit = 1.0 / DeltaFormFactors::total;
+    columns_.clear();
+    values_.clear();
+    RowView row;
+    row.environment = sums_[item_nothing] * unit;
+    row.blocked = sums_[item_blocked] * unit;
+    sums_[item_nothing] = sums_[item_blocked] = 0;
+    touched_[0] &= ~std::uint64_t{3};
+    double sum = 0.0;
+    for (std::size_t word = 0; word < touched_.size(); ++word) {
+        for (std::uint64_t mask = touched_[word]; mask != 0; mask &= mask - 1) {
+            const std::size_t item = word * 64 + static_cast<std::size_t>(std::countr_zero(mask));
+            if (sums_[item] == 0) {
+                continue; // only texels too small to weigh anything
+            }
+            const auto value = static_cast<float>(sums_[item] * unit);
+            sums_[item] = 0;
+            columns_.push_back(static_cast<std::uint32_t>(item - item_first_patch));
+            values_.push_back(value);
+            sum += static_cast<double>(value);
+        }
+        touched_[word] = 0;
+    }
+    // Rounding to float costs some 1e-8 of the row's sum; entries large enough not to notice take it back.
+    double missing = 1.0 - row.environment - row.blocked - sum;
+    for (float& value : values_) {
+        if (missing == 0.0) {
+            break;
+        }
+        if (static_cast<double>(value) > 1e5 * std::abs(missing)) {
+            const auto mended = static_cast<float>(static_cast<double>(value) + missing);
+            missing -= static_cast<double>(mended) - static_cast<double>(value);
+            value = mended;
+        }
+    }
+    row.columns = columns_;
+    row.values = values_;
+    return row;
+}
+
+} // namespace hemi

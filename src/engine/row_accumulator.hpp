@@ -1,0 +1,37 @@
+#pragma once
+
+#include "engine/draw_list.hpp"
+#include "hemi/engine/delta_form_factors.hpp"
+#include "hemi/matrix/form_factor_matrix.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// Sums the delta form factors of an item buffer by patch and makes a row of F of them. Integer sums: the
+/// order does not matter. Memory: 4 bytes and a bit a patch.
+class RowAccumulator {
+public:
+    /// @param item_of_id  draw id -> item; must outlive this.
+    RowAccumulator(const DeltaFormFactors& weights, std::span<const std::uint32_t> item_of_id,
+                   std::uint32_t patches);
+
+    /// Adds one hemicube: 3·resolution rows of `resolution` draw ids, weighted.
+    void add(const std::uint32_t* ids);
+
+    /// The row so far, and starts the next one. The view is valid until the next call.
+    /// Values are rounded to float32 so that their sum with e and b is 1 to about 1e-9.
+    [[nodiscard]] RowView take();
+
+private:
+    const DeltaFormFactors& weights_;
+    std::span<const std::uint32_t> item_of_id_;
+    std::vector<std::uint32_t> sums_;    ///< per item
+    std::vector<std::uint64_t> touched_; ///< bit per item
+    std::vector<std::uint32_t> columns_;
+    std::vector<float> values_;
+};
+
+} // namespace hemi

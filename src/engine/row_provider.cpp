@@ -1,0 +1,164 @@
+#include "hemi/engine/row_provider.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace hemi {
+
+namespace {
+
+void check_patches(std::span<const std::uint32_t> patches, std::uint32_t size) {
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+        if (patches[k] >= size || (k > 0 && patches[k] <= patches[k - 1])) {
+            throw InvalidArgument(
+                fmt::format("row {} asked for; rows must ascend and be below {}", patches[k], size));
+        }
+    }
+}
+
+/// A block of which some rows have come.
+class OpenBlock {
+public:
+    /// @param wanted  rows of this block that will come, ascending
+    OpenBlock(std::uint32_t first_row, std::uint32_t rows, std::span<const std::uint32_t> wanted)
+        : wanted_(wanted) {
+        block_.first_row = first_row;
+        block_.begin.assign(std::size_t{rows} + 1, 0);
+        block_.environment.assign(rows, 0.0);
+        block_.blocked.assign(rows, 0.0);
+        block_.known.assign(rows, 0);
+    }
+
+    void add(std::uint32_t patch, const RowView& row) {
+        if (complete() || wanted_[received_] != patch) {
+            throw Error(fmt::format("row {} of the form factors came twice, out of order or unasked", patch));
+        }
+        const std::uint32_t local = patch - block_.first_row;
+        fill_offsets(local + 1);
+        block_.columns.insert(block_.columns.end(), row.columns.begin(), row.columns.end());
+        block_.values.insert(block_.values.end(), row.values.begin(), row.values.end());
+        block_.begin[local + 1] = block_.columns.size();
+        block_.environment[local] = row.environment;
+        block_.blocked[local] = row.blocked;
+        block_.known[local] = 1;
+        filled_ = local + 2;
+        ++received_;
+    }
+
+    [[nodiscard]] bool complete() const { return received_ == wanted_.size(); }
+
+    [[nodiscard]] RowBlock finish() {
+        fill_offsets(block_.begin.size());
+        block_.columns.shrink_to_fit();
+        block_.values.shrink_to_fit();
+        return std::move(block_);
+    }
+
+private:
+    void fill_offsets(std::size_t end) {
+        for (; filled_ < end; ++filled_) {
+            block_.begin[filled_] = block_.columns.size();
+        }
+    }
+
+    RowBlock block_;
+    std::span<const std::uint32_t> wanted_;
+    std::size_t filled_ = 1; // offsets that are final
+    std::size_t received_ = 0;
+};
+
+/// The rows of `patches` that lie in the block starting at `first_row`.
+std::span<const std::uint32_t> rows_of_block(std::span<const std::uint32_t> patches,
+                                             std::uint32_t first_row) {
+    const auto begin = std::lower_bound(patches.begin(), patches.end(), first_row);
+    const auto end = std::find_if(begin, patches.end(), [first_row](std::uint32_t patch) {
+        return patch - first_row >= FormFactorMatrix::block_rows;
+    });
+    return {begin, end};
+}
+
+} // namespace
+
+FormFactorMatrix compute_matrix(RowProvider& provider, std::span<const std::uint32_t> patches,
+                                const Progress& progress) {
+    const std::uint32_t size = provider.size();
+    check_patches(patches, size);
+    FormFactorMatrix matrix(size);
+    std::map<std::uint32_t, OpenBlock> open_blocks;
+    std::size_t done = 0;
+
+    provider.rows(patches, [&](std::uint32_t patch, const RowView& row) {
+        const std::uint32_t first_row = patch - patch % FormFactorMatrix::block_rows;
+        auto found = open_blocks.find(first_row);
+        if (found == open_blocks.end()) {
+            if (patch >= size || matrix.known(patch)) {
+                throw Error(fmt::format("row {} of the form factors came twice or unasked", patch));
+            }
+            const std::uint32_t rows = std::min(FormFactorMatrix::block_rows, size - first_row);
+            found =
+                open_blocks.emplace(first_row, OpenBlock(first_row, rows, rows_of_block(patches, first_row)))
+                    .first;
+        }
+        OpenBlock& block = found->second;
+        block.add(patch, row);
+        if (block.complete()) {
+            matrix.set_block(block.finish());
+            open_blocks.erase(found);
+        }
+        ++done;
+        if (progress && !progress(done, patches.size())) {
+            throw Cancelled();
+        }
+    });
+    if (done != patches.size()) {
+        throw Error(fmt::format("{} gave {} of {} rows of the form factors", provider.renderer(), done,
+                                patches.size()));
+    }
+    return matrix;
+}
+
+FormFactorMatrix compute_matrix(RowProvider& provider, const Progress& progress) {
+    std::vector<std::uint32_t> patches(provider.size());
+    std::iota(patches.begin(), patches.end(), 0u);
+    return compute_matrix(provider, patches, progress);
+}
+
+MatrixEstimate estimate_matrix(RowProvider& provider, std::span<const std::uint32_t> patches,
+                               std::uint32_t samples) {
+    check_patches(patches, provider.size());
+    std::vector<std::uint32_t> sampled;
+    const std::uint64_t count = std::min<std::uint64_t>(samples, patches.size());
+    for (std::uint64_t k = 0; k < count; ++k) {
+        sampled.push_back(patches[(2 * k + 1) * patches.size() / (2 * count)]);
+    }
+
+    MatrixEstimate estimate;
+    if (!sampled.empty()) {
+        // The first row also pays for contexts and workers, which do not grow with the number of rows.
+        provider.rows(std::span(sampled).first(1), [](std::uint32_t, const RowView&) {});
+
+        std::uint64_t entries = 0;
+        const auto start = std::chrono::steady_clock::now();
+        provider.rows(sampled, [&](std::uint32_t, const RowView& row) { entries += row.columns.size(); });
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+
+        const double sampled_rows = static_cast<double>(sampled.size());
+        estimate.entries_per_row = static_cast<double>(entries) / sampled_rows;
+        estimate.seconds = elapsed.count() / sampled_rows * static_cast<double>(patches.size());
+    }
+    const double bytes = estimate.entries_per_row * static_cast<double>(patches.size()) *
+                             (sizeof(std::uint32_t) + sizeof(float)) +
+                         static_cast<double>(FormFactorMatrix(provider.size()).memory_bytes());
+    estimate.memory_bytes = static_cast<std::uint64_t>(1.2 * bytes);
+    return estimate;
+}
+
+} // namespace hemi

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hemi::gl {
+
+/// An offscreen OpenGL 4.5 core context, current on the thread that made it until another one is.
+/// Destroy GL objects before their context, with the context current.
+class Context {
+public:
+    virtual ~Context() = default;
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    /// Makes the context current on the calling thread and (re)loads the GL functions if they belong to
+    /// another kind of context. @throws GlError
+    virtual void make_current() = 0;
+
+    /// The name by which `--device` chooses it: "egl:0", "osmesa", "window".
+    [[nodiscard]] const std::string& name() const noexcept { return name_; }
+    [[nodiscard]] const std::string& renderer() const noexcept { return renderer_; }
+    [[nodiscard]] const std::string& version() const noexcept { return version_; }
+    /// Whether it rasterises on the CPU.
+    [[nodiscard]] bool software() const noexcept { return software_; }
+
+protected:
+    Context() = default;
+    /// To be called when the context is current and the functions are loaded: reads the strings and the
+    /// version, and checks that it suffices. @throws NoDevice
+    void describe(std::string name);
+
+private:
+    std::string name_;
+    std::string renderer_;
+    std::string version_;
+    bool software_ = true;
+};
+
+/// @param device  auto (a GPU if there is one, else OSMesa), egl (the first EGL device that works), egl:N,
+/// osmesa. A named device never falls back to another.
+/// @throws InvalidArgument for another name; NoDevice with the reasons if it cannot be had.
+[[nodiscard]] std::unique_ptr<Context> make_context(const std::string& device);
+
+/// @throws InvalidArgument unless `device` is a name that make_context() knows.
+void check_device_name(const std::string& device);
+
+/// Names of all devices that could be tried here: "egl:0" …, "osmesa".
+[[nodiscard]] std::vector<std::string> device_names();
+
+/// Loads GL functions through `loader` and remembers under `backend` which kind of context they belong to;
+/// does nothing if they are loaded for that backend already. For contexts made elsewhere (a window).
+/// @throws GlError
+void load_functions(const char* backend, void (*(*loader)(const char*))());
+
+/// Throws GlError naming `where` if the current context has a pending error.
+void check_errors(const char* where);
+
+} // namespace hemi::gl

@@ -1,0 +1,164 @@
+#include "hemi/core/error.hpp"
+#include "hemi/io/factor_file.hpp"
+#include "io/chunk_file.hpp"
+#include "io/json_node.hpp"
+#include "io/text_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hemi::io {
+
+namespace {
+
+constexpr ChunkFormat hff_format{"HEMIFF\r\n", 1, "form factors (.hff)"};
+
+Json header(const FactorFile& file) {
+    return {{"size", file.factors.size()},
+            {"block_rows", FormFactorMatrix::block_rows},
+            {"groups", file.groups},
+            {"geometry", fmt::format("{:016x}", file.geometry_hash)},
+            {"preset", file.preset},
+            {"method", file.method},
+            {"resolution", file.resolution},
+            {"eye_points", file.eye_points},
+            {"seed", file.seed},
+            {"renderer", file.renderer},
+            {"enclosure", file.enclosure}};
+}
+
+void check(const FactorFile& file) {
+    const std::size_t size = file.factors.size();
+    if (file.areas.size() != size || file.group_of.size() != size) {
+        throw InvalidArgument(fmt::format("{} areas and {} groups for {} patches; must be one for each",
+                                          file.areas.size(), file.group_of.size(), size));
+    }
+    if (std::any_of(file.group_of.begin(), file.group_of.end(),
+                    [&](std::uint32_t group) { return group >= file.groups.size(); })) {
+        throw InvalidArgument("a patch belongs to a group that has no name");
+    }
+}
+
+void write_block(ChunkWriter& writer, const RowBlock& block) {
+    const std::uint32_t rows = block.rows();
+    const std::uint64_t entries = block.columns.size();
+    writer.chunk("ROWS", {bytes_of(block.first_row), bytes_of(rows), bytes_of(entries), bytes_of(block.begin),
+                          bytes_of(block.environment), bytes_of(block.blocked), bytes_of(block.columns),
+                          bytes_of(block.values), bytes_of(block.known)});
+}
+
+std::uint32_t integer32(const JsonNode& node) {
+    return static_cast<std::uint32_t>(node.integer(std::numeric_limits<std::uint32_t>::max()));
+}
+
+std::uint64_t read_hash(const JsonNode& node) {
+    const std::string text = node.any_text();
+    std::uint64_t hash = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+    if (text.size() != 16 || error != std::errc() || end != text.data() + text.size()) {
+        node.expect("16 hexadecimal digits");
+    }
+    return hash;
+}
+
+/// Everything but the rows. The matrix is made only after the file proved long enough for that many.
+void read_header(ChunkReader& reader, FactorFile& file) {
+    const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
+    const JsonNode head(document, reader.file());
+    if (integer32(head.member("block_rows")) != FormFactorMatrix::block_rows) {
+        head.member("block_rows").expect(fmt::format("{}", FormFactorMatrix::block_rows));
+    }
+    const std::uint32_t size = integer32(head.member("size"));
+    file.groups = head.member("groups").texts();
+    file.geometry_hash = read_hash(head.member("geometry"));
+    file.preset = head.member("preset").any_text();
+    file.method = head.member("method").any_text();
+    file.resolution = integer32(head.member("resolution"));
+    file.eye_points = integer32(head.member("eye_points"));
+    file.seed = head.member("seed").integer(std::numeric_limits<std::uint64_t>::max());
+    file.renderer = head.member("renderer").any_text();
+    file.enclosure = head.member("enclosure").any_text();
+    if (file.enclosure != "auto" && file.enclosure != "closed" && file.enclosure != "open") {
+        head.member("enclosure").expect("\"auto\", \"closed\" or \"open\"");
+    }
+
+    Payload areas = reader.chunk("AREA");
+    file.areas = areas.take_array<double>(size);
+    areas.expect_end();
+    for (const double area : file.areas) {
+        if (!(area >= 0.0) || !std::isfinite(area)) {
+            areas.fail(fmt::format("an area of {}; must be finite and not negative", area));
+        }
+    }
+    file.factors = FormFactorMatrix(size);
+}
+
+void read_groups(ChunkReader& reader, FactorFile& file) {
+    Payload groups = reader.chunk("GRUP");
+    file.group_of = groups.take_array<std::uint32_t>(file.factors.size());
+    groups.expect_end();
+    for (const std::uint32_t group : file.group_of) {
+        if (group >= file.groups.size()) {
+            groups.fail(fmt::format("group {}; there are {}", group, file.groups.size()));
+        }
+    }
+}
+
+void read_block(ChunkReader& reader, FormFactorMatrix& factors, std::uint32_t first_row) {
+    Payload payload = reader.chunk("ROWS");
+    RowBlock block;
+    block.first_row = payload.take<std::uint32_t>();
+    const auto rows = payload.take<std::uint32_t>();
+    const auto entries = payload.take<std::uint64_t>();
+    if (block.first_row != first_row) {
+        payload.fail(fmt::format("starts at row {}, where row {} must come", block.first_row, first_row));
+    }
+    block.begin = payload.take_array<std::uint64_t>(std::uint64_t{rows} + 1);
+    block.environment = payload.take_array<double>(rows);
+    block.blocked = payload.take_array<double>(rows);
+    block.columns = payload.take_array<std::uint32_t>(entries);
+    block.values = payload.take_array<float>(entries);
+    block.known = payload.take_array<std::uint8_t>(rows);
+    payload.expect_end();
+    if (std::any_of(block.known.begin(), block.known.end(), [](std::uint8_t known) { return known > 1; })) {
+        payload.fail(fmt::format("rows from {}: marks of known rows other than 0 and 1", first_row));
+    }
+    try {
+        factors.set_block(std::move(block));
+    } catch (const InvalidArgument& error) {
+        payload.fail(error.what());
+    }
+}
+
+} // namespace
+
+void write_hff(const std::filesystem::path& path, const FactorFile& file) {
+    check(file);
+    ChunkWriter writer(path, hff_format);
+    writer.chunk("HEAD", {bytes_of(json_text(header(file)))});
+    writer.chunk("AREA", {bytes_of(file.areas)});
+    writer.chunk("GRUP", {bytes_of(file.group_of)});
+    for (const RowBlock& block : file.factors.blocks()) {
+        write_block(writer, block);
+    }
+    writer.finish();
+}
+
+FactorFile read_hff(const std::filesystem::path& path) {
+    ChunkReader reader(path, hff_format);
+    FactorFile file;
+    read_header(reader, file);
+    read_groups(reader, file);
+    for (std::uint32_t row = 0; row < file.factors.size();) {
+        read_block(reader, file.factors, row);
+        row += std::min(FormFactorMatrix::block_rows, file.factors.size() - row);
+    }
+    reader.finish();
+    return file;
+}
+
+} // namespace hemi::io

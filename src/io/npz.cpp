@@ -1,0 +1,227 @@
+#include "hemi/core/error.hpp"
+#include "hemi/io/factor_file.hpp"
+#include "hemi/io/output_file.hpp"
+#include "io/npy.hpp"
+#include "io/text_scan.hpp"
+#include "io/triples.hpp"
+#include "io/zip_writer.hpp"
+
+#include <fmt/format.h>
+#include <zip.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+namespace hemi::io {
+
+namespace {
+
+/// Adds an array that a function hands over in pieces.
+void add_array(ZipWriter& zip, const std::string& name, std::string_view type, std::string_view shape,
+               const ZipWriter::Source& data) {
+    const std::string header = npy_header(type, shape);
+    zip.add(name, [&](const ZipWriter::Sink& sink) {
+        sink(std::as_bytes(std::span(header)));
+        data(sink);
+    });
+}
+
+std::string shape_of(std::uint64_t size) {
+    return fmt::format("({},)", size);
+}
+
+/// Offsets of all rows, in the order of the blocks.
+void row_offsets(const FormFactorMatrix& factors, const ZipWriter::Sink& sink) {
+    const std::int64_t zero = 0;
+    sink(std::as_bytes(std::span(&zero, 1)));
+    std::uint64_t before = 0;
+    std::vector<std::int64_t> offsets;
+    for (const RowBlock& block : factors.blocks()) {
+        offsets.clear();
+        for (std::size_t row = 1; row < block.begin.size(); ++row) {
+            offsets.push_back(static_cast<std::int64_t>(before + block.begin[row]));
+        }
+        before += block.columns.size();
+        sink(std::as_bytes(std::span(offsets)));
+    }
+}
+
+class NpzReader {
+public:
+    explicit NpzReader(const std::filesystem::path& path)
+        : file_(path.string()), archive_(nullptr, &zip_discard) {
+        int code = 0;
+        archive_.reset(zip_open(path.c_str(), ZIP_RDONLY, &code));
+        if (!archive_) {
+            zip_error_t error;
+            zip_error_init_with_code(&error, code);
+            const std::string reason = zip_error_strerror(&error);
+            zip_error_fini(&error);
+            fail(fmt::format("cannot be read as a ZIP archive: {}", reason));
+        }
+    }
+
+    FormFactorMatrix read() {
+        const NpyArray format = member("format.npy");
+        if (format.text() != "csr") {
+            format.fail(fmt::format("sparse format {}; must be \"csr\" (tocsr() makes it)",
+                                    in_quotes(format.text())));
+        }
+        const NpyArray shape = member("shape.npy");
+        const auto sizes = shape.integers();
+        if (sizes.size() != 2 || sizes[0] != sizes[1] ||
+            sizes[0] > std::numeric_limits<std::int32_t>::max()) {
+            shape.fail(
+                fmt::format("a shape of ({}); must be two equal numbers below 2^31", fmt::join(sizes, ", ")));
+        }
+        const auto offsets = read_offsets(sizes[0]);
+        const auto columns = member("indices.npy").integers();
+        const NpyArray data = member("data.npy");
+        const auto values = data.numbers();
+        if (columns.size() != offsets.back() || values.size() != offsets.back()) {
+            fail(fmt::format("{} indices and {} values; indptr.npy says {}", columns.size(), values.size(),
+                             offsets.back()));
+        }
+        FormFactorMatrix result(static_cast<std::uint32_t>(sizes[0]));
+        for (std::uint32_t first = 0; first < result.size();) {
+            RowBlock block = make_block(first, result.size(), offsets, columns, values);
+            first += block.rows();
+            try {
+                result.set_block(std::move(block));
+            } catch (const InvalidArgument& error) {
+                fail(error.what());
+            }
+        }
+        return result;
+    }
+
+private:
+    std::vector<std::uint64_t> read_offsets(std::uint64_t rows) {
+        const NpyArray array = member("indptr.npy");
+        auto offsets = array.integers();
+        if (offsets.size() != rows + 1 || offsets[0] != 0 ||
+            !std::is_sorted(offsets.begin(), offsets.end())) {
+            array.fail(fmt::format("must be {} offsets that ascend from 0", rows + 1));
+        }
+        return offsets;
+    }
+
+    RowBlock make_block(std::uint32_t first, std::uint32_t size, const std::vector<std::uint64_t>& offsets,
+                        const std::vector<std::uint64_t>& columns, const std::vector<double>& values) const {
+        const std::uint32_t rows = std::min(FormFactorMatrix::block_rows, size - first);
+        RowBlock block;
+        block.first_row = first;
+        block.begin.assign(1, 0);
+        std::vector<std::uint64_t> order;
+        for (std::uint32_t row = first; row < first + rows; ++row) {
+            order.resize(offsets[row + 1] - offsets[row]);
+            std::iota(order.begin(), order.end(), offsets[row]);
+            std::stable_sort(order.begin(), order.end(),
+                             [&](std::uint64_t a, std::uint64_t b) { return columns[a] < columns[b]; });
+            for (const std::uint64_t k : order) {
+                check_entry(row, columns[k], values[k], size);
+                block.columns.push_back(static_cast<std::uint32_t>(columns[k]));
+                block.values.push_back(static_cast<float>(values[k]));
+            }
+            block.begin.push_back(block.columns.size());
+        }
+        block.environment.assign(rows, 0.0);
+        block.blocked.assign(rows, 0.0);
+        block.known.assign(rows, 1);
+        return block;
+    }
+
+    void check_entry(std::uint32_t row, std::uint64_t column, double value, std::uint32_t size) const {
+        if (column >= size) {
+            fail(fmt::format("row {}: column {}; must be below {}", row, column, size));
+        }
+        if (!(value >= 0.0 && value <= std::numeric_limits<float>::max())) {
+            fail(fmt::format("F({}, {}) = {}; must be finite and not negative", row, column, value));
+        }
+    }
+
+    NpyArray member(const char* name) {
+        zip_stat_t status;
+        zip_stat_init(&status);
+        if (zip_stat(archive_.get(), name, 0, &status) != 0) {
+            fail(fmt::format("has no member {}, so it is not a sparse matrix of SciPy", name));
+        }
+        // Deflate cannot shrink more than 1032 times: a larger promise is a lie, and no memory is spent on
+        // it.
+        constexpr std::uint64_t most = 1032;
+        if (status.size / most > status.comp_size + 64) {
+            fail(fmt::format("{}: {} bytes from {} compressed ones; that cannot be", name, status.size,
+                             status.comp_size));
+        }
+        const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> stream(zip_fopen(archive_.get(), name, 0),
+                                                                       &zip_fclose);
+        if (!stream) {
+            fail(fmt::format("{}: {}", name, zip_strerror(archive_.get())));
+        }
+        return {read_all(*stream, name, status.size), fmt::format("{}: {}", file_, name)};
+    }
+
+    std::string read_all(zip_file_t& stream, const char* name, std::uint64_t size) const {
+        std::string bytes(size + 1, '\0'); // one more: the checksum is tested at the end only
+        std::size_t used = 0;
+        for (;;) {
+            const zip_int64_t got = zip_fread(&stream, bytes.data() + used, bytes.size() - used);
+            if (got < 0) {
+                fail(fmt::format("{}: {}", name, zip_error_strerror(zip_file_get_error(&stream))));
+            }
+            used += static_cast<std::size_t>(got);
+            if (got == 0 || used > size) {
+                break;
+            }
+        }
+        if (used != size) {
+            fail(fmt::format("{}: not the {} bytes that the archive promises", name, size));
+        }
+        bytes.resize(size);
+        return bytes;
+    }
+
+    [[noreturn]] void fail(const std::string& message) const {
+        throw InputError(fmt::format("{}: {}", file_, message));
+    }
+
+    std::string file_;
+    std::unique_ptr<zip_t, void (*)(zip_t*)> archive_;
+};
+
+} // namespace
+
+void write_npz(const std::filesystem::path& path, const FormFactorMatrix& factors) {
+    require_all_known(factors, "an .npz file");
+    const std::uint64_t rows = factors.size();
+    OutputFile file(path);
+    ZipWriter zip(file);
+    add_array(zip, "indices.npy", "<i4", shape_of(factors.entries()), [&](const ZipWriter::Sink& sink) {
+        for (const RowBlock& block : factors.blocks()) {
+            sink(std::as_bytes(std::span(block.columns)));
+        }
+    });
+    add_array(zip, "indptr.npy", "<i8", shape_of(rows + 1),
+              [&](const ZipWriter::Sink& sink) { row_offsets(factors, sink); });
+    add_array(zip, "format.npy", "|S3", "()",
+              [](const ZipWriter::Sink& sink) { sink(std::as_bytes(std::span("csr", 3))); });
+    const std::int64_t shape[2] = {static_cast<std::int64_t>(rows), static_cast<std::int64_t>(rows)};
+    add_array(zip, "shape.npy", "<i8", "(2,)",
+              [&](const ZipWriter::Sink& sink) { sink(std::as_bytes(std::span(shape))); });
+    add_array(zip, "data.npy", "<f4", shape_of(factors.entries()), [&](const ZipWriter::Sink& sink) {
+        for (const RowBlock& block : factors.blocks()) {
+            sink(std::as_bytes(std::span(block.values)));
+        }
+    });
+    zip.finish();
+    file.commit();
+}
+
+FormFactorMatrix read_npz(const std::filesystem::path& path) {
+    return NpzReader(path).read();
+}
+
+} // namespace hemi::io

@@ -1,0 +1,45 @@
+#include "hemi/io/scene_reader.hpp"
+#include "io/obj_mesh.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace hemi::io {
+
+namespace {
+
+Material scene_material(const ObjMesh::MaterialUse& use, const std::optional<MtlMaterial>& found,
+                        std::size_t channels) {
+    const std::string name = use.name.empty() ? "default" : use.name;
+    if (!found) {
+        return {name, std::vector<double>(channels, 0.5), std::vector<double>(channels, 0.0)};
+    }
+    return {name,
+            {found->reflectance.begin(), found->reflectance.end()},
+            {found->exitance.begin(), found->exitance.end()}};
+}
+
+} // namespace
+
+Scene read_obj_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                     Diagnostics& diagnostics) {
+    ObjMesh mesh = read_obj_mesh(path, options.skip_degenerate, diagnostics);
+    const auto found = find_obj_materials(mesh, {}, diagnostics);
+    const bool coloured =
+        std::any_of(found.begin(), found.end(), [](const auto& m) { return m.has_value(); });
+
+    Scene scene;
+    scene.name = to_utf8(path.stem().string());
+    scene.channels =
+        coloured ? std::vector<std::string>{"red", "green", "blue"} : std::vector<std::string>{"grey"};
+    scene.environment.assign(scene.channels.size(), 0.0);
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        scene.materials.push_back(scene_material(mesh.materials[k], found[k], scene.channels.size()));
+    }
+    scene.groups = std::move(mesh.groups);
+    scene.surfaces = std::move(mesh.surfaces);
+    make_two_sided(scene, options.two_sided_groups, path.string());
+    return scene;
+}
+
+} // namespace hemi::io

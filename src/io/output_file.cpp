@@ -1,0 +1,179 @@
+#include "hemi/io/output_file.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <tuple>
+#include <unistd.h>
+#include <utility>
+
+namespace hemi::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(const fs::path& path, int error) {
+    throw IoError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
+}
+
+/// A new file beside `path`, opened for writing.
+std::pair<int, fs::path> open_beside(const fs::path& path, mode_t mode) {
+    // Names may have 255 bytes; leave room for what is added.
+    const std::string name = path.filename().string().substr(0, 200);
+    for (int attempt = 0;; ++attempt) {
+        const std::string number = attempt == 0 ? "" : fmt::format(".{}", attempt);
+        fs::path temporary = path.parent_path() / fmt::format(".{}.{}{}.tmp", name, ::getpid(), number);
+        const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+        if (descriptor >= 0) {
+            return {descriptor, std::move(temporary)};
+        }
+        if (errno != EEXIST || attempt == 100) {
+            fail(path, errno);
+        }
+    }
+}
+
+/// Makes what was written to the file or directory `path` last. False with errno if that failed.
+bool sync(const fs::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) {
+        return false;
+    }
+    // Not every file system can sync every kind of file; that is not a failed write.
+    const bool good = ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
+    const int error = errno;
+    ::close(descriptor);
+    errno = error;
+    return good;
+}
+
+} // namespace
+
+OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
+    if (path_ == "-") {
+        stream_ = stdout;
+        return;
+    }
+    std::error_code ignored;
+    if (fs::is_symlink(path_, ignored) && fs::exists(path_, ignored)) {
+        path_ = fs::canonical(path_, ignored); // write to what the link names, keep the link
+    }
+    struct stat status {};
+    const bool exists = ::stat(path_.c_str(), &status) == 0;
+    if (exists && S_ISDIR(status.st_mode)) {
+        fail(path_, EISDIR);
+    }
+    if (path_.filename().empty()) {
+        fail(path_, path_.empty() ? ENOENT : EISDIR);
+    }
+    if (exists && ::access(path_.c_str(), W_OK) != 0) {
+        fail(path_, errno);
+    }
+    if (exists && !S_ISREG(status.st_mode)) {
+        stream_ = std::fopen(path_.c_str(), "wbe"); // a device or pipe must not be replaced by a file
+        if (stream_ == nullptr) {
+            fail(path_, errno);
+        }
+        return;
+    }
+    int descriptor = -1;
+    std::tie(descriptor, temporary_) = open_beside(path_, 0666);
+    if (exists) {
+        ::fchmod(descriptor, status.st_mode & 07777);
+    }
+    stream_ = ::fdopen(descriptor, "wb");
+    if (stream_ == nullptr) {
+        const int error = errno;
+        ::close(descriptor);
+        ::unlink(temporary_.c_str());
+        fail(path_, error);
+    }
+}
+
+OutputFile::~OutputFile() {
+    if (stream_ != nullptr && stream_ != stdout) {
+        std::fclose(stream_);
+    }
+    if (!temporary_.empty()) {
+        ::unlink(temporary_.c_str());
+    }
+}
+
+void OutputFile::write(std::string_view text) {
+    write(text.data(), text.size());
+}
+
+void OutputFile::write(const void* data, std::size_t bytes) {
+    if (stream_ == nullptr) {
+        throw InvalidArgument(path_.string() + ": written to after it was complete");
+    }
+    if (bytes != 0 && std::fwrite(data, 1, bytes, stream_) != bytes) {
+        fail(path_, errno);
+    }
+}
+
+void OutputFile::commit() {
+    if (stream_ == nullptr) {
+        return;
+    }
+    if (std::fflush(stream_) != 0) {
+        fail(path_, errno);
+    }
+    if (stream_ == stdout) {
+        stream_ = nullptr;
+        return;
+    }
+    if (std::fclose(std::exchange(stream_, nullptr)) != 0) {
+        fail(path_, errno);
+    }
+    if (temporary_.empty()) {
+        return;
+    }
+    // By name: a library may have put another file in the temporary one's place.
+    if (!sync(temporary_) || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+        fail(path_, errno);
+    }
+    temporary_.clear();
+    sync(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
+}
+
+std::string read_file(const fs::path& path) {
+    const auto refuse = [&path](int error) {
+        throw InputError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(error)));
+    };
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) {
+        refuse(EISDIR);
+    }
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rbe"), &std::fclose);
+    if (!stream) {
+        refuse(errno);
+    }
+    std::string text;
+    const auto size = fs::file_size(path, ignored);
+    std::size_t used = 0;
+    text.resize(ignored ? 0 : size + 1); // one more, to see the end
+    for (;;) {
+        if (used == text.size()) {
+            text.resize(used + used / 2 + 65536); // what has no size: pipes, /proc
+        }
+        const std::size_t got = std::fread(text.data() + used, 1, text.size() - used, stream.get());
+        used += got;
+        if (got == 0) {
+            break;
+        }
+    }
+    if (std::ferror(stream.get()) != 0) {
+        refuse(errno);
+    }
+    text.resize(used);
+    return text;
+}
+
+} // namespace hemi::io

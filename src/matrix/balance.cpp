@@ -1,0 +1,202 @@
+#include "hemi/matrix/balance.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hemi {
+
+namespace {
+
+constexpr double covered_share = 0.99;
+constexpr double relevant_factor = 1e-4;
+
+void check_areas(const FormFactorMatrix& factors, std::span<const double> areas) {
+    if (areas.size() != factors.size()) {
+        throw InvalidArgument(
+            fmt::format("{} areas for {} rows of form factors", areas.size(), factors.size()));
+    }
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+        if (!(areas[i] > 0.0) || !std::isfinite(areas[i])) {
+            throw InvalidArgument(
+                fmt::format("patch {}: area {}; it must be finite and above 0", i, areas[i]));
+        }
+    }
+}
+
+/// Gathers what differs between F(i, j) and F(j, i), pair by pair.
+class ReciprocityTally {
+public:
+    explicit ReciprocityTally(std::span<const double> areas) : areas_(areas) {}
+
+    void add(std::uint32_t i, double f_ij, std::uint32_t j, double f_ji) {
+        const double exchange_ij = areas_[i] * f_ij;
+        const double exchange_ji = areas_[j] * f_ji;
+        const double gap = std::abs(exchange_ij - exchange_ji);
+        const double gap_i = gap / areas_[i];
+        const double gap_j = gap / areas_[j];
+        squares_ += 0.5 * (gap_i * gap_i + gap_j * gap_j);
+        ++result_.pairs;
+        if (std::max(gap_i, gap_j) > result_.max) {
+            result_.max = std::max(gap_i, gap_j);
+            result_.worst_i = gap_i >= gap_j ? i : j;
+            result_.worst_j = gap_i >= gap_j ? j : i;
+        }
+        if (std::max(f_ij, f_ji) > relevant_factor) {
+            const double relative = gap / std::max(exchange_ij, exchange_ji);
+            relative_squares_ += relative * relative;
+            ++relevant_;
+        }
+    }
+
+    [[nodiscard]] Reciprocity result() {
+        if (result_.pairs > 0) {
+            result_.rms = std::sqrt(squares_ / static_cast<double>(result_.pairs));
+        }
+        if (relevant_ > 0) {
+            result_.relative_rms = std::sqrt(relative_squares_ / static_cast<double>(relevant_));
+        }
+        return result_;
+    }
+
+private:
+    std::span<const double> areas_;
+    Reciprocity result_;
+    double squares_ = 0.0;
+    double relative_squares_ = 0.0;
+    std::uint64_t relevant_ = 0;
+};
+
+} // namespace
+
+RowSums row_sums(const FormFactorMatrix& factors) {
+    RowSums sums;
+    sums.min = std::numeric_limits<double>::infinity();
+    sums.max = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        if (!factors.known(i)) {
+            continue;
+        }
+        const RowView row = factors.row(i);
+        const double sum = row.sum();
+        sums.min = std::min(sums.min, sum);
+        sums.max = std::max(sums.max, sum);
+        sums.mean += sum;
+        sums.environment_max = std::max(sums.environment_max, row.environment);
+        sums.blocked_max = std::max(sums.blocked_max, row.blocked);
+        sums.balance_error_max =
+            std::max(sums.balance_error_max, std::abs(sum + row.environment + row.blocked - 1.0));
+        ++sums.known;
+        sums.leaking += row.environment > 0.0 ? 1 : 0;
+        sums.covered += row.blocked > covered_share ? 1 : 0;
+        sums.partly_blocked += row.blocked > 0.0 && row.blocked <= covered_share ? 1 : 0;
+    }
+    if (sums.known == 0) {
+        return {};
+    }
+    sums.mean /= sums.known;
+    return sums;
+}
+
+Reciprocity reciprocity(const FormFactorMatrix& factors, std::span<const double> areas) {
+    check_areas(factors, areas);
+    ReciprocityTally tally(areas);
+
+    // Row i meets its partners F(j, i), j > i, in ascending order of i, so one cursor a row walks through the
+    // entries left of every row's diagonal once. What a cursor passes without a partner is stored one way
+    // only.
+    std::vector<std::uint32_t> cursors(factors.size(), 0);
+    const auto pass_until = [&](std::uint32_t j, const RowView& row_j, std::uint32_t column) {
+        std::uint32_t& cursor = cursors[j];
+        for (; cursor < row_j.columns.size() && row_j.columns[cursor] < column; ++cursor) {
+            const std::uint32_t k = row_j.columns[cursor];
+            if (factors.known(k)) {
+                tally.add(k, 0.0, j, static_cast<double>(row_j.values[cursor]));
+            }
+        }
+    };
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        if (!factors.known(i)) {
+            continue;
+        }
+        const RowView row_i = factors.row(i);
+        pass_until(i, row_i, i);
+        const auto right = std::upper_bound(row_i.columns.begin(), row_i.columns.end(), i);
+        for (auto k = static_cast<std::size_t>(right - row_i.columns.begin()); k < row_i.columns.size();
+             ++k) {
+            const std::uint32_t j = row_i.columns[k];
+            if (!factors.known(j)) {
+                continue;
+            }
+            const RowView row_j = factors.row(j);
+            pass_until(j, row_j, i);
+            std::uint32_t& cursor = cursors[j];
+            double f_ji = 0.0;
+            if (cursor < row_j.columns.size() && row_j.columns[cursor] == i) {
+                f_ji = static_cast<double>(row_j.values[cursor]);
+                ++cursor;
+            }
+            tally.add(i, static_cast<double>(row_i.values[k]), j, f_ji);
+        }
+    }
+    return tally.result();
+}
+
+GroupFactors group_factors(const FormFactorMatrix& factors, std::span<const double> areas,
+                           std::span<const std::uint32_t> group_of, std::uint32_t groups) {
+    check_areas(factors, areas);
+    if (group_of.size() != factors.size()) {
+        throw InvalidArgument(fmt::format("{} patches with a group for {} rows of form factors",
+                                          group_of.size(), factors.size()));
+    }
+    for (std::size_t i = 0; i < group_of.size(); ++i) {
+        if (group_of[i] >= groups) {
+            throw InvalidArgument(fmt::format("patch {}: group {} of {}", i, group_of[i], groups));
+        }
+    }
+
+    GroupFactors result;
+    result.groups = groups;
+    result.areas.assign(groups, 0.0);
+    result.factors.assign(std::size_t{groups} * groups, 0.0);
+    result.environment.assign(groups, 0.0);
+    result.blocked.assign(groups, 0.0);
+    std::vector<double> row_of_groups(groups);
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        if (!factors.known(i)) {
+            throw InvalidArgument(fmt::format("row {} of the form factors is unknown; sums over groups need "
+                                              "all rows",
+                                              i));
+        }
+        const RowView row = factors.row(i);
+        std::fill(row_of_groups.begin(), row_of_groups.end(), 0.0);
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            row_of_groups[group_of[row.columns[k]]] += static_cast<double>(row.values[k]);
+        }
+        const std::uint32_t g = group_of[i];
+        double* const factors_of_group = result.factors.data() + std::size_t{g} * groups;
+        for (std::uint32_t h = 0; h < groups; ++h) {
+            factors_of_group[h] += areas[i] * row_of_groups[h];
+        }
+        result.areas[g] += areas[i];
+        result.environment[g] += areas[i] * row.environment;
+        result.blocked[g] += areas[i] * row.blocked;
+    }
+    for (std::uint32_t g = 0; g < groups; ++g) {
+        if (result.areas[g] == 0.0) {
+            continue; // a group without patches: zero shares
+        }
+        for (std::uint32_t h = 0; h < groups; ++h) {
+            result.factors[std::size_t{g} * groups + h] /= result.areas[g];
+        }
+        result.environment[g] /= result.areas[g];
+        result.blocked[g] /= result.areas[g];
+    }
+    return result;
+}
+
+} // namespace hemi

@@ -1,0 +1,148 @@
+#include "hemi/matrix/form_factor_matrix.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hemi {
+
+namespace {
+
+std::uint32_t rows_in_block(std::uint32_t size, std::uint32_t first_row) {
+    return std::min(FormFactorMatrix::block_rows, size - first_row);
+}
+
+[[noreturn]] void refuse(const RowBlock& block, const std::string& what) {
+    throw InvalidArgument(fmt::format("block of form factors at row {}: {}", block.first_row, what));
+}
+
+void check_shape(const RowBlock& block, std::uint32_t size) {
+    if (block.first_row >= size || block.first_row % FormFactorMatrix::block_rows != 0) {
+        refuse(block, fmt::format("it must start at a multiple of {} below the {} rows of the matrix",
+                                  FormFactorMatrix::block_rows, size));
+    }
+    const std::size_t rows = rows_in_block(size, block.first_row);
+    if (block.known.size() != rows || block.environment.size() != rows || block.blocked.size() != rows ||
+        block.begin.size() != rows + 1) {
+        refuse(block, fmt::format("{} rows, {} environment shares, {} blocked shares and {} offsets; it must "
+                                  "be {} of each and one more offset",
+                                  block.known.size(), block.environment.size(), block.blocked.size(),
+                                  block.begin.size(), rows));
+    }
+    if (block.columns.size() != block.values.size()) {
+        refuse(block, fmt::format("{} columns and {} values; it must be as many", block.columns.size(),
+                                  block.values.size()));
+    }
+    if (block.begin.front() != 0 || block.begin.back() != block.columns.size() ||
+        !std::is_sorted(block.begin.begin(), block.begin.end())) {
+        refuse(block, fmt::format("offsets must ascend from 0 to the {} entries", block.columns.size()));
+    }
+}
+
+void check_share(const RowBlock& block, std::uint32_t row, const char* name, double share) {
+    if (!std::isfinite(share) || share < 0.0) {
+        refuse(block,
+               fmt::format("row {}: {} share {}; it must be finite and not negative", row, name, share));
+    }
+}
+
+void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t size) {
+    const std::uint32_t row = block.first_row + local;
+    const std::uint64_t begin = block.begin[local];
+    const std::uint64_t end = block.begin[local + 1];
+    if (block.known[local] == 0 && begin != end) {
+        refuse(block,
+               fmt::format("row {} is unknown and has {} entries; it must be empty", row, end - begin));
+    }
+    check_share(block, row, "environment", block.environment[local]);
+    check_share(block, row, "blocked", block.blocked[local]);
+    for (std::uint64_t k = begin; k < end; ++k) {
+        const std::uint32_t column = block.columns[k];
+        if (column >= size || (k > begin && column <= block.columns[k - 1])) {
+            refuse(block,
+                   fmt::format("row {}: column {}; columns must ascend and be below {}", row, column, size));
+        }
+        if (!(block.values[k] >= 0.0F) || !std::isfinite(block.values[k])) {
+            refuse(block, fmt::format("F({}, {}) = {}; it must be finite and not negative", row, column,
+                                      block.values[k]));
+        }
+    }
+}
+
+} // namespace
+
+double RowView::sum() const {
+    double sum = 0.0;
+    for (const float value : values) {
+        sum += static_cast<double>(value);
+    }
+    return sum;
+}
+
+FormFactorMatrix::FormFactorMatrix(std::uint32_t size) : size_(size) {
+    blocks_.resize(size / block_rows + (size % block_rows != 0 ? 1 : 0));
+    std::uint32_t first_row = 0;
+    for (RowBlock& block : blocks_) {
+        const std::size_t rows = rows_in_block(size, first_row);
+        block.first_row = first_row;
+        block.begin.assign(rows + 1, 0);
+        block.environment.assign(rows, 0.0);
+        block.blocked.assign(rows, 0.0);
+        block.known.assign(rows, 0);
+        first_row += static_cast<std::uint32_t>(rows);
+    }
+}
+
+RowView FormFactorMatrix::row(std::uint32_t i) const {
+    const RowBlock& block = blocks_[i / block_rows];
+    const std::uint32_t local = i % block_rows;
+    const std::size_t begin = block.begin[local];
+    const std::size_t count = block.begin[local + 1] - begin;
+    return {.columns = std::span(block.columns).subspan(begin, count),
+            .values = std::span(block.values).subspan(begin, count),
+            .environment = block.environment[local],
+            .blocked = block.blocked[local]};
+}
+
+bool FormFactorMatrix::known(std::uint32_t i) const {
+    return blocks_[i / block_rows].known[i % block_rows] != 0;
+}
+
+bool FormFactorMatrix::all_known() const {
+    return std::all_of(blocks_.begin(), blocks_.end(), [](const RowBlock& block) {
+        return std::find(block.known.begin(), block.known.end(), std::uint8_t{0}) == block.known.end();
+    });
+}
+
+std::uint64_t FormFactorMatrix::entries() const noexcept {
+    std::uint64_t count = 0;
+    for (const RowBlock& block : blocks_) {
+        count += block.columns.size();
+    }
+    return count;
+}
+
+std::uint64_t FormFactorMatrix::memory_bytes() const noexcept {
+    std::uint64_t bytes = sizeof(*this) + blocks_.capacity() * sizeof(RowBlock);
+    for (const RowBlock& block : blocks_) {
+        bytes += block.begin.capacity() * sizeof(std::uint64_t);
+        bytes += block.columns.capacity() * sizeof(std::uint32_t) + block.values.capacity() * sizeof(float);
+        bytes += (block.environment.capacity() + block.blocked.capacity()) * sizeof(double);
+        bytes += block.known.capacity();
+    }
+    return bytes;
+}
+
+void FormFactorMatrix::set_block(RowBlock block) {
+    check_shape(block, size_);
+    for (std::uint32_t local = 0; local < block.rows(); ++local) {
+        check_row(block, local, size_);
+    }
+    blocks_[block.first_row / block_rows] = std::move(block);
+}
+
+} // namespace hemi

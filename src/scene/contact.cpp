@@ -1,0 +1,40 @@
+#include "hemi/scene/contact.hpp"
+
+#include <algorithm>
+
+namespace hemi {
+
+namespace {
+
+bool inside(std::span<const Vec3> polygon, const Vec3& normal, const Vec3& point) {
+    for (std::size_t c = 0; c < polygon.size(); ++c) {
+        const Vec3 edge = polygon[(c + 1) % polygon.size()] - polygon[c];
+        if (glm::dot(glm::cross(edge, point - polygon[c]), normal) < 0.0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+} // namespace
+
+std::vector<std::uint32_t> patches_in_contact(const PatchMesh& mesh, std::span<const std::uint32_t> patches) {
+    std::vector<std::uint32_t> found;
+    const double slack = 1e-7 * mesh.bounds().diagonal();
+    for (const std::uint32_t patch : patches) {
+        const Vec3 normal = mesh.normal(patch);
+        const Vec3& centre = mesh.centres()[patch];
+        for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
+            const auto polygon = mesh.surfaces()[s].polygon();
+            if (s != mesh.surface_of()[patch] && glm::dot(mesh.surface_normal(s), normal) < -1.0 + 1e-6 &&
+                std::abs(glm::dot(centre - polygon[0], normal)) <= slack &&
+                inside(polygon, mesh.surface_normal(s), centre)) {
+                found.push_back(patch);
+                break;
+            }
+        }
+    }
+    return found;
+}
+
+} // namespace hemi

@@ -1,0 +1,151 @@
+#include "hemi/scene/scene.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hemi {
+
+namespace {
+
+bool finite(const Vec3& point) {
+    return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
+}
+
+void validate(const Material& material, std::size_t channels) {
+    if (material.reflectance.size() != channels || material.exitance.size() != channels) {
+        throw InputError(
+            fmt::format("material \"{}\": {} reflectances and {} exitances; the scene has {} channels",
+                        material.name, material.reflectance.size(), material.exitance.size(), channels));
+    }
+    for (const double value : material.reflectance) {
+        if (!(value >= 0.0 && value < 1.0)) {
+            throw InputError(fmt::format("material \"{}\": reflectance {}; must be at least 0 and below 1",
+                                         material.name, value));
+        }
+    }
+    for (const double value : material.exitance) {
+        if (!(value >= 0.0) || !std::isfinite(value)) {
+            throw InputError(fmt::format("material \"{}\": exitance {}; must be finite and not negative",
+                                         material.name, value));
+        }
+    }
+}
+
+} // namespace
+
+std::uint32_t Scene::group_index(const std::string& group_name) {
+    const auto found = std::find(groups.begin(), groups.end(), group_name);
+    if (found != groups.end()) {
+        return static_cast<std::uint32_t>(found - groups.begin());
+    }
+    groups.push_back(group_name);
+    return static_cast<std::uint32_t>(groups.size() - 1);
+}
+
+Bounds Scene::bounds() const {
+    Bounds bounds;
+    for (const Surface& surface : surfaces) {
+        for (const Vec3& vertex : surface.polygon()) {
+            bounds.add(vertex);
+        }
+    }
+    return bounds;
+}
+
+void validate(const Scene& scene) {
+    if (scene.surfaces.empty()) {
+        throw InputError("the scene has no surfaces; it needs at least one");
+    }
+    if (scene.channels.empty()) {
+        throw InputError("the scene has no channels; it needs at least one");
+    }
+    for (const Material& material : scene.materials) {
+        validate(material, scene.channels.size());
+    }
+    if (!scene.environment.empty() && scene.environment.size() != scene.channels.size()) {
+        throw InputError(fmt::format("environment: {} exitances; the scene has {} channels",
+                                     scene.environment.size(), scene.channels.size()));
+    }
+    for (const double value : scene.environment) {
+        if (!(value >= 0.0) || !std::isfinite(value)) {
+            throw InputError(fmt::format("environment: exitance {}; must be finite and not negative", value));
+        }
+    }
+    if (scene.patch_size && !(*scene.patch_size > 0.0 && std::isfinite(*scene.patch_size))) {
+        throw InputError(fmt::format("patch_size {}; must be a positive length", *scene.patch_size));
+    }
+    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+        const Surface& surface = scene.surfaces[s];
+        if (surface.group >= scene.groups.size() || surface.material >= scene.materials.size()) {
+            throw InputError(fmt::format("surface {}: group {} of {} or material {} of {} does not exist", s,
+                                         surface.group, scene.groups.size(), surface.material,
+                                         scene.materials.size()));
+        }
+        if (const auto defect = polygon_defect(surface.polygon())) {
+            throw InputError(
+                fmt::format("surface {} (group \"{}\"): {}", s, scene.groups[surface.group], *defect));
+        }
+        if (surface.patches && (surface.patches->u == 0 || surface.patches->v == 0 ||
+                                (surface.vertex_count == 3 && surface.patches->u != surface.patches->v))) {
+            throw InputError(
+                fmt::format("surface {} (group \"{}\"): patches [{}, {}]; must be at least 1, and "
+                            "equal for a triangle",
+                            s, scene.groups[surface.group], surface.patches->u, surface.patches->v));
+        }
+    }
+}
+
+std::optional<std::string> polygon_defect(std::span<const Vec3> polygon) {
+    if (polygon.size() < 3 || polygon.size() > 4) {
+        return fmt::format("{} vertices; a patch needs 3 or 4", polygon.size());
+    }
+    double magnitude = 0.0;
+    double longest = 0.0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        if (!finite(polygon[i])) {
+            return fmt::format("vertex {} is not finite", i);
+        }
+        magnitude =
+            std::max({magnitude, std::abs(polygon[i].x), std::abs(polygon[i].y), std::abs(polygon[i].z)});
+        longest = std::max(longest, glm::length(polygon[(i + 1) % polygon.size()] - polygon[i]));
+    }
+    // Beyond this, areas and dot products overflow on the way.
+    if (magnitude > 1e100) {
+        return fmt::format("coordinate of magnitude {}; must be below 1e100", magnitude);
+    }
+    const Vec3 area = area_vector(polygon);
+    const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * magnitude;
+    if (!(longest > rounding) || !(glm::length(area) > longest * std::max(rounding, 1e-9 * longest))) {
+        return std::string("zero area");
+    }
+    const Vec3 normal = glm::normalize(area);
+    const Vec3 centre = area_centroid(polygon);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const double off = std::abs(glm::dot(polygon[i] - centre, normal));
+        if (off > 1e-5 * longest + rounding) {
+            return fmt::format(
+                "not planar: vertex {} is {:.3g} off the plane, {:.2g} of the longest edge; split "
+                "it into triangles",
+                i, off, off / longest);
+        }
+    }
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vec3& corner = polygon[i];
+        const Vec3 before = corner - polygon[(i + polygon.size() - 1) % polygon.size()];
+        const Vec3 after = polygon[(i + 1) % polygon.size()] - corner;
+        const double turn = glm::dot(glm::cross(before, after), normal);
+        if (turn < -1e-9 * longest * longest - rounding * longest) {
+            return fmt::format("not convex at vertex {}; split it into convex polygons", i);
+        }
+        if (!(glm::length(after) > rounding)) {
+            return fmt::format("vertices {} and {} coincide", i, (i + 1) % polygon.size());
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace hemi

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <variant>
+
+/// What a window tells the viewer; a script says the same. Points are pixels from the upper left.
+namespace hemi::viewer {
+
+enum class Button { left, middle, right };
+
+struct CursorEvent {
+    double x;
+    double y;
+};
+struct ButtonEvent {
+    Button button;
+    bool pressed;
+    bool shift;
+};
+struct ScrollEvent {
+    double amount; ///< notches of the wheel, away from the user positive
+};
+inline constexpr char escape_key = '\x1B';
+/// `key` is what a keyboard shows on it: a capital letter, a digit, or escape_key.
+struct KeyEvent {
+    char key;
+    bool shift;
+};
+/// The window has another size, or its content was lost.
+struct RefreshEvent {};
+struct CloseEvent {};
+
+using Event = std::variant<CursorEvent, ButtonEvent, ScrollEvent, KeyEvent, RefreshEvent, CloseEvent>;
+
+} // namespace hemi::viewer

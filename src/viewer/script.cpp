@@ -1,0 +1,184 @@
+#include "viewer/script.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace hemi::viewer {
+
+namespace {
+
+constexpr std::string_view blanks = " \t\r";
+
+/// The words of one line, taken one after the other; every complaint names the line.
+class Line {
+public:
+    Line(std::string_view text, const std::string& file, std::size_t number)
+        : rest_(text), file_(file), number_(number) {}
+
+    [[noreturn]] void fail(const std::string& message) const { throw ParseError(file_, number_, 0, message); }
+
+    [[nodiscard]] std::optional<std::string_view> next() {
+        skip_blanks();
+        if (rest_.empty()) {
+            return std::nullopt;
+        }
+        const std::size_t end = std::min(rest_.find_first_of(blanks), rest_.size());
+        const std::string_view word = rest_.substr(0, end);
+        rest_.remove_prefix(end);
+        return word;
+    }
+
+    [[nodiscard]] std::string_view word(const char* what) {
+        const auto found = next();
+        if (!found) {
+            fail(fmt::format("{} is missing", what));
+        }
+        return *found;
+    }
+
+    [[nodiscard]] double number(const char* what) {
+        const std::string_view text = word(what);
+        double value = 0.0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= 1e6)) {
+            fail(fmt::format("\"{}\" as {}; must be a number within a million", text, what));
+        }
+        return value;
+    }
+
+    [[nodiscard]] std::uint32_t size(const char* what) {
+        const double value = number(what);
+        if (value != std::floor(value) || value < 1.0 || value > 16384.0) {
+            fail(fmt::format("{} as {}; must be a whole number from 1 to 16384", value, what));
+        }
+        return static_cast<std::uint32_t>(value);
+    }
+
+    /// All that is left, without blanks around it.
+    [[nodiscard]] std::string_view rest() {
+        skip_blanks();
+        const std::size_t last = rest_.find_last_not_of(blanks);
+        return last == std::string_view::npos ? std::string_view{} : rest_.substr(0, last + 1);
+    }
+
+    void end() {
+        if (const auto extra = next()) {
+            fail(fmt::format("\"{}\" is too much", *extra));
+        }
+    }
+
+private:
+    void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size())); }
+
+    std::string_view rest_;
+    const std::string& file_;
+    std::size_t number_;
+};
+
+/// A line up to the comment, which begins with a `#` at the beginning of a word.
+std::string_view without_comment(std::string_view line) {
+    for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1)) {
+        if (at == 0 || blanks.find(line[at - 1]) != std::string_view::npos) {
+            return line.substr(0, at);
+        }
+    }
+    return line;
+}
+
+bool take_shift(std::string_view& word) {
+    constexpr std::string_view prefix = "shift+";
+    const bool shift = word.starts_with(prefix);
+    word.remove_prefix(shift ? prefix.size() : 0);
+    return shift;
+}
+
+DragCommand parse_drag(Line& line) {
+    DragCommand drag{};
+    std::string_view name = line.word("a button");
+    drag.shift = take_shift(name);
+    if (name == "left") {
+        drag.button = Button::left;
+    } else if (name == "middle") {
+        drag.button = Button::middle;
+    } else if (name == "right") {
+        drag.button = Button::right;
+    } else {
+        line.fail(fmt::format("button \"{}\"; must be left, middle or right", name));
+    }
+    while (drag.path.size() < 2 || !line.rest().empty()) {
+        const double x = line.number("x");
+        drag.path.push_back({x, line.number("y")});
+    }
+    return drag;
+}
+
+KeyCommand parse_key(Line& line) {
+    std::string_view name = line.word("a key");
+    const bool shift = take_shift(name);
+    if (name == "Escape") {
+        return {{escape_key, shift}};
+    }
+    if (name.size() != 1 || std::isalnum(static_cast<unsigned char>(name[0])) == 0) {
+        line.fail(fmt::format("key \"{}\"; must be a letter, a digit or Escape", name));
+    }
+    return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift}};
+}
+
+ScreenshotCommand parse_screenshot(Line& line) {
+    ScreenshotCommand screenshot{std::string(line.rest())};
+    if (!screenshot.path.ends_with(".png") && !screenshot.path.ends_with(".hdr")) {
+        line.fail(fmt::format("screenshot \"{}\"; the name must end in .png or .hdr", screenshot.path));
+    }
+    return screenshot;
+}
+
+ScriptCommand parse_command(std::string_view command, Line& line, std::size_t number) {
+    if (command == "screenshot") {
+        return {number, parse_screenshot(line)};
+    }
+    ScriptCommand result{number, QuitCommand{}};
+    if (command == "drag") {
+        result.action = parse_drag(line);
+    } else if (command == "scroll") {
+        const double x = line.number("x");
+        const double y = line.number("y");
+        result.action = ScrollCommand{x, y, line.number("the amount")};
+    } else if (command == "key") {
+        result.action = parse_key(line);
+    } else if (command == "resize") {
+        const std::uint32_t width = line.size("the width");
+        result.action = ResizeCommand{width, line.size("the height")};
+    } else if (command != "quit") {
+        line.fail(
+            fmt::format("command \"{}\"; must be drag, scroll, key, resize, screenshot or quit", command));
+    }
+    line.end();
+    return result;
+}
+
+} // namespace
+
+std::vector<ScriptCommand> parse_script(std::string_view text, const std::string& file) {
+    std::vector<ScriptCommand> commands;
+    std::size_t number = 0;
+    while (!text.empty()) {
+        ++number;
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        Line line(without_comment(text.substr(0, end)), file, number);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        const auto command = line.next();
+        if (command) {
+            commands.push_back(parse_command(*command, line, number));
+        }
+    }
+    return commands;
+}
+
+} // namespace hemi::viewer

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "viewer/events.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace hemi::viewer {
+
+struct DragCommand {
+    Button button;
+    bool shift;
+    std::vector<std::array<double, 2>> path; ///< pressed at the first point, released at the last
+};
+struct ScrollCommand {
+    double x;
+    double y;
+    double amount;
+};
+struct KeyCommand {
+    KeyEvent event;
+};
+struct ResizeCommand {
+    std::uint32_t width;
+    std::uint32_t height;
+};
+struct ScreenshotCommand {
+    std::string path;
+};
+struct QuitCommand {};
+
+struct ScriptCommand {
+    std::size_t line;
+    std::variant<DragCommand, ScrollCommand, KeyCommand, ResizeCommand, ScreenshotCommand, QuitCommand>
+        action;
+};
+
+/// Reads a script that drives the window: one command a line, a `#` that begins a word begins a comment.
+/// Points are pixels from the upper left.
+/// ```
+/// drag [shift+]left|middle|right X0 Y0 X1 Y1 [X Y ...]
+/// scroll X Y AMOUNT
+/// key [shift+]NAME       a letter, a digit or Escape
+/// resize WIDTH HEIGHT
+/// screenshot FILE        .png or .hdr; the name is the rest of the line
+/// quit
+/// ```
+/// @param file  name for messages.
+/// @throws ParseError with file and line.
+[[nodiscard]] std::vector<ScriptCommand> parse_script(std::string_view text, const std::string& file);
+
+} // namespace hemi::viewer

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "hemi/display/picture.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hemi::viewer {
+
+/// A solved scene to look at, and how to begin.
+struct ViewerInput {
+    std::string title;               ///< name of the scene, in the window's title
+    const PatchMesh* mesh = nullptr; ///< must outlive run_viewer()
+    std::uint32_t channels = 1;
+    std::array<std::uint32_t, 3> show{0, 0, 0}; ///< channels shown as red, green, blue
+    std::vector<double> radiosity;              ///< N·channels
+    std::vector<double> exitance;               ///< N·channels
+    std::vector<double> blocked;                ///< N, or empty
+    std::array<float, 3> environment{};         ///< as PictureMesh::environment
+    Camera camera;                              ///< where R goes back to
+    PictureSettings picture;                    ///< width and height are the window's first size
+    bool automatic_exposure = true;             ///< picture.exposure is chosen by automatic_exposure()
+    std::string script; ///< path of a script (see parse_script); empty: a person drives the window
+};
+
+/// Opens a window and runs it until it is closed, or until the script ends. Call from the main thread.
+///
+/// Mouse: left drag orbits about the point under the cursor, middle or shift and left drag pans, wheel and
+/// right drag zoom to the cursor. Keys: F frame all, R reset, 1 front, 3 right, 7 top, S Gouraud or flat,
+/// T tone mapping, E and shift E exposure up and down, W patch outlines, P screenshot beside the current
+/// directory, Esc or Q quit. Screenshots have the pixels that draw_picture() gives for the same camera.
+/// @return 0
+/// @throws NoDevice without a display or without OpenGL 4.5 on it; InputError if the script cannot be read or
+///   understood, naming file and line; GlError; IoError where a script's screenshot cannot be written.
+int run_viewer(const ViewerInput& input);
+
+} // namespace hemi::viewer

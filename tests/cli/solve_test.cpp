@@ -1,0 +1,240 @@
+#include "cli/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace hemi::cli_test;
+
+namespace {
+
+const std::string png_signature = "\x89PNG\r\n\x1a\n";
+
+/// A closed cube in which radiosity is E / (1 - rho) everywhere, in three equal channels.
+Json furnace(int n) {
+    Json scene = cube(n);
+    scene["channels"] = {"a", "b", "c"};
+    for (Json& material : scene["materials"]) {
+        material = {{"reflectance", 0.5}, {"exitance", 1}};
+    }
+    return scene;
+}
+
+/// A cube whose channels differ, with a lamp that reflects nothing.
+Json coloured(int n) {
+    Json scene = cube(n);
+    scene["channels"] = {"red", "green", "blue"};
+    scene["materials"]["white"]["reflectance"] = {0.7, 0.5, 0.2};
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("solve: the JSON has all that is promised, in the right sizes", "[cli]") {
+    const Directory directory;
+    const Outcome run = run_hemi(
+        quick({"solve", directory.write("cube.json", coloured(3)), "--json", "-o", directory.path("a.png")}));
+    REQUIRE(run.status == 0);
+    const Json solution = run.json();
+    CHECK(solution["schema"] == "hemi/solve/1");
+    CHECK(solution["renderer"].get<std::string>().size() > 3);
+    CHECK(solution["patches"] == 54);
+    CHECK(solution["channels"] == Json({"red", "green", "blue"}));
+    CHECK(solution["groups"] == Json({"floor", "left", "right", "front", "back", "ceiling"}));
+    REQUIRE(solution["areas"].size() == 6);
+    for (const char* key : {"radiosity", "exitance"}) {
+        REQUIRE(solution[key].size() == 6);
+        CHECK(solution[key][0].size() == 3);
+    }
+    CHECK(solution["areas"][2].get<double>() == Approx(1.0));
+    CHECK(solution["exitance"][5][1] == 1.0);
+    CHECK(solution["exitance"][0][1] == 0.0);
+    CHECK(solution["radiosity"][0][0] > solution["radiosity"][0][1]);
+    CHECK(solution["solver"]["name"] == "gauss-seidel");
+    CHECK(solution["solver"]["sweeps"] > 1);
+    CHECK(solution["solver"]["residual"] <= 1e-6);
+    for (const char* key : {"min", "max", "mean"}) {
+        CHECK(solution["row_sum"][key].get<double>() == Approx(1.0).margin(1e-4));
+    }
+    for (const char* key : {"load", "factors", "repair", "solve", "render", "total"}) {
+        CHECK(solution["seconds"][key] >= 0.0);
+    }
+    CHECK(solution["reciprocity"].is_null()); // the lamp's rows were not needed
+    CHECK(directory.read("a.png").substr(0, 8) == png_signature);
+}
+
+TEST_CASE("solve: a furnace is E / (1 - rho) everywhere, and grey scenes are solved once", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("furnace.json", furnace(3));
+    const Outcome run = run_hemi(quick({"solve", scene, "--json", "-v"}));
+    REQUIRE(run.status == 0);
+    CHECK(run.err_has("channels solved: 1 of 3"));
+    const Json solution = run.json();
+    for (const Json& group : solution["radiosity"]) {
+        for (const Json& value : group) {
+            CHECK(value.get<double>() == Approx(2.0).epsilon(1e-3));
+        }
+    }
+    REQUIRE(solution["reciprocity"].is_object());
+    for (const char* key : {"rms", "max", "relative_rms", "worst", "pairs"}) {
+        CHECK(solution["reciprocity"].contains(key));
+    }
+    const Json jacobi =
+        run_hemi(quick({"solve", scene, "--json", "--solver", "jacobi", "--tolerance", "1e-9"})).json();
+    CHECK(jacobi["solver"]["name"] == "jacobi");
+    CHECK(jacobi["solver"]["residual"] <= 1e-9);
+    CHECK(jacobi["radiosity"][3][2].get<double>() == Approx(2.0).epsilon(1e-3));
+}
+
+TEST_CASE("solve: rows of patches that reflect nothing are computed only where they are asked for", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(3));
+    const Outcome picture_only = run_hemi(quick({"solve", scene, "-v"}));
+    CHECK(picture_only.err_has("rows computed: 45 of 54"));
+    CHECK(picture_only.err_has("channels solved: 3 of 3"));
+    CHECK(picture_only.err_has("polygons drawn: "));
+    const Outcome result = run_hemi(quick({"solve", scene, "-v", "--result", directory.path("a.hres")}));
+    CHECK(result.err_has("rows computed: 54 of 54"));
+
+    Json dark = coloured(3);
+    dark["materials"]["white"]["reflectance"] = 0;
+    const Outcome none = run_hemi(quick({"solve", directory.write("dark.json", dark), "--json"}));
+    REQUIRE(none.status == 0);
+    CHECK(none.json()["renderer"] == "none");
+    CHECK(none.json()["row_sum"]["mean"].is_null());
+    CHECK(none.json()["radiosity"][5][0] == 1.0);
+}
+
+TEST_CASE("solve: the summary has patches, renderer, row sums, sweeps, residual, seconds and the picture",
+          "[cli]") {
+    const Directory directory;
+    const std::string picture = directory.path("a.png");
+    const Outcome run = run_hemi(quick({"solve", directory.write("cube.json", coloured(3)), "-o", picture}));
+    REQUIRE(run.status == 0);
+    for (const char* text :
+         {"54 patches", "6 surfaces", "6 groups", "renderer", "/s", "a row", "row sums", "dominance",
+          "gauss-seidel", "sweeps", "residual", "load", "factors", "repair", "total"}) {
+        INFO(text);
+        CHECK(run.out_has(text));
+    }
+    CHECK(run.out_has(picture));
+}
+
+TEST_CASE("solve: factors are stored once and used again with other materials", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(3));
+    const std::string file = directory.path("a.hff");
+    const Json first = run_hemi(quick({"solve", scene, "--factors", file, "--json"})).json();
+    const std::string bytes = directory.read("a.hff");
+    REQUIRE_FALSE(bytes.empty());
+
+    const Outcome again = run_hemi({"solve", scene, "--factors", file, "--json", "-v"});
+    REQUIRE(again.status == 0);
+    CHECK(again.err_has("no rows to compute"));
+    CHECK(again.json()["radiosity"] == first["radiosity"]);
+    CHECK(again.json()["renderer"] == first["renderer"]);
+
+    Json relit = coloured(3);
+    relit["materials"]["lamp"]["exitance"] = 2;
+    const Json brighter =
+        run_hemi({"solve", directory.write("relit.json", relit), "--factors", file, "--json"}).json();
+    CHECK(brighter["radiosity"][0][0].get<double>() == Approx(2.0 * first["radiosity"][0][0].get<double>()));
+    CHECK(directory.read("a.hff") == bytes);
+}
+
+TEST_CASE("solve: factors of another geometry and conflicting settings are refused", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(3));
+    const std::string file = directory.path("a.hff");
+    REQUIRE(run_hemi(quick({"solve", scene, "--factors", file})).status == 0);
+
+    const Outcome other = run_hemi({"solve", directory.write("other.json", coloured(2)), "--factors", file});
+    CHECK(other.status == 3);
+    CHECK(other.err_has("another geometry"));
+    CHECK(other.err_has(file));
+
+    const Outcome finer = run_hemi({"solve", scene, "--factors", file, "--resolution", "128"});
+    CHECK(finer.status == 2);
+    CHECK(finer.err_has("--resolution 128"));
+    CHECK(finer.err_has("--resolution 64"));
+    CHECK(run_hemi({"solve", scene, "--factors", file, "--seed", "7"}).status == 2);
+    CHECK(run_hemi({"solve", scene, "--factors", file, "--seed", "0", "--resolution", "64"}).status == 0);
+}
+
+TEST_CASE("solve: a closed scene that leaks is exit 5, after its outputs are written", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("open.json", open_cube(3, "closed"));
+    const Outcome run = run_hemi(quick({"solve", scene, "-o", directory.path("a.png"), "--json"}));
+    CHECK(run.status == 5);
+    CHECK(run.err_has("45 patches lose"));
+    CHECK(run.err_has("Worst: patch "));
+    CHECK(run.err_has(", at "));
+    CHECK(run.json()["schema"] == "hemi/solve/1");
+    CHECK(directory.has("a.png"));
+    CHECK(run_hemi(quick({"solve", scene, "--enclosure", "open"})).status == 0);
+    CHECK(run_hemi(quick({"solve", scene, "--enclosure", "auto"})).status == 0);
+    CHECK(run_hemi(quick({"solve", scene, "--max-row-error", "1"})).status == 0);
+}
+
+TEST_CASE("solve: a dash writes to stdout and the summary goes to stderr", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(3));
+    const Outcome picture = run_hemi(quick({"solve", scene, "-o", "-", "--size", "40x30"}));
+    CHECK(picture.status == 0);
+    CHECK(picture.out.substr(0, 8) == png_signature);
+    CHECK(picture.err_has("gauss-seidel"));
+
+    const Outcome table = run_hemi(quick({"solve", scene, "--radiosity", "-", "-q"}));
+    CHECK(table.out.rfind("index,group,area,cx,cy,cz,nx,ny,nz,exitance_red", 0) == 0);
+    CHECK(table.out_has("radiosity_blue\n0,floor,"));
+    CHECK(std::count(table.out.begin(), table.out.end(), '\n') == 55);
+}
+
+TEST_CASE("render: draws a stored solution as solve drew it", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(3));
+    const std::string result = directory.path("a.hres");
+    const Words size{"--size", "48x32", "--camera", "0.5,0.1,0.5:0.5,1,0.5:70"};
+    const auto with = [&size](Words words) {
+        words.insert(words.end(), size.begin(), size.end());
+        return words;
+    };
+    REQUIRE(
+        run_hemi(quick(with({"solve", scene, "--result", result, "-o", directory.path("a.png")}))).status ==
+        0);
+    const Outcome run =
+        run_hemi(with({"render", result, "-o", directory.path("b.png"), "--device", "osmesa"}));
+    CHECK(run.status == 0);
+    CHECK(run.out_has("48 x 32"));
+    CHECK(directory.read("a.png") == directory.read("b.png"));
+
+    const Json shown =
+        run_hemi(with({"render", result, "-o", directory.path("c.hdr"), "--device", "osmesa", "--show",
+                       "green", "--flat", "--exposure", "2", "--tone-mapping", "linear", "--json"}))
+            .json();
+    CHECK(shown["schema"] == "hemi/render/1");
+    CHECK(directory.read("c.hdr").rfind("#?RADIANCE", 0) == 0);
+    CHECK(run_hemi({"render", result, "-o", "-", "--show", "green,blue"}).status == 2);
+    CHECK(run_hemi({"render", result, "-o", "-", "--show", "gren"}).err_has("did you mean"));
+    CHECK(run_hemi({"render", scene, "-o", "-"}).status == 2);
+
+    const Json info = run_hemi({"info", result, "--json"}).json();
+    CHECK(info["kind"] == "result");
+    CHECK(info["patches"] == 54);
+    CHECK(info["solver"]["name"] == "gauss-seidel");
+    CHECK(run_hemi({"info", result}).out_has("gauss-seidel"));
+}
+
+TEST_CASE("solve: pictures of two channels ask which to show, before the work", "[cli]") {
+    const Directory directory;
+    Json scene = cube(2);
+    scene["channels"] = {"visible", "infrared"};
+    const std::string path = directory.write("two.json", scene);
+    const Outcome refused = run_hemi(quick({"solve", path, "-o", directory.path("a.png")}));
+    CHECK(refused.status == 2);
+    CHECK(refused.err_has("visible, infrared"));
+    CHECK(run_hemi(quick({"solve", path, "-o", directory.path("a.png"), "--show", "infrared"})).status == 0);
+    CHECK(
+        run_hemi(quick({"solve", path, "-o", directory.path("a.png"), "--show", "infrared,visible,visible"}))
+            .status == 0);
+}

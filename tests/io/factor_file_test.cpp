@@ -1,0 +1,159 @@
+#include "hemi/io/factor_file.hpp"
+
+#include "chunk_surgery.hpp"
+#include "io_fixtures.hpp"
+
+#include <limits>
+
+namespace hemi::io_test {
+
+namespace {
+
+io::FactorFile sample(std::uint32_t size) {
+    io::FactorFile file;
+    file.factors = random_matrix(size, false);
+    for (std::uint32_t i = 0; i < size; ++i) {
+        file.areas.push_back(1.0 / (i + 3.0));
+        file.group_of.push_back(i % 3);
+    }
+    file.groups = {"floor", "Decke ä \"1\"", ""};
+    file.geometry_hash = 0xFEDCBA9876543210u;
+    file.preset = "exact";
+    file.method = "montecarlo";
+    file.resolution = 512;
+    file.eye_points = 9;
+    file.seed = std::numeric_limits<std::uint64_t>::max();
+    file.renderer = "Some Renderer (line, 4.5)";
+    file.enclosure = "closed";
+    return file;
+}
+
+void require_equal(const io::FactorFile& a, const io::FactorFile& b) {
+    require_same_entries(a.factors, b.factors);
+    for (std::size_t k = 0; k < a.factors.blocks().size(); ++k) {
+        REQUIRE(a.factors.blocks()[k].environment == b.factors.blocks()[k].environment);
+        REQUIRE(a.factors.blocks()[k].blocked == b.factors.blocks()[k].blocked);
+        REQUIRE(a.factors.blocks()[k].known == b.factors.blocks()[k].known);
+    }
+    REQUIRE(a.areas == b.areas);
+    REQUIRE(a.groups == b.groups);
+    REQUIRE(a.group_of == b.group_of);
+    REQUIRE(a.geometry_hash == b.geometry_hash);
+    REQUIRE(a.preset == b.preset);
+    REQUIRE(a.method == b.method);
+    REQUIRE(a.resolution == b.resolution);
+    REQUIRE(a.eye_points == b.eye_points);
+    REQUIRE(a.seed == b.seed);
+    REQUIRE(a.renderer == b.renderer);
+    REQUIRE(a.enclosure == b.enclosure);
+}
+
+} // namespace
+
+TEST_CASE("HFF: what is written is read back bit for bit", "[io]") {
+    const Folder folder;
+    for (const std::uint32_t size : {0u, 1u, 63u, 64u, 65u, 200u}) {
+        const io::FactorFile file = sample(size);
+        io::write_hff(folder / "a.hff", file);
+        require_equal(file, io::read_hff(folder / "a.hff"));
+    }
+    REQUIRE(folder.files() == 1);
+}
+
+TEST_CASE("HFF: equal content gives equal bytes", "[io]") {
+    const Folder folder;
+    io::write_hff(folder / "a.hff", sample(100));
+    io::write_hff(folder / "b.hff", sample(100));
+    REQUIRE(io::read_file(folder / "a.hff") == io::read_file(folder / "b.hff"));
+}
+
+TEST_CASE("HFF: a file cut short anywhere is refused", "[io]") {
+    const Folder folder;
+    io::write_hff(folder / "a.hff", sample(70));
+    const std::string bytes = io::read_file(folder / "a.hff");
+    for (std::size_t length = 0; length < bytes.size(); length += length < 600 ? 1 : 37) {
+        const auto path = folder.write("cut.hff", bytes.substr(0, length));
+        require_parts(message_of<InputError>([&] { (void)io::read_hff(path); }), {"cut.hff: "});
+    }
+    const auto longer = folder.write("long.hff", bytes + std::string(8, '\0'));
+    require_parts(message_of<InputError>([&] { (void)io::read_hff(longer); }), {"8 bytes after the end"});
+}
+
+TEST_CASE("HFF: any flipped bit is noticed", "[io]") {
+    const Folder folder;
+    io::write_hff(folder / "a.hff", sample(70));
+    const std::string bytes = io::read_file(folder / "a.hff");
+    for (std::size_t position = 0; position < bytes.size(); position += position < 700 ? 1 : 23) {
+        std::string flipped = bytes;
+        flipped[position] = static_cast<char>(flipped[position] ^ (1 << position % 8));
+        const auto path = folder.write("flipped.hff", flipped);
+        INFO("byte " << position);
+        require_parts(message_of<InputError>([&] { (void)io::read_hff(path); }), {"flipped.hff: "});
+    }
+}
+
+TEST_CASE("HFF: lies with a right checksum are noticed, and cost no memory", "[io]") {
+    const Folder folder;
+    io::FactorFile file = sample(70);
+    io::write_hff(folder / "a.hff", file);
+    const std::string bytes = io::read_file(folder / "a.hff");
+    struct Bad {
+        int chunk;
+        std::size_t offset;
+        std::string change;
+        std::string part;
+    };
+    const std::size_t environment = 16 + 65 * 8;
+    const std::vector<Bad> table{
+        {0, 0, "[", "a.hff:1:"},
+        {0, 2, "syze", "\"size\" is missing"},
+        {0, 8, "71", "chunk AREA: shorter"},
+        {0, 8, "69", "chunk AREA: 8 bytes too many"},
+        {1, 0, raw(-1.0), "chunk AREA: an area of -1"},
+        {1, 0, raw(std::nan("")), "chunk AREA: an area of nan"},
+        {2, 0, raw(3u), "chunk GRUP: group 3; there are 3"},
+        {3, 0, raw(64u), "starts at row 64, where row 0 must come"},
+        {3, 4, raw(63u), "chunk ROWS: "},
+        {3, 4, raw(0xFFFFFFFFu), "chunk ROWS: shorter than its own counts say"},
+        {3, 8, raw(std::uint64_t{1} << 60), "chunk ROWS: shorter than its own counts say"},
+        {3, 8, raw(~std::uint64_t{0}), "chunk ROWS: shorter than its own counts say"},
+        {3, 16, raw(std::uint64_t{1}), "offsets must ascend"},
+        {3, 24, raw(std::uint64_t{1} << 40), "offsets must ascend"},
+        {3, environment, raw(-0.5), "environment share -0.5"},
+        {3, environment, raw(std::nan("")), "environment share nan"},
+        {3, environment + 64 * 16, raw(70u), "column"},
+    };
+    for (const Bad& bad : table) {
+        INFO(bad.part);
+        const auto path = folder.write("a.hff", with_payload(bytes, bad.chunk, bad.offset, bad.change));
+        require_parts(message_of<InputError>([&] { (void)io::read_hff(path); }), {"a.hff:", bad.part});
+    }
+}
+
+TEST_CASE("HFF: other files, other versions and directories are told apart", "[io]") {
+    const Folder folder;
+    const auto refusal = [&](const std::string& bytes) {
+        return message_of<InputError>([&] { (void)io::read_hff(folder.write("a.hff", bytes)); });
+    };
+    require_parts(refusal(""), {"a.hff: 0 bytes; too short"});
+    require_parts(refusal("v 0 0 0\nv 1 0 0\nv 1 1 0\n"), {"does not hold form factors (.hff)", "v 0 0 0"});
+    require_parts(refusal("HEMIFF\n" + std::string(20, '\0')), {"does not hold form factors"});
+    require_parts(refusal("HEMIFF\r\n\2" + std::string(20, '\0')), {"version 2", "reads version 1"});
+    require_parts(message_of<InputError>([&] { (void)io::read_hff(folder / ""); }), {"cannot be read"});
+    require_parts(message_of<InputError>([&] { (void)io::read_hff(folder / "no.hff"); }), {"No such file"});
+}
+
+TEST_CASE("HFF: arrays that do not fit the matrix are refused, and nothing is written", "[io]") {
+    const Folder folder;
+    io::FactorFile file = sample(10);
+    file.areas.pop_back();
+    REQUIRE_THROWS_AS(io::write_hff(folder / "a.hff", file), InvalidArgument);
+    file = sample(10);
+    file.group_of[3] = 3;
+    REQUIRE_THROWS_AS(io::write_hff(folder / "a.hff", file), InvalidArgument);
+    REQUIRE_THROWS_AS(io::write_hff("/dev/full", sample(10)), IoError);
+    REQUIRE_THROWS_AS(io::write_hff(folder / "no/a.hff", sample(10)), IoError);
+    REQUIRE(folder.files() == 0);
+}
+
+} // namespace hemi::io_test

@@ -1,0 +1,200 @@
+#include "hemi/io/result_file.hpp"
+
+#include "chunk_surgery.hpp"
+#include "io_fixtures.hpp"
+
+namespace hemi::io_test {
+
+namespace {
+
+io::ResultFile sample() {
+    io::ResultFile result;
+    Scene& scene = result.scene;
+    scene.name = "room \"1\"";
+    scene.channels = {"short", "long, far"};
+    scene.materials = {{"white", {0.7, 0.1}, {0.0, 0.0}}, {"lamp", {0.0, 0.3}, {1.0 / 3.0, 8.0}}};
+    scene.groups = {"floor", "lid, \"top\""};
+    Surface floor;
+    floor.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
+    floor.patches = Grid{3, 2};
+    Surface lid;
+    lid.vertices = {Vec3(0, 0, 1), Vec3(0, 1, 1), Vec3(1.0 / 3.0, 0, 1), Vec3(0)};
+    lid.vertex_count = 3;
+    lid.material = 1;
+    lid.group = 1;
+    lid.two_sided = true;
+    scene.surfaces = {floor, lid};
+    scene.patch_size = 0.4;
+    scene.enclosure = Enclosure::open;
+    scene.environment = {0.1, 0.2};
+    scene.camera = Camera{{0, -3, 1}, {0, 0, 0.1}, {0, 0.1, 1}, 33.3};
+    const std::size_t patches = PatchMesh(scene).size();
+    for (std::size_t i = 0; i < patches * 2; ++i) {
+        result.radiosity.push_back(1.0 / static_cast<double>(i + 1));
+        result.irradiance.push_back(std::sqrt(static_cast<double>(i)));
+    }
+    for (std::size_t i = 0; i < patches; ++i) {
+        result.row_sum.push_back(0.9 + 1e-9 * static_cast<double>(i));
+        result.environment.push_back(0.01);
+        result.blocked.push_back(0.0);
+    }
+    result.solver = "gauss-seidel";
+    result.sweeps = 17;
+    result.residual = 1.23456789e-7;
+    result.renderer = "Some Renderer";
+    return result;
+}
+
+} // namespace
+
+TEST_CASE("HRES: what is written is read back bit for bit", "[io]") {
+    const Folder folder;
+    const io::ResultFile a = sample();
+    io::write_hres(folder / "a.hres", a);
+    const io::ResultFile b = io::read_hres(folder / "a.hres");
+    REQUIRE(a.scene.name == b.scene.name);
+    REQUIRE(a.scene.channels == b.scene.channels);
+    REQUIRE(a.scene.materials == b.scene.materials);
+    REQUIRE(a.scene.groups == b.scene.groups);
+    REQUIRE(a.scene.enclosure == b.scene.enclosure);
+    REQUIRE(a.scene.environment == b.scene.environment);
+    REQUIRE(a.scene.camera->eye == b.scene.camera->eye);
+    REQUIRE(a.scene.camera->target == b.scene.camera->target);
+    REQUIRE(a.scene.camera->up == b.scene.camera->up);
+    REQUIRE(a.scene.camera->fov == b.scene.camera->fov);
+    REQUIRE(b.scene.surfaces.size() == 2);
+    for (std::size_t s = 0; s < 2; ++s) {
+        REQUIRE(a.scene.surfaces[s].vertices == b.scene.surfaces[s].vertices);
+        REQUIRE(a.scene.surfaces[s].vertex_count == b.scene.surfaces[s].vertex_count);
+        REQUIRE(a.scene.surfaces[s].material == b.scene.surfaces[s].material);
+        REQUIRE(a.scene.surfaces[s].group == b.scene.surfaces[s].group);
+        REQUIRE(a.scene.surfaces[s].two_sided == b.scene.surfaces[s].two_sided);
+    }
+    REQUIRE(a.radiosity == b.radiosity);
+    REQUIRE(a.irradiance == b.irradiance);
+    REQUIRE(a.row_sum == b.row_sum);
+    REQUIRE(a.environment == b.environment);
+    REQUIRE(a.blocked == b.blocked);
+    REQUIRE(a.solver == b.solver);
+    REQUIRE(a.sweeps == b.sweeps);
+    REQUIRE(a.residual == b.residual);
+    REQUIRE(a.renderer == b.renderer);
+}
+
+TEST_CASE("HRES: the patches are those that were solved, however they were asked for", "[io]") {
+    const Folder folder;
+    for (const Subdivision& subdivision : {Subdivision{}, Subdivision{0.3, {}}, Subdivision{{}, 5}}) {
+        io::ResultFile a = sample();
+        a.subdivision = subdivision;
+        const PatchMesh mesh(a.scene, a.subdivision);
+        a.radiosity.resize(mesh.size() * 2);
+        a.irradiance.resize(mesh.size() * 2);
+        a.row_sum.resize(mesh.size());
+        a.environment.resize(mesh.size());
+        a.blocked.resize(mesh.size());
+        io::write_hres(folder / "a.hres", a);
+        const io::ResultFile b = io::read_hres(folder / "a.hres");
+        const PatchMesh again(b.scene, b.subdivision);
+        REQUIRE(again.size() == mesh.size());
+        REQUIRE(again.geometry_hash() == mesh.geometry_hash());
+    }
+}
+
+TEST_CASE("HRES: a scene without a camera stays without one", "[io]") {
+    const Folder folder;
+    io::ResultFile a = sample();
+    a.scene.camera.reset();
+    io::write_hres(folder / "a.hres", a);
+    REQUIRE_FALSE(io::read_hres(folder / "a.hres").scene.camera.has_value());
+}
+
+TEST_CASE("HRES: files cut short and flipped bits are refused", "[io]") {
+    const Folder folder;
+    io::write_hres(folder / "a.hres", sample());
+    const std::string bytes = io::read_file(folder / "a.hres");
+    for (std::size_t position = 0; position < bytes.size(); position += position < 900 ? 1 : 11) {
+        INFO("byte " << position);
+        const auto cut = folder.write("cut.hres", bytes.substr(0, position));
+        require_parts(message_of<InputError>([&] { (void)io::read_hres(cut); }), {"cut.hres: "});
+        std::string flipped = bytes;
+        flipped[position] = static_cast<char>(flipped[position] ^ (1 << position % 8));
+        const auto path = folder.write("flipped.hres", flipped);
+        require_parts(message_of<InputError>([&] { (void)io::read_hres(path); }), {"flipped.hres: "});
+    }
+    const auto hff = folder.write("x.hres", "HEMIFF\r\n" + std::string(20, '\0'));
+    require_parts(message_of<InputError>([&] { (void)io::read_hres(hff); }),
+                  {"does not hold a solution (.hres)"});
+}
+
+TEST_CASE("HRES: lies with a right checksum are noticed, and cost no memory", "[io]") {
+    const Folder folder;
+    io::write_hres(folder / "a.hres", sample());
+    const std::string bytes = io::read_file(folder / "a.hres");
+    const std::size_t counts = 12 * 8; // of the first surface
+    struct Bad {
+        int chunk;
+        std::size_t offset;
+        std::string change;
+        std::string part;
+    };
+    const std::vector<Bad> table{
+        {0, 2, "nome", "\"name\" is missing"},
+        {1, 0, raw(std::nan("")), "vertex 0 is not finite"},
+        {1, 0, raw(3.0), "surface 0 (group \"floor\"): not convex"},
+        {1, counts, raw(5u), "chunk SURF: a surface of 5 vertices"},
+        {1, counts + 4, raw(2u), "material"},
+        {1, counts + 8, raw(2u), "group"},
+        {1, counts + 12, raw(2u), "3 sides"},
+        {1, counts + 16, raw(4u), "chunk SURF: the surfaces have not the"},
+        {1, counts + 16, raw(0xFFFFFFFFFFFFFFFFu), "chunk SURF: the surfaces have not the"},
+        {1, counts + 16, raw(0u), "chunk SURF: the surfaces have not the"},
+        {2, 0, raw(std::nan("")), "chunk RADI: a value that is not finite"},
+    };
+    for (const Bad& bad : table) {
+        INFO(bad.part << " at " << bad.offset);
+        const auto path = folder.write("a.hres", with_payload(bytes, bad.chunk, bad.offset, bad.change));
+        require_parts(message_of<InputError>([&] { (void)io::read_hres(path); }), {"a.hres:", bad.part});
+    }
+}
+
+TEST_CASE("HRES: arrays that do not fit and values that are not finite are refused, and nothing is written",
+          "[io]") {
+    const Folder folder;
+    io::ResultFile result = sample();
+    result.radiosity.pop_back();
+    require_parts(message_of<InvalidArgument>([&] { io::write_hres(folder / "a.hres", result); }),
+                  {"radiosity"});
+    result = sample();
+    result.row_sum[1] = std::nan("");
+    require_parts(message_of<InvalidArgument>([&] { io::write_hres(folder / "a.hres", result); }),
+                  {"row sum of nan"});
+    REQUIRE_THROWS_AS(io::write_hres("/dev/full", sample()), IoError);
+    REQUIRE(folder.files() == 0);
+}
+
+TEST_CASE("Patch tables: one line a patch, names in quotes where needed, numbers that read back equal",
+          "[io]") {
+    const Folder folder;
+    const io::ResultFile result = sample();
+    const PatchMesh mesh(result.scene);
+    io::write_patches_csv(folder / "p.csv", mesh);
+    const std::string text = io::read_file(folder / "p.csv");
+    REQUIRE(text.starts_with("index,group,area,cx,cy,cz,nx,ny,nz\n0,floor,0.166666"));
+    REQUIRE(std::count(text.begin(), text.end(), '\n') == static_cast<int>(mesh.size()) + 1);
+    REQUIRE(text.find("\n6,\"lid, \"\"top\"\"\",") != std::string::npos);
+    const std::string area = text.substr(text.find("0,floor,") + 8);
+    REQUIRE(std::stod(area) == mesh.areas()[0]);
+
+    io::write_radiosity_csv(folder / "r.csv", mesh, result.scene.channels, result.radiosity,
+                            result.irradiance, result.radiosity);
+    const std::string table = io::read_file(folder / "r.csv");
+    REQUIRE(table.starts_with(
+        "index,group,area,cx,cy,cz,nx,ny,nz,exitance_short,\"exitance_long, far\",irradiance_short,"
+        "\"irradiance_long, far\",radiosity_short,\"radiosity_long, far\"\n"));
+    REQUIRE(table.find(",1,0.5,0,1,1,0.5\n") != std::string::npos);
+    REQUIRE_THROWS_AS(io::write_radiosity_csv(folder / "x.csv", mesh, result.scene.channels, {}, {}, {}),
+                      InvalidArgument);
+    REQUIRE(folder.files() == 2);
+}
+
+} // namespace hemi::io_test
