@@ -37,7 +37,7 @@ struct GlRows::State {
         : geometry(the_geometry), settings(the_settings), weights(the_settings.resolution),
           context(gl::make_context(device)),
           buffers(*context, settings.resolution, batch_slots(settings.resolution, context->software())),
-          views(geometry.list),
+          views(geometry.list, buffers.slots()),
           accumulator(weights, geometry.list.item_of_id, static_cast<std::uint32_t>(geometry.eyes.size())) {}
 
     std::uint32_t begin_batch(std::span<const std::uint32_t> patches) {

@@ -12,8 +12,6 @@ namespace hemi {
 
 namespace {
 
-constexpr GLint atlas_size_location = 0;
-
 void describe_vertices(GLuint layout) {
     const auto attribute = [layout](GLuint index, GLint count, bool integer, std::size_t offset) {
         glEnableVertexArrayAttrib(layout, index);
@@ -95,11 +93,11 @@ void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
     glDepthFunc(GL_GREATER);
     glDepthMask(GL_TRUE);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDisable(GL_CULL_FACE);
+    // Facing is told on the CPU; what turns the wrong way here was flipped by rounding (see ViewBuilder).
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_BACK);
+    glFrontFace(GL_CW);
     glDisable(GL_SCISSOR_TEST);
-    for (GLenum plane = 0; plane < 4; ++plane) {
-        glEnable(GL_CLIP_DISTANCE0 + plane);
-    }
     const std::array<GLuint, 4> nothing{item_nothing, 0, 0, 0};
     const GLfloat infinity = 0.0f;
     glClearNamedFramebufferuiv(target.framebuffer.get(), GL_COLOR, 0, nothing.data());
@@ -118,9 +116,12 @@ void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
                       GL_STREAM_DRAW);
     glBindVertexArray(layout_.get());
     glVertexArrayVertexBuffer(layout_.get(), 0, target.vertices.get(), 0, sizeof(DrawVertex));
-    // Depth is interpolated with an error that grows with its slope: backs are set behind by the change of
-    // depth over 1/256 texel, the rasteriser's own grain, and a few units in the last place.
-    glPolygonOffset(-1.0f / 32.0f, -4.0f);
+    // Vertices are snapped to 1/256 texel, so along a silhouette, where a front hides a back that shares its
+    // edge, either may come out nearer by its change of depth over that distance. Fronts are set nearer by it
+    // and backs farther: the front wins.
+    constexpr float grain = 1.0f / 256.0f;
+    constexpr float last_places = 16.0f;
+    glEnable(GL_POLYGON_OFFSET_FILL);
     std::size_t first = 0;
     for (const Part& part : parts) {
         if (part.vertices.empty()) {
@@ -129,10 +130,8 @@ void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
         const auto count = part.vertices.size();
         glNamedBufferSubData(target.vertices.get(), static_cast<GLintptr>(first * sizeof(DrawVertex)),
                              static_cast<GLsizeiptr>(count * sizeof(DrawVertex)), part.vertices.data());
-        (part.behind ? glEnable : glDisable)(GL_POLYGON_OFFSET_FILL);
+        glPolygonOffset(part.behind ? -grain : grain, part.behind ? -last_places : 0.0f);
         glUseProgram(part.program.get());
-        glUniform2f(atlas_size_location, static_cast<float>(resolution_),
-                    static_cast<float>(3 * resolution_ * slots_));
         glDrawArrays(GL_TRIANGLES, static_cast<GLint>(first), static_cast<GLsizei>(count));
         first += count;
     }

@@ -9,14 +9,15 @@
 
 namespace hemi {
 
-/// Vertex of a triangle in one view (one face of one hemicube of a batch), as the shaders read it.
+/// Vertex of a triangle in one view (one face of one hemicube of a batch), as the shaders read it: clip
+/// coordinates in the atlas (z is 1, the near distance), and what tells the item id.
 struct DrawVertex {
-    float x, y, z; ///< in the eye's frame; the unit is the near distance
+    float x, y, w;
     float grid_u, grid_v;
     float twist_u, twist_v;
     std::uint32_t first_id;
     std::uint32_t grid; ///< u | v << 16
-    std::uint32_t view; ///< slot·8 + face, | split << 31
+    std::uint32_t split;
 };
 
 /// Vertices of one batch, three a triangle.
@@ -32,12 +33,18 @@ struct DrawStream {
     }
 };
 
-/// Turns the draw list into what one eye sees: culls polygons on or behind the eye's plane, edge-on polygons
-/// and those outside a face's pyramid; tells fronts from backs; moves the rest into the eye's frame in double
-/// precision before it becomes float; scales so that the near plane at distance 1 cuts nothing.
+/// Turns the draw list into what one eye sees, and clips it to the faces.
+///
+/// Culls polygons on or behind the eye's plane, edge-on polygons and those outside a face's pyramid; tells
+/// fronts from backs; moves the rest into the eye's frame in double precision before it becomes float; scales
+/// so that the near plane at distance 1 cuts nothing. Polygons are clipped here rather than by OpenGL:
+/// neighbours then get the same bits where a face cuts their common edge, so no crack opens; and software
+/// OpenGL takes its short path, which is several times as fast for many polygons.
 class ViewBuilder {
 public:
-    explicit ViewBuilder(const DrawList& list) : list_(list) {}
+    /// @param list   must outlive this.
+    /// @param slots  hemicubes in the atlas: a column of 3·resolution rows each.
+    ViewBuilder(const DrawList& list, std::uint32_t slots);
 
     /// Appends the views of `eye`, the slot-th hemicube of the batch.
     void add(const EyePoint& eye, const EyeFrame& frame, std::uint32_t slot, DrawStream& stream);
@@ -48,15 +55,25 @@ private:
         std::uint32_t faces; ///< bit per face
         bool back;
     };
+    /// A corner in a face's frame (right, up, depth) and on its polygon's grid.
+    struct FaceVertex {
+        double right, up, depth;
+        double grid_u, grid_v;
+    };
     void transform(const EyePoint& eye, const EyeFrame& frame);
     void cull(const EyePoint& eye);
     [[nodiscard]] double near_distance(const EyePoint& eye) const;
-    void emit(const Seen& seen, double scale, std::uint32_t slot, DrawStream& stream) const;
+    void emit(const Seen& seen, double scale, std::uint32_t slot, DrawStream& stream);
+    /// Clips the polygon in clipped_ to a face's pyramid.
+    void clip(int face);
 
     const DrawList& list_;
+    std::uint32_t slots_;
     std::vector<Vec3> positions_;     ///< vertices in the eye's frame
     std::vector<std::uint8_t> sides_; ///< per vertex, which side of the faces' bounding planes
     std::vector<Seen> seen_;
+    std::vector<FaceVertex> clipped_;
+    std::vector<FaceVertex> scratch_;
 };
 
 } // namespace hemi

@@ -174,7 +174,8 @@ tinyobj::callback_t callbacks() {
     result.group_cb = [](void* user, const char** names, int count) {
         std::string joined;
         for (int k = 0; k < count; ++k) {
-            joined += (k == 0 ? "" : " ") + std::string(names[k]);
+            joined += k == 0 ? "" : " ";
+            joined += names[k];
         }
         builder(user).group(joined);
     };

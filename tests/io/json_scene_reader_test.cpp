@@ -113,7 +113,7 @@ TEST_CASE("JSON reader: surfaces of one name form one group", "[io]") {
     REQUIRE(result.surfaces[2].group == 0);
 }
 
-TEST_CASE("JSON reader: a mesh is scaled, then rotated about x, y, z, then moved; right angles are exact",
+TEST_CASE("JSON reader: a mesh is scaled, then rotated about x, y, z, then moved, right angles are exact",
           "[io]") {
     const Folder folder;
     folder.write("flag.obj", "v 1 0 0\nv 3 0 0\nv 1 2 0\nf 1 2 3\n");

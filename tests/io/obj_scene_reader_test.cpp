@@ -3,6 +3,8 @@
 #include "hemi/scene/patch_mesh.hpp"
 #include "io_fixtures.hpp"
 
+#include <fmt/format.h>
+
 #include <clocale>
 #include <cmath>
 #include <locale>
@@ -115,8 +117,8 @@ TEST_CASE(
         std::string face = "f";
         for (int k = 0; k < n; ++k) {
             const double angle = 2.0 * std::acos(-1.0) * k / n;
-            text += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 2\n";
-            face += " " + std::to_string(k + 1);
+            text += fmt::format("v {} {} 2\n", std::cos(angle), std::sin(angle));
+            face += fmt::format(" {}", k + 1);
         }
         Diagnostics diagnostics;
         const Scene scene = read(folder, text + face + "\n" + face + "\n", &diagnostics);
