@@ -212,6 +212,7 @@ ExitStatus run(const CheckArguments& arguments, const Terminal& terminal) {
     } else {
         file = read_file(arguments);
     }
+    settle_contacts(file);
     const PatchNames names = loaded ? loaded->names() : PatchNames{file.groups, file.group_of, {}};
     const double limit = arguments.rows.max_row_error;
     const Findings findings = find_defects(file, loaded ? &loaded->mesh : nullptr, limit);

@@ -282,7 +282,7 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     const Outputs outputs = check_outputs(arguments);
     const bool is_scene = io::is_scene_file(arguments.scene.path);
     Subject subject = is_scene ? from_scene(arguments, terminal) : from_file(arguments);
-    const io::FactorFile& file = subject.rows.file;
+    io::FactorFile& file = subject.rows.file;
     if (arguments.row) {
         show_row(arguments, subject);
         return ExitStatus::ok;
@@ -290,6 +290,7 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     if (arguments.output && !table_goes_to_file(arguments)) {
         write_factors(*arguments.output, file);
     }
+    settle_contacts(file);
     const RowSums sums = row_sums(file.factors);
     const EnclosureFinding enclosure = find_leaks(file.factors, file.enclosure, arguments.rows.max_row_error);
     if (arguments.by_group) {

@@ -11,7 +11,6 @@ namespace hemi::cli {
 
 namespace {
 
-constexpr double covered_above = 0.99;
 // Not declared and leaking: nearly closed if so few rows leak, or if so little is lost altogether.
 constexpr double few_rows = 0.05;
 constexpr double little_lost = 0.001;

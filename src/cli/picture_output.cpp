@@ -63,11 +63,20 @@ Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const std::optio
     return camera;
 }
 
+std::array<float, 3> shown_environment(const Scene& scene, const std::array<std::uint32_t, 3>& show) {
+    std::array<float, 3> shown{};
+    for (std::size_t k = 0; k < 3 && !scene.environment.empty(); ++k) {
+        shown[k] = static_cast<float>(scene.environment[show[k]]);
+    }
+    return shown;
+}
+
 std::string write_picture(const PictureSubject& subject, const PictureOptions& options,
                           const std::string& device) {
     const auto channels = static_cast<std::uint32_t>(subject.scene.channels.size());
-    const PictureMesh drawn = make_picture_mesh(subject.mesh, channels, subject.radiosity, subject.blocked,
-                                                channels_to_show(subject.scene.channels, options.show));
+    const auto show = channels_to_show(subject.scene.channels, options.show);
+    PictureMesh drawn = make_picture_mesh(subject.mesh, channels, subject.radiosity, subject.blocked, show);
+    drawn.environment = shown_environment(subject.scene, show);
     PictureSettings settings;
     settings.width = options.size[0];
     settings.height = options.size[1];

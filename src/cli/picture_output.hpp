@@ -25,6 +25,10 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options);
 [[nodiscard]] Camera choose_camera(const Scene& scene, const PatchMesh& mesh,
                                    const std::optional<CameraOption>& option);
 
+/// Exitance of the environment in the channels shown: what lies behind all surfaces.
+[[nodiscard]] std::array<float, 3> shown_environment(const Scene& scene,
+                                                     const std::array<std::uint32_t, 3>& show);
+
 /// What a picture shows; arrays as in Solution.
 struct PictureSubject {
     const Scene& scene;

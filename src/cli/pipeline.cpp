@@ -5,6 +5,7 @@
 #include "cli/signals.hpp"
 #include "core/nearest_word.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/engine/contacts.hpp"
 #include "hemi/io/scene_reader.hpp"
 
 #include <fmt/format.h>
@@ -200,6 +201,7 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
     rows.seconds = watch.seconds();
     rows.computed = patches.size();
     rows.file.renderer = engine->renderer();
+    rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
     stop_if_interrupted();
     return rows;
 }
@@ -216,6 +218,7 @@ Rows reuse_rows(const std::filesystem::path& path, const LoadedScene& loaded, co
             "remove the file or name another one",
             path.string(), plural(file.factors.size(), "patch", "patches"), count_text(loaded.mesh.size())));
     }
+    rows.file.enclosure = enclosure_name(loaded.scene.enclosure);
     check_setting(common, path, "--resolution", options.resolution.value_or(0), file.resolution);
     check_setting(common, path, "--seed", options.seed.value_or(0), file.seed);
     check_setting(common, path, "--preset", options.preset, file.preset);
@@ -228,6 +231,13 @@ std::vector<std::uint32_t> all_patches(std::uint32_t size) {
     std::vector<std::uint32_t> patches(size);
     std::iota(patches.begin(), patches.end(), 0u);
     return patches;
+}
+
+void settle_contacts(io::FactorFile& file) {
+    const Enclosure enclosure = file.enclosure == "closed" ? Enclosure::closed
+                                : file.enclosure == "open" ? Enclosure::open
+                                                           : Enclosure::automatic;
+    cover_contacts(file.factors, file.contacts, enclosure);
 }
 
 EnclosureFinding find_leaks(const FormFactorMatrix& factors, const std::string& enclosure,

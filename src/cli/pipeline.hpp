@@ -78,6 +78,10 @@ struct Rows {
 /// 0, 1 … size - 1.
 [[nodiscard]] std::vector<std::uint32_t> all_patches(std::uint32_t size);
 
+/// Counts patches that lie face to face against a surface as covered where the scene is closed; after the raw
+/// rows were stored. @see cover_contacts
+void settle_contacts(io::FactorFile& file);
+
 /// What the rows say about the enclosure.
 struct EnclosureFinding {
     bool closed = false; ///< declared so, or (auto) no row leaks

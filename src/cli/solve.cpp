@@ -54,6 +54,7 @@ Outputs check_outputs(const SolveArguments& arguments) {
 Rows find_rows(const SolveArguments& arguments, const LoadedScene& loaded, const Terminal& terminal) {
     if (arguments.factors && fs::is_regular_file(*arguments.factors)) {
         Rows rows = reuse_rows(*arguments.factors, loaded, arguments.rows, arguments.common);
+        settle_contacts(rows.file);
         terminal.detail(fmt::format("form factors from {}: no rows to compute", arguments.factors->string()));
         return rows;
     }
@@ -64,6 +65,7 @@ Rows find_rows(const SolveArguments& arguments, const LoadedScene& loaded, const
         io::write_hff(*arguments.factors, rows.file);
         terminal.detail(fmt::format("form factors written to {}", arguments.factors->string()));
     }
+    settle_contacts(rows.file);
     return rows;
 }
 

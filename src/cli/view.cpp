@@ -22,9 +22,8 @@ void check_display() {
         return value != nullptr && *value != '\0';
     };
     if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY")) {
-        throw NoDevice(
-            "no display to open a window on (DISPLAY is not set); `hemi solve SCENE -o PICTURE` draws "
-            "without one");
+        throw NoDevice("no display to open a window on (DISPLAY is not set); `hemi render` and `hemi solve "
+                       "-o` need none");
     }
 }
 
@@ -36,6 +35,7 @@ viewer::ViewerInput make_input(const ViewArguments& arguments, const Scene& scen
     input.mesh = &mesh;
     input.channels = static_cast<std::uint32_t>(scene.channels.size());
     input.show = channels_to_show(scene.channels, options.show);
+    input.environment = shown_environment(scene, input.show);
     input.camera = choose_camera(scene, mesh, options.camera);
     input.picture.width = options.size[0];
     input.picture.height = options.size[1];
@@ -52,7 +52,8 @@ void view_scene(const ViewArguments& arguments, const Terminal& terminal) {
     viewer::ViewerInput input = make_input(arguments, loaded.scene, loaded.mesh);
     Solution solution;
     {
-        const Rows rows = compute_rows(loaded, reflecting_patches(loaded), arguments.rows, terminal);
+        Rows rows = compute_rows(loaded, reflecting_patches(loaded), arguments.rows, terminal);
+        settle_contacts(rows.file);
         solution = solve_scene(loaded, rows.file.factors, arguments.solver, false, terminal);
     }
     input.radiosity = std::move(solution.radiosity);

@@ -13,7 +13,7 @@ class Welder {
 public:
     explicit Welder(double tolerance) : tolerance_(tolerance), cell_(4.0 * tolerance) {}
 
-    /// Index of `point`: of the first point that was added within the tolerance, or a new one.
+    /// Index of a point that was added within the tolerance of `point`, or a new one.
     std::uint32_t add(const Vec3& point);
 
     [[nodiscard]] const std::vector<Vec3>& points() const noexcept { return points_; }

@@ -43,7 +43,7 @@ bool SmoothSurfaces::continues(std::uint32_t a, std::uint32_t b) const {
 }
 
 void SmoothSurfaces::weld(const PatchMesh& mesh) {
-    tolerance_ = weld_tolerance * mesh.bounds().diagonal();
+    tolerance_ = std::max(weld_tolerance * mesh.bounds().diagonal(), mesh.rounding());
     Welder welder(tolerance_);
     corners_.resize(std::size_t{mesh.size()} * 4);
     counts_.resize(mesh.size());

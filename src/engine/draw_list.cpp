@@ -33,13 +33,7 @@ public:
         : mesh_(mesh), merge_lattices_(merge_lattices) {}
 
     DrawList run() {
-        const Bounds& bounds = mesh_.bounds();
-        double magnitude = 0.0;
-        for (int axis = 0; axis < 3; ++axis) {
-            magnitude = std::max({magnitude, std::abs(bounds.lower[axis]), std::abs(bounds.upper[axis])});
-        }
-        list_.tolerance =
-            std::max(1e-12 * bounds.diagonal(), 16.0 * std::numeric_limits<double>::epsilon() * magnitude);
+        list_.tolerance = mesh_.rounding();
         weld();
         list_.item_of_id = {item_nothing, item_blocked};
         list_.polygon_of_surface.assign(mesh_.surfaces().size(), none);

@@ -112,15 +112,7 @@ private:
 } // namespace
 
 ReferenceTracer::ReferenceTracer(const PatchMesh& mesh, const HemicubeSettings& settings)
-    : mesh_(mesh), settings_(settings) {
-    const Bounds& bounds = mesh.bounds();
-    double magnitude = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-        magnitude = std::max({magnitude, std::abs(bounds.lower[axis]), std::abs(bounds.upper[axis])});
-    }
-    tolerance_ =
-        std::max(1e-12 * bounds.diagonal(), 16.0 * std::numeric_limits<double>::epsilon() * magnitude);
-}
+    : mesh_(mesh), settings_(settings), tolerance_(mesh.rounding()) {}
 
 std::vector<std::uint32_t> ReferenceTracer::items(std::uint32_t patch) const {
     const std::uint32_t resolution = settings_.resolution;

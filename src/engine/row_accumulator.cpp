@@ -95,11 +95,18 @@ RowView RowAccumulator::take() {
         if (missing == 0.0) {
             break;
         }
-        if (static_cast<double>(value) > 1e5 * std::abs(missing)) {
+        if (static_cast<double>(value) > 1e3 * std::abs(missing)) {
             const auto mended = static_cast<float>(static_cast<double>(value) + missing);
             missing -= static_cast<double>(mended) - static_cast<double>(value);
             value = mended;
         }
+    }
+    // What they cannot take, the shares that are doubles can; a share of exactly zero says something and
+    // stays.
+    if (row.blocked > 0.0) {
+        row.blocked += missing;
+    } else if (row.environment > 0.0) {
+        row.environment += missing;
     }
     row.columns = columns_;
     row.values = values_;

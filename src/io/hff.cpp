@@ -108,6 +108,19 @@ void read_groups(ChunkReader& reader, FactorFile& file) {
     }
 }
 
+void read_contacts(ChunkReader& reader, FactorFile& file) {
+    Payload contacts = reader.chunk("CONT");
+    const auto count = contacts.take<std::uint32_t>();
+    file.contacts = contacts.take_array<std::uint32_t>(count);
+    contacts.expect_end();
+    for (std::size_t k = 0; k < file.contacts.size(); ++k) {
+        if (file.contacts[k] >= file.factors.size() || (k > 0 && file.contacts[k] <= file.contacts[k - 1])) {
+            contacts.fail(fmt::format("patch {} in contact; patches must ascend and be below {}",
+                                      file.contacts[k], file.factors.size()));
+        }
+    }
+}
+
 void read_block(ChunkReader& reader, FormFactorMatrix& factors, std::uint32_t first_row) {
     Payload payload = reader.chunk("ROWS");
     RowBlock block;
@@ -142,6 +155,8 @@ void write_hff(const std::filesystem::path& path, const FactorFile& file) {
     writer.chunk("HEAD", {bytes_of(json_text(header(file)))});
     writer.chunk("AREA", {bytes_of(file.areas)});
     writer.chunk("GRUP", {bytes_of(file.group_of)});
+    const auto contacts = static_cast<std::uint32_t>(file.contacts.size());
+    writer.chunk("CONT", {bytes_of(contacts), bytes_of(file.contacts)});
     for (const RowBlock& block : file.factors.blocks()) {
         write_block(writer, block);
     }
@@ -153,6 +168,7 @@ FactorFile read_hff(const std::filesystem::path& path) {
     FactorFile file;
     read_header(reader, file);
     read_groups(reader, file);
+    read_contacts(reader, file);
     for (std::uint32_t row = 0; row < file.factors.size();) {
         read_block(reader, file.factors, row);
         row += std::min(FormFactorMatrix::block_rows, file.factors.size() - row);

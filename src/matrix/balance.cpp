@@ -12,7 +12,6 @@ namespace hemi {
 
 namespace {
 
-constexpr double covered_share = 0.99;
 constexpr double relevant_factor = 1e-4;
 
 void check_areas(const FormFactorMatrix& factors, std::span<const double> areas) {
@@ -92,8 +91,8 @@ RowSums row_sums(const FormFactorMatrix& factors) {
             std::max(sums.balance_error_max, std::abs(sum + row.environment + row.blocked - 1.0));
         ++sums.known;
         sums.leaking += row.environment > 0.0 ? 1 : 0;
-        sums.covered += row.blocked > covered_share ? 1 : 0;
-        sums.partly_blocked += row.blocked > 0.0 && row.blocked <= covered_share ? 1 : 0;
+        sums.covered += row.blocked > covered_above ? 1 : 0;
+        sums.partly_blocked += row.blocked > 0.0 && row.blocked <= covered_above ? 1 : 0;
     }
     if (sums.known == 0) {
         return {};

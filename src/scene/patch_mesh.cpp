@@ -172,10 +172,16 @@ PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
         const Grid grid = choose_grid(surface, scene, subdivision);
         grids_.push_back(grid);
         first_patch_.push_back(static_cast<std::uint32_t>(count));
-        count += std::uint64_t{grid.u} * grid.v * (surface.two_sided ? 2 : 1);
-        if (count >= (std::uint64_t{1} << 31)) {
+        const std::uint64_t most = std::uint64_t{1} << 31;
+        const std::uint64_t per_side = std::uint64_t{grid.u} * grid.v;
+        if (per_side < most) {
+            count += per_side * (surface.two_sided ? 2 : 1);
+        }
+        if (per_side >= most || count >= most) {
             throw InvalidArgument(
-                fmt::format("more than {} patches; choose larger patches", std::uint64_t{1} << 31));
+                fmt::format("surface {} (group \"{}\"), cut into {} x {}, brings the scene to {} "
+                            "patches or more; choose larger patches",
+                            first_patch_.size() - 1, groups_[surface.group], grid.u, grid.v, most));
         }
     }
     first_patch_.push_back(static_cast<std::uint32_t>(count));
@@ -202,6 +208,15 @@ PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
             }
         }
     }
+}
+
+double PatchMesh::rounding() const {
+    double magnitude = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        magnitude = std::max(magnitude, std::abs(bounds_.lower[axis]));
+        magnitude = std::max(magnitude, std::abs(bounds_.upper[axis]));
+    }
+    return std::max(1e-12 * bounds_.diagonal(), 16.0 * std::numeric_limits<double>::epsilon() * magnitude);
 }
 
 std::uint32_t PatchMesh::patches_per_side(std::uint32_t s) const {

@@ -15,6 +15,9 @@ io::FactorFile sample(std::uint32_t size) {
     for (std::uint32_t i = 0; i < size; ++i) {
         file.areas.push_back(1.0 / (i + 3.0));
         file.group_of.push_back(i % 3);
+        if (i % 9 == 4) {
+            file.contacts.push_back(i);
+        }
     }
     file.groups = {"floor", "Decke ä \"1\"", ""};
     file.geometry_hash = 0xFEDCBA9876543210u;
@@ -38,6 +41,7 @@ void require_equal(const io::FactorFile& a, const io::FactorFile& b) {
     REQUIRE(a.areas == b.areas);
     REQUIRE(a.groups == b.groups);
     REQUIRE(a.group_of == b.group_of);
+    REQUIRE(a.contacts == b.contacts);
     REQUIRE(a.geometry_hash == b.geometry_hash);
     REQUIRE(a.preset == b.preset);
     REQUIRE(a.method == b.method);
@@ -112,16 +116,18 @@ TEST_CASE("HFF: lies with a right checksum are noticed, and cost no memory", "[i
         {1, 0, raw(-1.0), "chunk AREA: an area of -1"},
         {1, 0, raw(std::nan("")), "chunk AREA: an area of nan"},
         {2, 0, raw(3u), "chunk GRUP: group 3; there are 3"},
-        {3, 0, raw(64u), "starts at row 64, where row 0 must come"},
-        {3, 4, raw(63u), "chunk ROWS: "},
-        {3, 4, raw(0xFFFFFFFFu), "chunk ROWS: shorter than its own counts say"},
-        {3, 8, raw(std::uint64_t{1} << 60), "chunk ROWS: shorter than its own counts say"},
-        {3, 8, raw(~std::uint64_t{0}), "chunk ROWS: shorter than its own counts say"},
-        {3, 16, raw(std::uint64_t{1}), "offsets must ascend"},
-        {3, 24, raw(std::uint64_t{1} << 40), "offsets must ascend"},
-        {3, environment, raw(-0.5), "environment share -0.5"},
-        {3, environment, raw(std::nan("")), "environment share nan"},
-        {3, environment + 64 * 16, raw(70u), "column"},
+        {3, 0, raw(9u), "chunk CONT: shorter than its own counts say"},
+        {3, 4, raw(70u), "chunk CONT: patch 70 in contact"},
+        {4, 0, raw(64u), "starts at row 64, where row 0 must come"},
+        {4, 4, raw(63u), "chunk ROWS: "},
+        {4, 4, raw(0xFFFFFFFFu), "chunk ROWS: shorter than its own counts say"},
+        {4, 8, raw(std::uint64_t{1} << 60), "chunk ROWS: shorter than its own counts say"},
+        {4, 8, raw(~std::uint64_t{0}), "chunk ROWS: shorter than its own counts say"},
+        {4, 16, raw(std::uint64_t{1}), "offsets must ascend"},
+        {4, 24, raw(std::uint64_t{1} << 40), "offsets must ascend"},
+        {4, environment, raw(-0.5), "environment share -0.5"},
+        {4, environment, raw(std::nan("")), "environment share nan"},
+        {4, environment + 64 * 16, raw(70u), "column"},
     };
     for (const Bad& bad : table) {
         INFO(bad.part);

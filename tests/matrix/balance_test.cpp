@@ -11,17 +11,17 @@ using namespace hemi;
 using namespace hemi::test;
 
 TEST_CASE("row_sums: tells minimum, maximum, mean and the balance apart", "[matrix]") {
-    // sums 0.75, 1, 0.25 and 0; environment 0.25, 0, 0, 0; blocked 0, 0, 0.5, 1; row 2 lacks 0.25
+    // sums 0.75, 1, 0.25 and 0; environment 0.25, 0, 0, 0; blocked 0, 0, 0.25, 1; row 2 lacks 0.5
     const FormFactorMatrix matrix = dense_matrix(
         {{0.0, 0.5, 0.25, 0.0}, {0.5, 0.0, 0.0, 0.5}, {0.0, 0.25, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0}},
-        {0.25, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.5, 1.0});
+        {0.25, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.25, 1.0});
     const RowSums sums = row_sums(matrix);
     CHECK(sums.min == 0.0);
     CHECK(sums.max == 1.0);
     CHECK(sums.mean == 0.5);
     CHECK(sums.environment_max == 0.25);
     CHECK(sums.blocked_max == 1.0);
-    CHECK(sums.balance_error_max == 0.25);
+    CHECK(sums.balance_error_max == 0.5);
     CHECK(sums.known == 4);
     CHECK(sums.leaking == 1);
     CHECK(sums.covered == 1);

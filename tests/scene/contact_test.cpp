@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <numeric>
 
 using namespace hemi;
@@ -56,6 +57,7 @@ TEST_CASE("patches_in_contact: the same ones at every scale and place and turn",
     CHECK(contacts(scaled(room_with_blocks(6), 1e6)) == expected);
     CHECK(contacts(moved(room_with_blocks(6), Vec3(1e5))) == expected);
     CHECK(contacts(rotated(room_with_blocks(6))) == expected);
+    CHECK(contacts(moved(rotated(room_with_blocks(6)), Vec3(1e5))) == expected);
 }
 
 TEST_CASE("patches_in_contact: looks at the patches asked for alone and keeps their order", "[scene]") {

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 
@@ -126,6 +127,9 @@ TEST_CASE("polygon_defect: says what is wrong with a polygon", "[scene]") {
         {"an arrow begun at its notch",
          {Vec3(0.5, 0.5, 0), Vec3(0, 2, 0), Vec3(0, 0, 0), Vec3(2, 0, 0)},
          "not convex at vertex 0"},
+        {"hardly concave",
+         {Vec3(0, 0, 0), Vec3(1, 1e-6, 0), Vec3(2, 0, 0), Vec3(1, 1, 0)},
+         "not convex at vertex 1"},
         {"coinciding vertices",
          {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)},
          "vertices 1 and 2 coincide"},

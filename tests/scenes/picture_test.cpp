@@ -3,20 +3,13 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <functional>
 
-// The functions are in the library (libstb) or, where it has headers only, made here.
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-function"
-#endif
 #include <stb_image.h>
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
 
 // The reference was made by
 //     hemi solve scenes/cornell-box.json --device osmesa --size 200x200 -o

@@ -16,7 +16,7 @@ namespace hemi {
 /// what uncovered patches give them, and else the mean of the nearest corners that have a value.
 /// Patches that touch a corner in the middle of one of their edges count as meeting there.
 /// @param values   N·channels
-/// @param blocked  b_i per patch, or empty; a patch with b_i > 0.5 is covered.
+/// @param blocked  b_i per patch, or empty; a patch with b_i > covered_above is covered.
 [[nodiscard]] std::vector<float> corner_values(const PatchMesh& mesh, std::uint32_t channels,
                                                std::span<const double> values,
                                                std::span<const double> blocked);

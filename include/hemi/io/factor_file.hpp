@@ -16,6 +16,7 @@ struct FactorFile {
     std::vector<double> areas;           ///< N
     std::vector<std::string> groups;     ///< names
     std::vector<std::uint32_t> group_of; ///< N, index into groups
+    std::vector<std::uint32_t> contacts; ///< ascending: patches that see nothing, face to face with a surface
     std::uint64_t geometry_hash = 0;     ///< PatchMesh::geometry_hash of what the rows belong to
     std::string preset = "plain";
     std::string method = "hemicube";

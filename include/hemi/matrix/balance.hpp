@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/core/covered.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 
 #include <cstdint>
@@ -18,8 +19,8 @@ struct RowSums {
     double balance_error_max = 0.0;   ///< largest |sum + e + b - 1|
     std::uint32_t known = 0;          ///< rows that were computed
     std::uint32_t leaking = 0;        ///< rows with e_i > 0
-    std::uint32_t covered = 0;        ///< rows with b_i > 0.99: the eye lies under or inside something
-    std::uint32_t partly_blocked = 0; ///< rows with 0 < b_i <= 0.99
+    std::uint32_t covered = 0;        ///< rows with b_i > covered_above
+    std::uint32_t partly_blocked = 0; ///< rows with 0 < b_i <= covered_above
 };
 [[nodiscard]] RowSums row_sums(const FormFactorMatrix& factors);
 

@@ -72,6 +72,9 @@ public:
 
     [[nodiscard]] const std::vector<std::string>& groups() const noexcept { return groups_; }
     [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
+    /// Length below which differences of coordinates are rounding: it grows with the distance of the scene
+    /// from the origin.
+    [[nodiscard]] double rounding() const;
 
     /// Hash over the corners, subdivision and sidedness of every surface, in order: equal for equal
     /// geometry, whatever the materials, lamps and names. 64-bit FNV-1a.
