@@ -65,6 +65,7 @@ void add_positional(CLI::App& app, const std::string& name, std::filesystem::pat
 }
 
 void add_common(CLI::App& app, CommonOptions& common, bool json = true) {
+    app.set_version_flag("--version", "hemi " HEMI_VERSION);
     Options options(app, "General");
     if (json) {
         options.flag("--json", common.json, "one JSON object on stdout instead of text");
@@ -78,10 +79,12 @@ void add_common(CLI::App& app, CommonOptions& common, bool json = true) {
                   });
 }
 
-void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SCENE") {
+/// @param stored  extensions of stored files that do as well
+void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SCENE",
+               const std::string& stored = "") {
     add_positional(app, name, scene.path,
-                   name == "SCENE" ? "scene: .json or .obj"
-                                   : "scene (.json, .obj) or stored file (.hff, .hres)");
+                   stored.empty() ? "scene: .json or .obj"
+                                  : fmt::format("scene (.json, .obj) or stored file ({})", stored));
     Options options(app, "Scene");
     auto* size = options.value("--patch-size", "S", "patch edges no longer than S scene units",
                                [&scene](const std::string& text) {
@@ -175,6 +178,18 @@ void add_max_memory(CLI::App& app, RowOptions& rows) {
                [&rows](const std::string& text) { rows.max_memory = parse_memory("--max-memory", text); });
 }
 
+void add_environment(CLI::App& app, SceneOptions& scene) {
+    Options options(app, "Scene");
+    options.value("--environment", "E[,E...]",
+                  "exitance of the environment, one for all channels or one for each; overrides the scene",
+                  [&scene](const std::string& text) {
+                      scene.environment.clear();
+                      for (const std::string& value : parse_list(text)) {
+                          scene.environment.push_back(parse_number("--environment", value));
+                      }
+                  });
+}
+
 void add_solver(CLI::App& app, SolverSettings& solver) {
     Options options(app, "Solver");
     options.value("--solver", "NAME", "gauss-seidel (the default) or jacobi",
@@ -217,6 +232,7 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
         "--tone-mapping", "NAME", "filmic (the default) or linear", [&picture](const std::string& text) {
             picture.tone_mapping =
                 static_cast<ToneMapping>(parse_choice("--tone-mapping", text, Words{"filmic", "linear"}));
+            picture.tone_mapping_given = true;
         }));
     for (CLI::Option* option : added) {
         if (output != nullptr) {
@@ -230,6 +246,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
     add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
     add_solver(app, a.solver);
     Options output(app, "Output");
     auto* picture = output.path("-o,--output", "PICTURE", a.picture.output,
@@ -247,7 +264,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
 }
 
 void add_factors(CLI::App& app, FactorsArguments& a) {
-    add_scene(app, a.scene, "SCENE|FILE");
+    add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
     add_max_memory(app, a.rows);
@@ -267,7 +284,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
 }
 
 void add_check(CLI::App& app, CheckArguments& a) {
-    add_scene(app, a.scene, "SCENE|FILE");
+    add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
     add_max_memory(app, a.rows);
@@ -298,9 +315,10 @@ void add_render(CLI::App& app, RenderArguments& a) {
 }
 
 void add_view(CLI::App& app, ViewArguments& a) {
-    add_scene(app, a.scene, "SCENE|RESULT");
+    add_scene(app, a.scene, "SCENE|RESULT", ".hres");
     add_rows(app, a.rows);
     add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
     add_solver(app, a.solver);
     a.picture.size = {1280, 720};
     add_picture(app, a.picture, nullptr);
@@ -324,7 +342,7 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
 }
 
 void add_info(CLI::App& app, InfoArguments& a) {
-    add_scene(app, a.scene, "SCENE|FILE");
+    add_scene(app, a.scene, "SCENE|FILE", ".hff, .hres and others");
     add_rows(app, a.rows);
     Options(app, "Output").flag("--measure", a.measure, "compute up to 64 rows for the estimate");
     for (const char* name : {"--device", "--seed", "--no-merge"}) {
@@ -391,6 +409,9 @@ Words option_names(const CLI::App& app) {
         if (other->get_option_no_throw(name) != nullptr) {
             others.push_back(other->get_name());
         }
+    }
+    if (std::find(others.begin(), others.end(), command.get_name()) != others.end()) {
+        throw InvalidArgument(fmt::format("{} belongs behind the command: {} {}", name, where, name) + see);
     }
     if (!others.empty()) {
         throw InvalidArgument(

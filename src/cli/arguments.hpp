@@ -31,6 +31,8 @@ struct SceneOptions {
     std::filesystem::path path; ///< the scene, or the stored file where a command takes either
     Subdivision subdivision;
     std::optional<Enclosure> enclosure;
+    std::vector<double>
+        environment; ///< `--environment`: one value for all channels or one for each; empty: the scene's
     std::vector<std::string> two_sided;
     bool skip_degenerate = false;
 };
@@ -53,6 +55,7 @@ struct PictureOptions {
     std::array<std::uint32_t, 2> size{800, 800};
     std::optional<double> exposure; ///< none: automatic
     ToneMapping tone_mapping = ToneMapping::filmic;
+    bool tone_mapping_given = false;
     bool flat = false;
     std::vector<std::string> show; ///< channel names; empty: all of one or three channels
     std::optional<CameraOption> camera;

@@ -15,6 +15,10 @@ namespace hemi::cli {
 void add_picture_output(Outputs& outputs, const PictureOptions& options) {
     if (options.output) {
         outputs.add("-o", *options.output, {".png", ".hdr"}, true);
+        if (extension_of(*options.output) == ".hdr" && (options.exposure || options.tone_mapping_given)) {
+            throw InvalidArgument(
+                "--exposure and --tone-mapping do not apply to .hdr, which holds the radiosity as it is");
+        }
     }
 }
 
@@ -71,8 +75,8 @@ std::array<float, 3> shown_environment(const Scene& scene, const std::array<std:
     return shown;
 }
 
-std::string write_picture(const PictureSubject& subject, const PictureOptions& options,
-                          const std::string& device) {
+WrittenPicture write_picture(const PictureSubject& subject, const PictureOptions& options,
+                             const std::string& device) {
     const auto channels = static_cast<std::uint32_t>(subject.scene.channels.size());
     const auto show = channels_to_show(subject.scene.channels, options.show);
     PictureMesh drawn = make_picture_mesh(subject.mesh, channels, subject.radiosity, subject.blocked, show);
@@ -92,10 +96,11 @@ std::string write_picture(const PictureSubject& subject, const PictureOptions& o
     } else {
         io::write_png(*options.output, picture.width, picture.height, picture.srgb);
     }
-    return fmt::format("{} ({} x {}, exposure {}{})",
-                       is_standard_output(*options.output) ? "standard output" : options.output->string(),
-                       picture.width, picture.height, number_text(settings.exposure),
-                       options.exposure ? "" : ", automatic");
+    return {fmt::format("{} ({} x {}, exposure {}{})",
+                        is_standard_output(*options.output) ? "standard output" : options.output->string(),
+                        picture.width, picture.height, number_text(settings.exposure),
+                        options.exposure ? "" : ", automatic"),
+            settings.exposure};
 }
 
 } // namespace hemi::cli

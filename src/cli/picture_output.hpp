@@ -38,10 +38,14 @@ struct PictureSubject {
     std::span<const double> blocked;
 };
 
+struct WrittenPicture {
+    std::string text; ///< one line: the path, the size, the exposure
+    double exposure = 1.0;
+};
+
 /// Draws and writes the picture.
-/// @return one line: the path, the size, the exposure.
 /// @throws NoDevice, GlError, IoError
-std::string write_picture(const PictureSubject& subject, const PictureOptions& options,
-                          const std::string& device);
+WrittenPicture write_picture(const PictureSubject& subject, const PictureOptions& options,
+                             const std::string& device);
 
 } // namespace hemi::cli

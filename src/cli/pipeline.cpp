@@ -5,6 +5,7 @@
 #include "cli/signals.hpp"
 #include "core/nearest_word.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 #include "hemi/engine/contacts.hpp"
 #include "hemi/io/scene_reader.hpp"
 
@@ -132,7 +133,31 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     if (options.enclosure) {
         scene.enclosure = *options.enclosure;
     }
-    PatchMesh mesh(scene, options.subdivision);
+    if (!options.environment.empty()) {
+        const std::size_t channels = scene.channels.size();
+        if (options.environment.size() != 1 && options.environment.size() != channels) {
+            throw InvalidArgument(fmt::format("--environment: {} values; the scene has {}, so give 1 or {}",
+                                              options.environment.size(),
+                                              plural(channels, "channel", "channels"), channels));
+        }
+        scene.environment = options.environment;
+        scene.environment.resize(channels, options.environment[0]);
+        for (const double value : scene.environment) {
+            if (!(value >= 0.0)) {
+                throw InvalidArgument(fmt::format("--environment {}; must not be negative", value));
+            }
+        }
+    }
+    PatchMesh mesh = [&] {
+        try {
+            return PatchMesh(scene, options.subdivision);
+        } catch (const InvalidArgument& error) {
+            if (options.subdivision == Subdivision{}) { // the scene's own wish
+                throw InputError(fmt::format("{}: {}", options.path.string(), error.what()));
+            }
+            throw;
+        }
+    }();
     std::vector<std::uint32_t> group_of(mesh.size());
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         group_of[i] = mesh.group(i);

@@ -33,7 +33,7 @@ ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
     const io::ResultFile result = io::read_hres(arguments.input);
     const PatchMesh mesh(result.scene, result.subdivision);
     const double load = total.seconds();
-    const std::string picture = write_picture(
+    const WrittenPicture picture = write_picture(
         {result.scene, mesh, result.radiosity, patch_exitance(result.scene, mesh), result.blocked}, options,
         arguments.device);
     const double seconds = total.seconds();
@@ -42,9 +42,10 @@ ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
                     {"picture", options.output->string()},
                     {"width", options.size[0]},
                     {"height", options.size[1]},
+                    {"exposure", picture.exposure},
                     {"seconds", {{"load", load}, {"render", seconds - load}, {"total", seconds}}}});
     } else if (!terminal.quiet()) {
-        const std::string text = summary_line("picture", picture);
+        const std::string text = summary_line("picture", picture.text);
         if (outputs.uses_standard_output()) {
             std::fputs(text.c_str(), stderr);
         } else {

@@ -141,7 +141,7 @@ Json reciprocity_json(const Reciprocity& reciprocity) {
     return {{"rms", reciprocity.rms},
             {"max", reciprocity.max},
             {"relative_rms", reciprocity.relative_rms},
-            {"worst", {reciprocity.worst_i, reciprocity.worst_j}},
+            {"worst", reciprocity.pairs > 0 ? Json{reciprocity.worst_i, reciprocity.worst_j} : Json()},
             {"pairs", reciprocity.pairs}};
 }
 

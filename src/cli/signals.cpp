@@ -1,7 +1,7 @@
 #include "cli/signals.hpp"
 
 #include "cli/exit_status.hpp"
-#include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 
 #include <atomic>
 #include <csignal>
@@ -29,16 +29,11 @@ void install_signal_handlers() {
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
+    set_interrupt_check(interrupted);
 }
 
 bool interrupted() noexcept {
     return arrived.load() > 0;
-}
-
-void stop_if_interrupted() {
-    if (interrupted()) {
-        throw Cancelled();
-    }
 }
 
 } // namespace hemi::cli

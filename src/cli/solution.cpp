@@ -3,6 +3,7 @@
 #include "cli/progress_bar.hpp"
 #include "cli/signals.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 
 #include <fmt/format.h>
 
@@ -87,6 +88,15 @@ Solution solve_scene(const LoadedScene& loaded, const FormFactorMatrix& factors,
     const std::span<const double> environment(scene.environment);
     const RadiosityProblem problem{&factors, channels, reflectance, exitance,
                                    environment.first(std::min<std::size_t>(channels, environment.size()))};
+
+    const auto dark = [](std::span<const double> values) {
+        return std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; });
+    };
+    if (dark(exitance) && dark(environment)) {
+        terminal.warn(
+            "nothing radiates: no material has exitance and the environment is dark; --environment 1 "
+            "lights an open scene");
+    }
 
     // The residual falls about geometrically: its logarithm tells how far the sweeps are.
     ProgressBar bar(terminal, "radiosity", "");

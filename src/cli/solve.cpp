@@ -135,6 +135,23 @@ std::vector<double> group_areas(const LoadedScene& loaded) {
     return areas;
 }
 
+/// Area mean per group of e or b; null for a group with rows that were not computed.
+Json share_json(const LoadedScene& loaded, const std::vector<double>& areas, const FormFactorMatrix& factors,
+                double RowView::*share) {
+    std::vector<double> values(factors.size(), 0.0);
+    std::vector<bool> known(areas.size(), true);
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        values[i] = factors.row(i).*share;
+        known[loaded.group_of[i]] = known[loaded.group_of[i]] && factors.known(i);
+    }
+    const std::vector<double> means = group_means(loaded, areas, values, 1);
+    Json json = Json::array();
+    for (std::size_t g = 0; g < means.size(); ++g) {
+        json.push_back(known[g] ? Json(means[g]) : Json());
+    }
+    return json;
+}
+
 Json to_json(const LoadedScene& loaded, const Rows& rows, const RowSums& sums, const Solution& solution,
              const Seconds& seconds) {
     const std::uint32_t channels = solution.channels;
@@ -149,6 +166,8 @@ Json to_json(const LoadedScene& loaded, const Rows& rows, const RowSums& sums, c
         {"areas", areas},
         {"radiosity", rows_json(group_means(loaded, areas, solution.radiosity, channels), channels)},
         {"exitance", rows_json(group_means(loaded, areas, solution.exitance, channels), channels)},
+        {"environment", share_json(loaded, areas, factors, &RowView::environment)},
+        {"blocked", share_json(loaded, areas, factors, &RowView::blocked)},
         {"solver", {{"name", solution.solver}, {"sweeps", solution.sweeps}, {"residual", solution.residual}}},
         {"row_sum", row_sum_json(sums)},
         {"reciprocity",
@@ -217,8 +236,9 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     if (arguments.picture.output) {
         const Stopwatch render_watch;
         picture = write_picture(
-            {loaded.scene, loaded.mesh, solution.radiosity, solution.exitance, solution.blocked},
-            arguments.picture, arguments.rows.device);
+                      {loaded.scene, loaded.mesh, solution.radiosity, solution.exitance, solution.blocked},
+                      arguments.picture, arguments.rows.device)
+                      .text;
         seconds.render = render_watch.seconds();
     }
     seconds.total = total.seconds();

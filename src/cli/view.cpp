@@ -32,6 +32,7 @@ viewer::ViewerInput make_input(const ViewArguments& arguments, const Scene& scen
     const PictureOptions& options = arguments.picture;
     viewer::ViewerInput input;
     input.title = scene.name.empty() ? arguments.scene.path.filename().string() : scene.name;
+    input.file_stem = arguments.scene.path.stem().string();
     input.mesh = &mesh;
     input.channels = static_cast<std::uint32_t>(scene.channels.size());
     input.show = channels_to_show(scene.channels, options.show);

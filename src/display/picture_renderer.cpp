@@ -4,6 +4,7 @@
 #include "gl/shaders.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 
 #include <algorithm>
 #include <array>
@@ -322,6 +323,7 @@ Picture PictureRenderer::picture(const Camera& camera, const PictureSettings& se
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, target.get());
     for (const Tile& tile : all) {
+        stop_if_interrupted();
         make_sample_target(tile.width * settings.samples, tile.height * settings.samples);
         draw_samples(camera, settings, tile);
         resolve(settings, tile, target.get(), 0, 0);

@@ -33,20 +33,37 @@ std::uint64_t changes_of_64(const std::uint32_t* row) {
 
 RowAccumulator::RowAccumulator(const DeltaFormFactors& weights, std::span<const std::uint32_t> item_of_id,
                                std::uint32_t patches)
-    : weights_(weights), item_of_id_(item_of_id), sums_(item_first_patch + patches),
-      touched_((sums_.size() + 63) / 64) {}
+    : weights_(weights), item_of_id_(item_of_id), identity_(true), sums_(item_first_patch + patches),
+      touched_((sums_.size() + 63) / 64), columns_(patches), values_(patches) {
+    for (std::uint32_t id = 0; id < item_of_id.size() && identity_; ++id) {
+        identity_ = item_of_id[id] == id;
+    }
+}
 
 void RowAccumulator::add(const std::uint32_t* ids) {
+    if (identity_) {
+        add_rows<true>(ids);
+    } else {
+        add_rows<false>(ids);
+    }
+}
+
+template <bool identity>
+void RowAccumulator::add_rows(const std::uint32_t* ids) {
     const std::uint32_t resolution = weights_.resolution();
+    // Local copies, so that the compiler need not fear that a sum overwrites them.
+    const std::uint32_t* const item_of_id = item_of_id_.data();
+    std::uint32_t* const sums = sums_.data();
+    std::uint64_t* const touched = touched_.data();
     for (std::uint32_t y = 0; y < weights_.rows(); ++y) {
-        const std::uint32_t* row = ids + std::size_t{y} * resolution;
-        const std::uint32_t* prefix = weights_.prefix_row(y).data();
+        const std::uint32_t* const row = ids + std::size_t{y} * resolution;
+        const std::uint32_t* const prefix = weights_.prefix_row(y).data();
         std::uint32_t before = prefix[0];
         const auto end_run = [&](std::uint32_t last) {
-            const std::uint32_t item = item_of_id_[row[last]];
+            const std::uint32_t item = identity ? row[last] : item_of_id[row[last]];
             const std::uint32_t upto = prefix[last + 1];
-            sums_[item] += upto - before;
-            touched_[item >> 6] |= std::uint64_t{1} << (item & 63);
+            sums[item] += upto - before;
+            touched[item >> 6] |= std::uint64_t{1} << (item & 63);
             before = upto;
         };
         std::uint32_t x = 0;
@@ -67,38 +84,34 @@ void RowAccumulator::add(const std::uint32_t* ids) {
 
 RowView RowAccumulator::take() {
     constexpr double unit = 1.0 / DeltaFormFactors::total;
-    columns_.clear();
-    values_.clear();
     RowView row;
     row.environment = sums_[item_nothing] * unit;
     row.blocked = sums_[item_blocked] * unit;
     sums_[item_nothing] = sums_[item_blocked] = 0;
     touched_[0] &= ~std::uint64_t{3};
     double sum = 0.0;
+    std::size_t entries = 0;
     for (std::size_t word = 0; word < touched_.size(); ++word) {
         for (std::uint64_t mask = touched_[word]; mask != 0; mask &= mask - 1) {
             const std::size_t item = word * 64 + static_cast<std::size_t>(std::countr_zero(mask));
-            if (sums_[item] == 0) {
-                continue; // only texels too small to weigh anything
-            }
             const auto value = static_cast<float>(sums_[item] * unit);
+            columns_[entries] = static_cast<std::uint32_t>(item - item_first_patch);
+            values_[entries] = value;
+            entries += sums_[item] != 0 ? 1 : 0; // 0: only texels too small to weigh anything
             sums_[item] = 0;
-            columns_.push_back(static_cast<std::uint32_t>(item - item_first_patch));
-            values_.push_back(value);
             sum += static_cast<double>(value);
         }
         touched_[word] = 0;
     }
+    row.columns = {columns_.data(), entries};
+    row.values = {values_.data(), entries};
     // Rounding to float costs some 1e-8 of the row's sum; entries large enough not to notice take it back.
     double missing = 1.0 - row.environment - row.blocked - sum;
-    for (float& value : values_) {
-        if (missing == 0.0) {
-            break;
-        }
-        if (static_cast<double>(value) > 1e3 * std::abs(missing)) {
-            const auto mended = static_cast<float>(static_cast<double>(value) + missing);
-            missing -= static_cast<double>(mended) - static_cast<double>(value);
-            value = mended;
+    for (std::size_t k = 0; k < entries && missing != 0.0; ++k) {
+        const auto value = static_cast<double>(values_[k]);
+        if (value > 1e3 * std::abs(missing)) {
+            values_[k] = static_cast<float>(value + missing);
+            missing -= static_cast<double>(values_[k]) - value;
         }
     }
     // What they cannot take, the shares that are doubles can; a share of exactly zero says something and
@@ -108,8 +121,6 @@ RowView RowAccumulator::take() {
     } else if (row.environment > 0.0) {
         row.environment += missing;
     }
-    row.columns = columns_;
-    row.values = values_;
     return row;
 }
 

@@ -26,8 +26,12 @@ public:
     [[nodiscard]] RowView take();
 
 private:
+    template <bool identity>
+    void add_rows(const std::uint32_t* ids);
+
     const DeltaFormFactors& weights_;
     std::span<const std::uint32_t> item_of_id_;
+    bool identity_;                      ///< draw ids are items: no look-up is needed
     std::vector<std::uint32_t> sums_;    ///< per item
     std::vector<std::uint64_t> touched_; ///< bit per item
     std::vector<std::uint32_t> columns_;

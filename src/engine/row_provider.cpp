@@ -28,8 +28,13 @@ void check_patches(std::span<const std::uint32_t> patches, std::uint32_t size) {
 class OpenBlock {
 public:
     /// @param wanted  rows of this block that will come, ascending
-    OpenBlock(std::uint32_t first_row, std::uint32_t rows, std::span<const std::uint32_t> wanted)
+    /// @param expected_entries  room to begin with: growing step by step would touch fresh memory again and
+    /// again
+    OpenBlock(std::uint32_t first_row, std::uint32_t rows, std::span<const std::uint32_t> wanted,
+              std::size_t expected_entries)
         : wanted_(wanted) {
+        block_.columns.reserve(expected_entries);
+        block_.values.reserve(expected_entries);
         block_.first_row = first_row;
         block_.begin.assign(std::size_t{rows} + 1, 0);
         block_.environment.assign(rows, 0.0);
@@ -57,8 +62,11 @@ public:
 
     [[nodiscard]] RowBlock finish() {
         fill_offsets(block_.begin.size());
-        block_.columns.shrink_to_fit();
-        block_.values.shrink_to_fit();
+        // A little room at the end was never touched, and so takes no memory; much may have been.
+        if (block_.columns.capacity() - block_.columns.size() > block_.columns.size() / 8) {
+            block_.columns.shrink_to_fit();
+            block_.values.shrink_to_fit();
+        }
         return std::move(block_);
     }
 
@@ -94,6 +102,7 @@ FormFactorMatrix compute_matrix(RowProvider& provider, std::span<const std::uint
     FormFactorMatrix matrix(size);
     std::map<std::uint32_t, OpenBlock> open_blocks;
     std::size_t done = 0;
+    std::size_t expected_entries = 0; // of a block: what the last one had, and a little more
 
     provider.rows(patches, [&](std::uint32_t patch, const RowView& row) {
         const std::uint32_t first_row = patch - patch % FormFactorMatrix::block_rows;
@@ -103,14 +112,17 @@ FormFactorMatrix compute_matrix(RowProvider& provider, std::span<const std::uint
                 throw Error(fmt::format("row {} of the form factors came twice or unasked", patch));
             }
             const std::uint32_t rows = std::min(FormFactorMatrix::block_rows, size - first_row);
-            found =
-                open_blocks.emplace(first_row, OpenBlock(first_row, rows, rows_of_block(patches, first_row)))
-                    .first;
+            found = open_blocks
+                        .emplace(first_row, OpenBlock(first_row, rows, rows_of_block(patches, first_row),
+                                                      expected_entries))
+                        .first;
         }
         OpenBlock& block = found->second;
         block.add(patch, row);
         if (block.complete()) {
-            matrix.set_block(block.finish());
+            RowBlock finished = block.finish();
+            expected_entries = finished.columns.size() + finished.columns.size() / 16;
+            matrix.set_block(std::move(finished));
             open_blocks.erase(found);
         }
         ++done;

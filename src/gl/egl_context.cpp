@@ -39,7 +39,8 @@ public:
     explicit EglContext(std::size_t index) : device_name_(fmt::format("egl:{}", index)) {
         const std::vector<EGLDeviceEXT> devices = egl_devices();
         if (index >= devices.size()) {
-            throw NoDevice(fmt::format("{}: there are {} EGL devices", device_name_, devices.size()));
+            throw NoDevice(fmt::format("{}: there is no such device; EGL devices here: {}", device_name_,
+                                       devices.size()));
         }
         const auto get_display = egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
         require(get_display != nullptr, "eglGetPlatformDisplayEXT");

@@ -1,6 +1,7 @@
 #include "io/chunk_file.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 #include "io/text_scan.hpp"
 
 #include <fmt/format.h>
@@ -117,6 +118,7 @@ ChunkReader::ChunkReader(const std::filesystem::path& path, const ChunkFormat& f
 }
 
 Payload ChunkReader::chunk(std::string_view tag) {
+    stop_if_interrupted();
     ChunkHeader header;
     if (size_ - position_ < sizeof header) {
         fail(fmt::format("cut short: chunk {} is missing at byte {}", trim(tag), position_));

@@ -249,7 +249,7 @@ private:
             node.has("name") ? node.member("name").text() : fmt::format("surface_{}", index);
         if (const auto defect = polygon_defect(surface.polygon())) {
             if (!options_.skip_degenerate || !has_no_area(surface.polygon())) {
-                polygon.fail(*defect);
+                polygon.fail(node.has("name") ? fmt::format("{} (surface \"{}\")", *defect, name) : *defect);
             }
             first_skipped_ = skipped_ == 0 ? index : first_skipped_;
             ++skipped_;

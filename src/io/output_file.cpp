@@ -1,7 +1,9 @@
 #include "hemi/io/output_file.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -113,8 +115,14 @@ void OutputFile::write(const void* data, std::size_t bytes) {
     if (stream_ == nullptr) {
         throw InvalidArgument(path_.string() + ": written to after it was complete");
     }
-    if (bytes != 0 && std::fwrite(data, 1, bytes, stream_) != bytes) {
-        fail(path_, errno);
+    constexpr std::size_t at_once = std::size_t{1} << 24;
+    const auto* from = static_cast<const char*>(data);
+    for (std::size_t done = 0; done < bytes; done += at_once) {
+        stop_if_interrupted();
+        const std::size_t part = std::min(at_once, bytes - done);
+        if (std::fwrite(from + done, 1, part, stream_) != part) {
+            fail(path_, errno);
+        }
     }
 }
 

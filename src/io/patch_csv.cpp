@@ -19,7 +19,7 @@ public:
 
     void print(TextOutput& output, std::uint32_t patch) const {
         const Vec3& c = mesh_.centres()[patch];
-        const Vec3 n = mesh_.normal(patch);
+        const Vec3 n = mesh_.normal(patch) + Vec3(0.0); // no -0
         output.print(FMT_COMPILE("{},{},{},{},{},{},{},{},{}"), patch, groups_[mesh_.group(patch)],
                      mesh_.areas()[patch], c.x, c.y, c.z, n.x, n.y, n.z);
     }

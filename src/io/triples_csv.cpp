@@ -21,6 +21,21 @@ std::string_view next_field(std::string_view& rest) {
     return field;
 }
 
+/// Whether some entry is in the last row or column.
+bool tells_size(const FormFactorMatrix& factors) {
+    const std::uint32_t last = factors.size() - 1;
+    if (!factors.row(last).columns.empty()) {
+        return true;
+    }
+    for (std::uint32_t i = 0; i < last; ++i) {
+        const RowView row = factors.row(i);
+        if (!row.columns.empty() && row.columns.back() == last) {
+            return true;
+        }
+    }
+    return false;
+}
+
 } // namespace
 
 void write_csv(const std::filesystem::path& path, const FormFactorMatrix& factors) {
@@ -32,6 +47,12 @@ void write_csv(const std::filesystem::path& path, const FormFactorMatrix& factor
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
             output.print(FMT_COMPILE("{},{},{:.9g}\n"), i, row.columns[k], row.values[k]);
         }
+    }
+    // The size is nowhere else: a zero in the last corner tells it where the last patch sees and is seen by
+    // none.
+    const std::uint32_t last = factors.size() - 1;
+    if (factors.size() > 0 && !tells_size(factors)) {
+        output.print(FMT_COMPILE("{},{},0\n"), last, last);
     }
     output.commit();
 }

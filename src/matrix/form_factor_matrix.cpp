@@ -127,12 +127,12 @@ std::uint64_t FormFactorMatrix::entries() const noexcept {
 }
 
 std::uint64_t FormFactorMatrix::memory_bytes() const noexcept {
-    std::uint64_t bytes = sizeof(*this) + blocks_.capacity() * sizeof(RowBlock);
+    std::uint64_t bytes = sizeof(*this) + blocks_.size() * sizeof(RowBlock);
     for (const RowBlock& block : blocks_) {
-        bytes += block.begin.capacity() * sizeof(std::uint64_t);
-        bytes += block.columns.capacity() * sizeof(std::uint32_t) + block.values.capacity() * sizeof(float);
-        bytes += (block.environment.capacity() + block.blocked.capacity()) * sizeof(double);
-        bytes += block.known.capacity();
+        bytes += block.begin.size() * sizeof(std::uint64_t);
+        bytes += block.columns.size() * (sizeof(std::uint32_t) + sizeof(float));
+        bytes += (block.environment.size() + block.blocked.size()) * sizeof(double);
+        bytes += block.known.size();
     }
     return bytes;
 }

@@ -257,12 +257,10 @@ private:
 
     /// Under the first free number; a folder that cannot be written to is no reason to close the window.
     void numbered_screenshot() {
-        std::string name = std::filesystem::path(input_.title).stem().string();
-        name = name.empty() ? "hemi" : name;
         std::filesystem::path path;
         int number = 1;
         do {
-            path = fmt::format("{}-{:03}.png", name, number++);
+            path = fmt::format("{}-{:03}.png", input_.file_stem, number++);
         } while (std::filesystem::exists(path));
         try {
             screenshot(path);

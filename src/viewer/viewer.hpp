@@ -12,6 +12,7 @@ namespace hemi::viewer {
 
 /// A solved scene to look at, and how to begin.
 struct ViewerInput {
+    std::string file_stem = "hemi";  ///< how the names of screenshots begin
     std::string title;               ///< name of the scene, in the window's title
     const PatchMesh* mesh = nullptr; ///< must outlive run_viewer()
     std::uint32_t channels = 1;

@@ -190,6 +190,17 @@ TEST_CASE("solve: a dash writes to stdout and the summary goes to stderr", "[cli
     CHECK(std::count(table.out.begin(), table.out.end(), '\n') == 55);
 }
 
+TEST_CASE("convert: a csv keeps the number of patches", "[cli]") {
+    const Directory directory; // the third square sees nothing and is seen by nothing
+    const std::string scene = directory.write(
+        "iso.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nv 1 1 1\nv 1 0 1\nv 0 0 9\nv 1 0 9\n"
+        "v 1 1 9\nv 0 1 9\nf 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\n");
+    REQUIRE(run_hemi(quick({"factors", scene, "-o", directory.path("iso.csv")})).status == 0);
+    REQUIRE(run_hemi({"convert", directory.path("iso.csv"), directory.path("iso.npz")}).status == 0);
+    CHECK(run_hemi({"info", directory.path("iso.npz"), "--json"}).json()["patches"] == 3);
+}
+
 TEST_CASE("render: draws a stored solution as solve drew it", "[cli]") {
     const Directory directory;
     const std::string scene = directory.write("cube.json", coloured(3));
@@ -208,10 +219,10 @@ TEST_CASE("render: draws a stored solution as solve drew it", "[cli]") {
     CHECK(run.out_has("48 x 32"));
     CHECK(directory.read("a.png") == directory.read("b.png"));
 
-    const Json shown =
-        run_hemi(with({"render", result, "-o", directory.path("c.hdr"), "--device", "osmesa", "--show",
-                       "green", "--flat", "--exposure", "2", "--tone-mapping", "linear", "--json"}))
-            .json();
+    const Json shown = run_hemi(with({"render", result, "-o", directory.path("c.hdr"), "--device", "osmesa",
+                                      "--show", "green", "--flat", "--json"}))
+                           .json();
+    CHECK(run_hemi({"render", result, "-o", directory.path("d.hdr"), "--exposure", "2"}).status == 2);
     CHECK(shown["schema"] == "hemi/render/1");
     CHECK(directory.read("c.hdr").rfind("#?RADIANCE", 0) == 0);
     CHECK(run_hemi({"render", result, "-o", "-", "--show", "green,blue"}).status == 2);
@@ -237,4 +248,19 @@ TEST_CASE("solve: pictures of two channels ask which to show, before the work", 
     CHECK(
         run_hemi(quick({"solve", path, "-o", directory.path("a.png"), "--show", "infrared,visible,visible"}))
             .status == 0);
+}
+
+TEST_CASE("solve: the environment of the command line lights an OBJ, and darkness is told", "[cli]") {
+    const Directory directory;
+    const std::string plate = directory.write("plate.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    const Outcome dark = run_hemi(quick({"solve", plate, "--json"}));
+    REQUIRE(dark.status == 0);
+    CHECK(dark.json()["radiosity"][0][0] == 0.0);
+    CHECK_THAT(dark.err, Catch::Contains("nothing radiates"));
+    const Outcome lit = run_hemi(quick({"solve", plate, "--json", "--environment", "3"}));
+    REQUIRE(lit.status == 0);
+    CHECK(lit.json()["radiosity"][0][0].get<double>() == Approx(1.5)); // reflectance 0.5, nothing in the way
+    CHECK_THAT(lit.err, !Catch::Contains("nothing radiates"));
+    CHECK(run_hemi(quick({"solve", plate, "--environment", "1,2"})).status == 2);
+    CHECK(run_hemi(quick({"solve", plate, "--environment", "-1"})).status == 2);
 }

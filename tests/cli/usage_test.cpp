@@ -162,7 +162,7 @@ TEST_CASE("Command line: colour and quiet are honoured", "[cli]") {
     CHECK_FALSE(run_hemi(bad).err_has("\x1b["));
     CHECK(run_hemi(with({"--color", "always"})).err_has("\x1b["));
     CHECK_FALSE(run_hemi(with({"--color", "never"}), {"CLICOLOR_FORCE=1"}).err_has("\x1b["));
-    CHECK(run_hemi(bad, {"CLICOLOR_FORCE=1", "NO_COLOR"}).err_has("\x1b["));
+    CHECK(run_hemi(bad, {"CLICOLOR_FORCE=1", "NO_COLOR", "TERM=xterm"}).err_has("\x1b["));
     CHECK_FALSE(run_hemi(bad, {"CLICOLOR_FORCE=1", "NO_COLOR=1"}).err_has("\x1b["));
     CHECK(run_hemi(with({"-q"})).err_has("missing.json")); // errors stay
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <utility>
 
 namespace hemi::bench {
@@ -11,6 +12,12 @@ namespace {
 
 constexpr double most_bytes = 4e8;
 constexpr double bytes_per_entry = sizeof(std::uint32_t) + sizeof(float);
+
+double clock_seconds(clockid_t clock) {
+    timespec time{};
+    clock_gettime(clock, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 struct Pass {
     double seconds;
@@ -65,6 +72,13 @@ double median_ratio(const Series& slow, const Series& fast) {
     return median(std::move(ratios));
 }
 
+CoreShare::CoreShare()
+    : wall_(clock_seconds(CLOCK_MONOTONIC)), processor_(clock_seconds(CLOCK_PROCESS_CPUTIME_ID)) {}
+
+double CoreShare::so_far() const {
+    return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - processor_) / (clock_seconds(CLOCK_MONOTONIC) - wall_);
+}
+
 Subject row_subject(RowProvider& provider, std::vector<std::uint32_t> rows, double seconds) {
     return [&provider, rows = std::move(rows), seconds] {
         double elapsed = 0.0;
@@ -77,7 +91,7 @@ Subject row_subject(RowProvider& provider, std::vector<std::uint32_t> rows, doub
     };
 }
 
-std::uint32_t rows_within(RowProvider& provider, double seconds) {
+std::uint32_t rows_within(RowProvider& provider, double seconds, std::uint32_t least) {
     const std::uint32_t size = provider.size();
     static_cast<void>(compute(provider, spread_rows(size, 1, 1)));
     std::uint32_t rows = 4;
@@ -87,7 +101,8 @@ std::uint32_t rows_within(RowProvider& provider, double seconds) {
         const auto computed = static_cast<double>(sample.size());
         if (pass.seconds >= 0.1 * seconds || sample.size() == size) {
             const double bytes_per_row = std::max(1.0, bytes_per_entry * pass.entries / computed);
-            const double wanted = std::min(computed * seconds / pass.seconds, most_bytes / bytes_per_row);
+            const double in_time = std::max(computed * seconds / pass.seconds, static_cast<double>(least));
+            const double wanted = std::min(in_time, most_bytes / bytes_per_row);
             return static_cast<std::uint32_t>(std::clamp(wanted, 1.0, static_cast<double>(size)));
         }
         rows *= 2;

@@ -27,13 +27,25 @@ using Series = std::vector<double>;
 /// Median over the rounds of `slow` / `fast`.
 [[nodiscard]] double median_ratio(const Series& slow, const Series& fast);
 
+/// How much of one core this process has had since a moment: 1 where nothing else wanted it. Of use while a
+/// single thread computes.
+class CoreShare {
+public:
+    CoreShare();
+    [[nodiscard]] double so_far() const;
+
+private:
+    double wall_;
+    double processor_;
+};
+
 /// Seconds a row: computes the rows as a matrix, again and again until `seconds` have passed.
 /// @param provider  must outlive the subject.
 [[nodiscard]] Subject row_subject(RowProvider& provider, std::vector<std::uint32_t> rows, double seconds);
 
-/// About how many rows `provider` computes in `seconds`; at most all, and no more than fit into a few hundred
-/// megabytes as a matrix. Starts its contexts and workers.
-[[nodiscard]] std::uint32_t rows_within(RowProvider& provider, double seconds);
+/// About how many rows `provider` computes in `seconds`, but `least`; at most all, and no more than fit into
+/// a few hundred megabytes as a matrix. Starts its contexts and workers.
+[[nodiscard]] std::uint32_t rows_within(RowProvider& provider, double seconds, std::uint32_t least = 1);
 
 /// About `rows` rows: runs of `together` neighbours, spread evenly over `size` patches.
 [[nodiscard]] std::vector<std::uint32_t> spread_rows(std::uint32_t size, std::uint32_t rows,

@@ -1,0 +1,226 @@
+#include "benchmark/measurements.hpp"
+
+#include "benchmark/naive_rows.hpp"
+#include "benchmark/program.hpp"
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include <unistd.h>
+
+namespace hemi::bench {
+
+namespace {
+
+constexpr std::uint32_t usual_resolution = 128;
+constexpr std::uint32_t compared_rows = 48;
+
+// Blocks of rows for each worker: the more, the less it weighs that one ends before the other.
+constexpr std::uint32_t few_blocks = 4;
+constexpr std::uint32_t many_blocks = 16;
+
+double per_second(const Series& seconds_per_row) {
+    return 1.0 / median(seconds_per_row);
+}
+
+std::string workers_text(std::uint32_t workers) {
+    return workers == 0 ? "one core" : fmt::format("{} worker{}", workers, workers == 1 ? "" : "s");
+}
+
+/// A file name of its own in the temporary folder; the file goes when this does.
+class TemporaryPicture {
+public:
+    TemporaryPicture()
+        : path_(std::filesystem::temp_directory_path() / fmt::format("hemi-bench-{}.png", getpid())) {}
+    ~TemporaryPicture() {
+        std::error_code ignored;
+        std::filesystem::remove(path_, ignored);
+    }
+    TemporaryPicture(const TemporaryPicture&) = delete;
+    TemporaryPicture& operator=(const TemporaryPicture&) = delete;
+    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+} // namespace
+
+HemicubeSettings Measurements::settings(std::uint32_t resolution) const {
+    HemicubeSettings settings;
+    settings.resolution = resolution;
+    settings.seed = setup_.seed;
+    return settings;
+}
+
+std::unique_ptr<RowProvider> Measurements::engine(const Case& scene, const HemicubeSettings& settings,
+                                                  std::uint32_t workers) const {
+    EngineSettings where;
+    where.device = setup_.device;
+    where.jobs = workers;
+    where.worker_program = workers == 0 ? "" : setup_.worker_program;
+    return make_hemicube_engine(scene.mesh, settings, where);
+}
+
+std::vector<std::uint32_t> Measurements::rows_for(RowProvider& single, std::uint32_t blocks_a_worker) const {
+    // Whole blocks of the matrix, as workers are given them.
+    constexpr std::uint32_t together = FormFactorMatrix::block_rows;
+    const std::uint32_t least = std::max(1u, setup_.workers) * blocks_a_worker * together;
+    return spread_rows(single.size(), rows_within(single, setup_.effort.seconds, least), together);
+}
+
+Subject Measurements::subject(RowProvider& provider, std::vector<std::uint32_t> rows) const {
+    return row_subject(provider, std::move(rows), setup_.effort.seconds);
+}
+
+void Measurements::compare_rows(const Case& scene) {
+    const HemicubeSettings compared = settings(usual_resolution);
+    const auto ours = engine(scene, compared, 0);
+    NaiveRows naive(scene.mesh, compared, setup_.device);
+    const double difference = row_difference(naive, *ours, spread_rows(scene.mesh.size(), compared_rows, 1));
+    report_.scene(scene.name, scene.mesh.size(), scene.mesh.surfaces().size(), difference);
+    if (difference > most_difference) {
+        throw Error(fmt::format("{}: naive and engine rows differ by {:.1e} of a row, more than {:g}: they "
+                                "do not do the same work, so their times cannot be compared",
+                                scene.name, difference, most_difference));
+    }
+}
+
+Cell Measurements::cell(const Case& scene, std::uint32_t resolution) const {
+    const HemicubeSettings timed = settings(resolution);
+    const auto single = engine(scene, timed, 0);
+    NaiveRows naive(scene.mesh, timed, setup_.device);
+    const auto rows = rows_for(*single, few_blocks);
+    const std::uint32_t naive_rows = rows_within(naive, setup_.effort.seconds);
+
+    std::vector<Subject> subjects{subject(*single, rows),
+                                  subject(naive, spread_rows(naive.size(), naive_rows, 1))};
+    std::vector<std::unique_ptr<RowProvider>> pools;
+    if (setup_.workers > 0) {
+        for (const std::uint32_t workers : {1u, setup_.workers}) {
+            pools.push_back(engine(scene, timed, workers));
+            static_cast<void>(rows_within(*pools.back(), 0.0)); // starts the workers
+            subjects.push_back(subject(*pools.back(), rows));
+        }
+    }
+    const auto series = time_interleaved(subjects, setup_.effort.rounds);
+
+    Cell result{scene.name, scene.mesh.size(), resolution, per_second(series[0]), {}, {}, 0.0, 0.0};
+    result.naive = per_second(series[1]);
+    result.ratio = median_ratio(series[1], series[0]);
+    if (setup_.workers > 0) {
+        result.one_worker = per_second(series[2]);
+        result.all_workers = per_second(series[3]);
+    }
+    return result;
+}
+
+void Measurements::table(const Case& scene) {
+    compare_rows(scene);
+    for (const std::uint32_t resolution : {64u, 128u, 256u, 512u}) {
+        report_.cell(cell(scene, resolution));
+    }
+}
+
+void Measurements::naive_target(std::uint32_t patches, double least_ratio) {
+    const Case room = make_room(patches);
+    const HemicubeSettings timed = settings(usual_resolution);
+    const auto single = engine(room, timed, 0);
+    NaiveRows naive(room.mesh, timed, setup_.device);
+    const auto compared = spread_rows(room.mesh.size(), compared_rows, 1);
+    const double difference = row_difference(naive, *single, compared);
+    report_.finding({fmt::format("naive and engine rows differ, {} patches", room.mesh.size()),
+                     100.0 * difference, "%", Bound::at_most, 100.0 * most_difference});
+    const std::array<Subject, 2> subjects{
+        subject(*single, rows_for(*single, few_blocks)),
+        subject(naive, spread_rows(naive.size(), rows_within(naive, setup_.effort.seconds), 1))};
+    const CoreShare share;
+    const auto series = time_interleaved(subjects, setup_.effort.rounds);
+    const double core_percent = 100.0 * share.so_far();
+    report_.finding({fmt::format("speed over naive, {} patches, one core each", room.mesh.size()),
+                     median_ratio(series[1], series[0]), "x", Bound::at_least, least_ratio});
+    report_.finding(
+        {"  of that core, this program got (less than 95: the machine is busy)", core_percent, "%"});
+}
+
+void Measurements::growth_target(std::uint32_t few, std::uint32_t many, double most_ratio) {
+    const Case room_of_few = make_room(few);
+    const Case room_of_many = make_room(many);
+    growth(0, room_of_few, room_of_many, most_ratio);
+    if (setup_.workers > 1) {
+        growth(setup_.workers, room_of_few, room_of_many, most_ratio);
+    }
+}
+
+void Measurements::growth(std::uint32_t workers, const Case& few, const Case& many, double most_ratio) {
+    const HemicubeSettings timed = settings(usual_resolution);
+    const auto with_few = engine(few, timed, workers);
+    const auto with_many = engine(many, timed, workers);
+    const std::array<Subject, 2> subjects{subject(*with_few, rows_for(*with_few, many_blocks)),
+                                          subject(*with_many, rows_for(*with_many, many_blocks))};
+    const auto series = time_interleaved(subjects, setup_.effort.rounds);
+    report_.finding({fmt::format("cost of a row, {} patches over {}, {}", many.mesh.size(), few.mesh.size(),
+                                 workers_text(workers)),
+                     median_ratio(series[1], series[0]), "x", Bound::at_most, most_ratio});
+}
+
+void Measurements::workers_target(std::uint32_t patches, double least_ratio) {
+    if (setup_.workers < 2) {
+        return;
+    }
+    const Case room = make_room(patches);
+    const HemicubeSettings timed = settings(usual_resolution);
+    const auto one = engine(room, timed, 1);
+    const auto two = engine(room, timed, 2);
+    const auto rows = rows_for(*one, many_blocks);
+    static_cast<void>(rows_within(*two, 0.0)); // starts the workers
+    const std::array<Subject, 2> subjects{subject(*one, rows), subject(*two, rows)};
+    const auto series = time_interleaved(subjects, setup_.effort.rounds);
+    report_.finding({fmt::format("speed of two workers over one, {} patches", room.mesh.size()),
+                     median_ratio(series[0], series[1]), "x", Bound::at_least, least_ratio});
+}
+
+void Measurements::scene_rate(const Case& scene) {
+    const HemicubeSettings timed = settings(usual_resolution);
+    const auto provider = engine(scene, timed, setup_.workers);
+    const auto rows = rows_for(*provider, many_blocks);
+    const std::array<Subject, 1> subjects{subject(*provider, rows)};
+    const auto series = time_interleaved(subjects, setup_.effort.rounds);
+    report_.finding(
+        {fmt::format("{}, {} patches, {}", scene.name, scene.mesh.size(), workers_text(setup_.workers)),
+         per_second(series[0]), "rows/s"});
+}
+
+void Measurements::merging_target(const Case& scene, double least_ratio) {
+    const HemicubeSettings merged = settings(usual_resolution);
+    HemicubeSettings unmerged = merged;
+    unmerged.merge_lattices = false;
+    const auto fast = engine(scene, merged, setup_.workers);
+    const auto slow = engine(scene, unmerged, setup_.workers);
+    const auto rows = rows_for(*slow, many_blocks);
+    static_cast<void>(rows_within(*fast, 0.0)); // starts the workers
+    const std::array<Subject, 2> subjects{subject(*fast, rows), subject(*slow, rows)};
+    const auto series = time_interleaved(subjects, setup_.effort.rounds);
+    const std::string what =
+        fmt::format("{}, {} patches, {}", scene.name, scene.mesh.size(), workers_text(setup_.workers));
+    report_.finding({what + ", merging", per_second(series[0]), "rows/s"});
+    report_.finding({what + ", merging off", per_second(series[1]), "rows/s"});
+    report_.finding({scene.name + ", speed with merging over without", median_ratio(series[1], series[0]),
+                     "x", Bound::at_least, least_ratio});
+}
+
+void Measurements::solve_target(const std::filesystem::path& hemi, const std::filesystem::path& scene,
+                                unsigned runs, double most_seconds) {
+    const TemporaryPicture picture;
+    const std::vector<std::string> arguments{"solve",    scene.string(), "-q", "-o", picture.path().string(),
+                                             "--device", setup_.device};
+    const std::array<Subject, 1> subjects{[&] { return run_timed(hemi, arguments); }};
+    const auto series = time_interleaved(subjects, runs);
+    report_.finding({fmt::format("hemi solve {}, wall time, median of {}", scene.filename().string(), runs),
+                     median(series[0]), "s", Bound::at_most, most_seconds});
+}
+
+} // namespace hemi::bench

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "benchmark/cases.hpp"
+#include "benchmark/report.hpp"
+#include "benchmark/timing.hpp"
+#include "hemi/engine/engine.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace hemi::bench {
+
+/// What is measured, on which device, and how long.
+struct Setup {
+    std::string device = "auto";
+    std::string worker_program;
+    std::uint32_t workers = 1; ///< processes; 0: none, a GPU
+    Effort effort{0.5, 3};
+    std::uint64_t seed = 0;
+};
+
+/// What naive and engine rows may differ by and still be the same work, of a row.
+inline constexpr double most_difference = 2e-3;
+
+/// Lines of the report, each timed when it is asked for.
+class Measurements {
+public:
+    Measurements(Setup setup, Report& report) : setup_(std::move(setup)), report_(report) {}
+
+    /// Compares naive and engine rows, then times the case at every resolution.
+    /// @throws Error if the rows differ by more than most_difference
+    void table(const Case& scene);
+
+    /// One core each, room of `patches` patches, resolution 128. Compares the rows first.
+    void naive_target(std::uint32_t patches, double least_ratio);
+    /// What a row of the room of `many` patches costs, over one of `few`.
+    void growth_target(std::uint32_t few, std::uint32_t many, double most_ratio);
+    void workers_target(std::uint32_t patches, double least_ratio);
+    void scene_rate(const Case& scene);
+    void merging_target(const Case& scene, double least_ratio);
+    /// Wall time of `hemi solve SCENE -o PICTURE`.
+    void solve_target(const std::filesystem::path& hemi, const std::filesystem::path& scene, unsigned runs,
+                      double most_seconds);
+
+private:
+    [[nodiscard]] HemicubeSettings settings(std::uint32_t resolution) const;
+    /// @param workers  processes; 0: one context of this process
+    [[nodiscard]] std::unique_ptr<RowProvider> engine(const Case& scene, const HemicubeSettings& settings,
+                                                      std::uint32_t workers) const;
+    /// Rows for comparing engines on a scene: what `single` computes in a run, or enough for all workers.
+    [[nodiscard]] std::vector<std::uint32_t> rows_for(RowProvider& single,
+                                                      std::uint32_t blocks_a_worker) const;
+    [[nodiscard]] Subject subject(RowProvider& provider, std::vector<std::uint32_t> rows) const;
+    void compare_rows(const Case& scene);
+    [[nodiscard]] Cell cell(const Case& scene, std::uint32_t resolution) const;
+    void growth(std::uint32_t workers, const Case& few, const Case& many, double most_ratio);
+
+    Setup setup_;
+    Report& report_;
+};
+
+} // namespace hemi::bench

@@ -1,0 +1,133 @@
+#include "benchmark/report.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <fstream>
+#include <utility>
+
+namespace hemi::bench {
+
+namespace {
+
+template <typename... Args>
+void line(fmt::format_string<Args...> format, Args&&... arguments) {
+    fmt::print(format, std::forward<Args>(arguments)...);
+    std::putchar('\n');
+    std::fflush(stdout);
+}
+
+std::string rate(const std::optional<double>& hemicubes) {
+    return hemicubes ? fmt::format("{:.{}f}", *hemicubes, *hemicubes < 100.0 ? 1 : 0) : "-";
+}
+
+double megapixels(const Cell& cell) {
+    const double fastest = cell.all_workers.value_or(cell.one_core);
+    return 3e-6 * cell.resolution * cell.resolution * fastest;
+}
+
+std::string bound_text(const Finding& finding) {
+    if (finding.bound == Bound::none) {
+        return "";
+    }
+    return fmt::format("target {} {:g} {}", finding.bound == Bound::at_least ? ">=" : "<=", finding.limit,
+                       finding.met() ? "met" : "MISSED");
+}
+
+nlohmann::json to_json(const Cell& cell) {
+    const auto value = [](const std::optional<double>& number) {
+        return number ? nlohmann::json(*number) : nlohmann::json();
+    };
+    return {{"scene", cell.scene},
+            {"patches", cell.patches},
+            {"resolution", cell.resolution},
+            {"hemicubes_per_second",
+             {{"one_core", cell.one_core},
+              {"one_worker", value(cell.one_worker)},
+              {"all_workers", value(cell.all_workers)},
+              {"naive", cell.naive}}},
+            {"megapixels_per_second", megapixels(cell)},
+            {"ratio_to_naive", cell.ratio}};
+}
+
+nlohmann::json to_json(const Finding& finding) {
+    nlohmann::json json{{"what", finding.what}, {"value", finding.value}, {"unit", finding.unit}};
+    if (finding.bound != Bound::none) {
+        json[finding.bound == Bound::at_least ? "at_least" : "at_most"] = finding.limit;
+        json["met"] = finding.met();
+    }
+    return json;
+}
+
+} // namespace
+
+Report::Report(Circumstances circumstances) : circumstances_(std::move(circumstances)) {
+    line("renderer  {}", circumstances_.renderer);
+    line("cores     {}", circumstances_.cores);
+    line("compiler  {}, {}", HEMI_BENCH_COMPILER, HEMI_BENCH_BUILD_TYPE);
+    line("settings  seed {}; medians of {} interleaved runs of {:g} s or more", circumstances_.seed,
+         circumstances_.rounds, circumstances_.run_seconds);
+}
+
+void Report::table_head() const {
+    line("");
+    line("Hemicubes/s, sparse rows included. Naive draws all patches five times a row and reads five faces");
+    line("back; one core: one context of one thread, as naive has; workers: with their processes' traffic.");
+    line("");
+    line("{:16} {:>7} {:>4} {:>9} {:>9} {:>10} {:>9} {:>9} {:>9}", "scene", "patches", "res", "one core",
+         "1 worker", fmt::format("{} workers", circumstances_.workers), "Mpixels/s", "naive", "x naive");
+}
+
+void Report::scene(const std::string& name, std::uint32_t patches, std::size_t polygons, double difference) {
+    agreements_.push_back({name, patches, difference});
+    line("{}: {} patches on {} polygons; naive rows and these differ by {:.1e} of a row", name, patches,
+         polygons, difference);
+}
+
+void Report::cell(const Cell& cell) {
+    cells_.push_back(cell);
+    line("{:16} {:>7} {:>4} {:>9} {:>9} {:>10} {:>9.1f} {:>9} {:>9.1f}", cell.scene, cell.patches,
+         cell.resolution, rate(cell.one_core), rate(cell.one_worker), rate(cell.all_workers),
+         megapixels(cell), rate(cell.naive), cell.ratio);
+}
+
+void Report::findings_head() const {
+    line("");
+}
+
+void Report::finding(const Finding& finding) {
+    findings_.push_back(finding);
+    const int digits = finding.value < 100.0 ? 2 : 0;
+    line("{:68} {:>9.{}f} {:7} {}", finding.what, finding.value, digits, finding.unit, bound_text(finding));
+}
+
+void Report::write_json(const std::filesystem::path& file) const {
+    nlohmann::json json{{"renderer", circumstances_.renderer},       {"cores", circumstances_.cores},
+                        {"workers", circumstances_.workers},         {"compiler", HEMI_BENCH_COMPILER},
+                        {"build_type", HEMI_BENCH_BUILD_TYPE},       {"seed", circumstances_.seed},
+                        {"run_seconds", circumstances_.run_seconds}, {"rounds", circumstances_.rounds},
+                        {"agreement", nlohmann::json::array()},      {"table", nlohmann::json::array()},
+                        {"findings", nlohmann::json::array()}};
+    for (const Agreement& agreement : agreements_) {
+        json["agreement"].push_back({{"scene", agreement.scene},
+                                     {"patches", agreement.patches},
+                                     {"difference", agreement.difference}});
+    }
+    for (const Cell& one : cells_) {
+        json["table"].push_back(to_json(one));
+    }
+    for (const Finding& one : findings_) {
+        json["findings"].push_back(to_json(one));
+    }
+    std::ofstream stream(file);
+    stream << json.dump(2) << '\n';
+    stream.close();
+    if (!stream) {
+        throw IoError(fmt::format("{}: cannot be written", file.string()));
+    }
+}
+
+} // namespace hemi::bench
