@@ -198,7 +198,8 @@ std::unique_ptr<RowProvider> make_engine(const PatchMesh& mesh, const RowOptions
     EngineSettings settings;
     settings.device = options.device;
     settings.jobs = options.jobs;
-    settings.worker_program = std::filesystem::read_symlink("/proc/self/exe").string();
+    settings.worker_program =
+        "/proc/self/exe"; // the very file that runs, even if its name is another's by now
     return std::make_unique<StoppableEngine>(
         make_hemicube_engine(mesh, hemicube_settings(options), settings));
 }

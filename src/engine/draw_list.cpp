@@ -38,7 +38,8 @@ public:
         list_.item_of_id = {item_nothing, item_blocked};
         list_.polygon_of_surface.assign(mesh_.surfaces().size(), none);
         if (merge_lattices_) {
-            for (const MergedLattice& lattice : find_lattices(mesh_, surface_vertices_, positions_)) {
+            for (const MergedLattice& lattice :
+                 find_lattices(mesh_, surface_vertices_, positions_, touching())) {
                 add_lattice(lattice);
             }
         }
@@ -65,6 +66,8 @@ private:
         positions_ = welder.points();
     }
 
+    [[nodiscard]] TouchingTolerance touching() const { return {mesh_.bounds().diagonal(), list_.tolerance}; }
+
     static void check_grid(Grid grid) {
         if (grid.u > 65535 || grid.v > 65535) {
             throw InvalidArgument(fmt::format(
@@ -83,8 +86,9 @@ private:
         return static_cast<std::uint32_t>(first);
     }
 
-    /// @return false if the patches do not fill the cells one to one (then nothing was added).
-    bool add_lattice(const MergedLattice& lattice) {
+    /// Adds a lattice as one polygon, unless its patches do not fill the cells one to one.
+    void add_lattice(const MergedLattice& lattice) {
+        check_grid(lattice.cells);
         const std::uint32_t split = lattice.split ? 1 : 0;
         const Vec3& origin = positions_[lattice.vertices[0]];
         const Vec3 u = positions_[lattice.vertices[1]] - origin;
@@ -118,7 +122,7 @@ private:
         }
         if (filled != (std::size_t{lattice.cells.u} * lattice.cells.v) << split) {
             list_.item_of_id.resize(ids_before);
-            return false;
+            return;
         }
         const auto gu = static_cast<double>(lattice.cells.u);
         const auto gv = static_cast<double>(lattice.cells.v);
@@ -131,7 +135,6 @@ private:
                              {lattice.vertices[3], 0.0, gv}});
         polygon.normal = cross / std::sqrt(squared);
         list_.polygons.push_back(polygon);
-        return true;
     }
 
     void add_surface(std::uint32_t s) {
@@ -141,61 +144,104 @@ private:
         polygon.grid = mesh_.grid(s);
         polygon.normal = mesh_.surface_normal(s);
         check_grid(polygon.grid);
-        auto gu = static_cast<double>(polygon.grid.u);
-        auto gv = static_cast<double>(polygon.grid.v);
+        const auto gu = static_cast<double>(polygon.grid.u);
+        const auto gv = static_cast<double>(polygon.grid.v);
         const bool one_patch = mesh_.patches_per_side(s) == 1;
         Outline outline;
+        std::uint32_t start = 0; // corner that the polygon's grid begins at
         if (surface.vertex_count == 3) {
             polygon.split = one_patch ? 0 : 1;
             outline = {{vertices[0], 0.0, 0.0}, {vertices[1], gu, 0.0}, {vertices[2], 0.0, gv}};
-        } else {
-            std::array<double, 2> far_corner{1.0, 1.0};
-            if (!one_patch) {
-                far_corner = frame_coordinates(surface);
-                polygon.bilinear =
-                    std::abs(far_corner[0] - 1.0) + std::abs(far_corner[1] - 1.0) > 1e-6 ? 1 : 0;
-            }
-            if (polygon.bilinear != 0) {
-                polygon.twist_u = static_cast<float>(far_corner[0] - 1.0);
-                polygon.twist_v = static_cast<float>(far_corner[1] - 1.0);
-                gu = gv = 1.0;
-            } else {
-                far_corner = {1.0, 1.0};
-            }
+        } else if (one_patch || is_parallelogram(surface)) {
             outline = {{vertices[0], 0.0, 0.0},
                        {vertices[1], gu, 0.0},
-                       {vertices[2], gu * far_corner[0], gv * far_corner[1]},
+                       {vertices[2], gu, gv},
                        {vertices[3], 0.0, gv}};
+        } else {
+            start = sharpest_corner(surface);
+            const auto far_corner = frame_coordinates(surface, start);
+            polygon.bilinear = 1;
+            polygon.twist_u = static_cast<float>(far_corner[0] - 1.0);
+            polygon.twist_v = static_cast<float>(far_corner[1] - 1.0);
+            if (start % 2 == 1) {
+                polygon.grid = {polygon.grid.v, polygon.grid.u};
+            }
+            outline = {{vertices[start], 0.0, 0.0},
+                       {vertices[(start + 1) % 4], 1.0, 0.0},
+                       {vertices[(start + 2) % 4], far_corner[0], far_corner[1]},
+                       {vertices[(start + 3) % 4], 0.0, 1.0}};
         }
         polygon.front_id = reserve_ids(polygon.grid, polygon.split);
-        fill_ids(s, polygon, polygon.front_id, 0);
+        fill_ids(s, polygon, polygon.front_id, 0, start);
         if (surface.two_sided) {
             polygon.back_id = reserve_ids(polygon.grid, polygon.split);
-            fill_ids(s, polygon, polygon.back_id, mesh_.patches_per_side(s));
+            fill_ids(s, polygon, polygon.back_id, mesh_.patches_per_side(s), start);
         }
         list_.polygon_of_surface[s] = static_cast<std::uint32_t>(list_.polygons.size());
         list_.polygons.push_back(polygon);
         outlines_.push_back(std::move(outline));
     }
 
-    /// Corner 2 of a quadrilateral in the frame of corners 0, 1 and 3.
-    static std::array<double, 2> frame_coordinates(const Surface& surface) {
+    static bool is_parallelogram(const Surface& surface) {
         const auto& p = surface.vertices;
-        const Vec3 u = p[1] - p[0];
-        const Vec3 v = p[3] - p[0];
+        const double edge = std::min(glm::length(p[1] - p[0]), glm::length(p[3] - p[0]));
+        return glm::length(p[0] - p[1] + p[2] - p[3]) <= 1e-6 * edge;
+    }
+
+    /// The corner whose edges span the largest area: the best frame for the grid. Another one may be
+    /// straight.
+    static std::uint32_t sharpest_corner(const Surface& surface) {
+        const auto& p = surface.vertices;
+        std::uint32_t best = 0;
+        double largest = -1.0;
+        for (std::uint32_t c = 0; c < 4; ++c) {
+            const double area = glm::length(glm::cross(p[(c + 1) % 4] - p[c], p[(c + 3) % 4] - p[c]));
+            if (area > largest) {
+                largest = area;
+                best = c;
+            }
+        }
+        return best;
+    }
+
+    /// The corner opposite to `start` in the frame of `start` and its two neighbours.
+    static std::array<double, 2> frame_coordinates(const Surface& surface, std::uint32_t start) {
+        const auto& p = surface.vertices;
+        const Vec3 u = p[(start + 1) % 4] - p[start];
+        const Vec3 v = p[(start + 3) % 4] - p[start];
         const Vec3 cross = glm::cross(u, v);
-        const Vec3 far_corner = p[2] - p[0];
+        const Vec3 far_corner = p[(start + 2) % 4] - p[start];
         const double squared = glm::dot(cross, cross);
         return {glm::dot(glm::cross(far_corner, v), cross) / squared,
                 glm::dot(glm::cross(u, far_corner), cross) / squared};
     }
 
-    void fill_ids(std::uint32_t s, const DrawPolygon& polygon, std::uint32_t first_id, std::uint32_t offset) {
+    /// Cell of the surface's patch (i, j) on a grid that begins at corner `start`.
+    static std::uint32_t turned_cell(Grid surface_grid, std::uint32_t i, std::uint32_t j,
+                                     std::uint32_t start) {
+        const std::uint32_t last_i = surface_grid.u - 1;
+        const std::uint32_t last_j = surface_grid.v - 1;
+        switch (start) {
+        case 0:
+            return j * surface_grid.u + i;
+        case 1:
+            return (last_i - i) * surface_grid.v + j;
+        case 2:
+            return (last_j - j) * surface_grid.u + (last_i - i);
+        default:
+            return i * surface_grid.v + (last_j - j);
+        }
+    }
+
+    void fill_ids(std::uint32_t s, const DrawPolygon& polygon, std::uint32_t first_id, std::uint32_t offset,
+                  std::uint32_t start) {
         const std::uint32_t first_item = item_first_patch + mesh_.first_patch(s) + offset;
         const std::uint32_t per_side = mesh_.patches_per_side(s);
         if (polygon.split == 0) {
+            const Grid grid = mesh_.grid(s);
             for (std::uint32_t local = 0; local < per_side; ++local) {
-                list_.item_of_id[first_id + local] = first_item + local;
+                const std::uint32_t cell = turned_cell(grid, local % grid.u, local / grid.u, start);
+                list_.item_of_id[first_id + cell] = first_item + local;
             }
             return;
         }
@@ -223,7 +269,7 @@ private:
     }
 
     void finish_outlines() {
-        insert_touching_vertices(outlines_, positions_, 1e-7 * mesh_.bounds().diagonal());
+        insert_touching_vertices(outlines_, positions_, touching());
         std::vector<std::uint32_t> compact(positions_.size(), none);
         for (std::size_t p = 0; p < outlines_.size(); ++p) {
             DrawPolygon& polygon = list_.polygons[p];

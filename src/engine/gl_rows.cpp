@@ -6,6 +6,7 @@
 #include "gl/context.hpp"
 
 #include <algorithm>
+#include <deque>
 
 namespace hemi {
 
@@ -40,12 +41,16 @@ struct GlRows::State {
           views(geometry.list, buffers.slots()),
           accumulator(weights, geometry.list.item_of_id, static_cast<std::uint32_t>(geometry.eyes.size())) {}
 
+    /// Starts as many of `patches` as fit a batch: in slots, and in vertices where the mesh is large.
     std::uint32_t begin_batch(std::span<const std::uint32_t> patches) {
-        const auto used = static_cast<std::uint32_t>(std::min<std::size_t>(patches.size(), buffers.slots()));
+        constexpr std::size_t enough_vertices = std::size_t{1} << 20;
+        const auto most = static_cast<std::uint32_t>(std::min<std::size_t>(patches.size(), buffers.slots()));
+        std::uint32_t used = 0;
         stream.clear();
-        for (std::uint32_t slot = 0; slot < used; ++slot) {
-            const EyePoint& eye = geometry.eyes[patches[slot]];
-            views.add(eye, EyeFrame(eye.normal, patches[slot], settings.seed), slot, stream);
+        while (used < most && (used == 0 || stream.size() < enough_vertices)) {
+            const EyePoint& eye = geometry.eyes[patches[used]];
+            views.add(eye, EyeFrame(eye.normal, patches[used], settings.seed), used, stream);
+            ++used;
         }
         buffers.begin(stream, used);
         return used;
@@ -86,28 +91,23 @@ void GlRows::rows(std::span<const std::uint32_t> patches, const RowSink& sink) {
     const std::size_t texels = std::size_t{3} * state.settings.resolution * state.settings.resolution;
     std::size_t begun = 0;
     std::size_t done = 0;
-    std::uint32_t under_way = 0;
-    const auto finish = [&] {
-        --under_way;
-        return state.buffers.finish();
-    };
+    std::deque<std::uint32_t> under_way; // rows in each batch
     try {
         while (done < patches.size()) {
-            while (under_way < state.buffers.depth() && begun < patches.size()) {
-                begun += state.begin_batch(patches.subspan(begun));
-                ++under_way;
+            while (under_way.size() < state.buffers.depth() && begun < patches.size()) {
+                under_way.push_back(state.begin_batch(patches.subspan(begun)));
+                begun += under_way.back();
             }
-            const std::uint32_t* ids = finish();
-            const std::size_t used = std::min<std::size_t>(state.buffers.slots(), patches.size() - done);
-            for (std::size_t slot = 0; slot < used; ++slot, ++done) {
+            const std::uint32_t* ids = state.buffers.finish();
+            const std::uint32_t used = under_way.front();
+            under_way.pop_front();
+            for (std::uint32_t slot = 0; slot < used; ++slot, ++done) {
                 state.accumulator.add(ids + slot * texels);
                 sink(patches[done], state.accumulator.take());
             }
         }
     } catch (...) {
-        while (under_way > 0) { // a sink that stops must not leave batches behind
-            static_cast<void>(finish());
-        }
+        state.buffers.discard(); // a sink that stops must not leave batches behind
         throw;
     }
 }

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
 namespace hemi {
 
@@ -36,16 +38,22 @@ ItemBuffers::ItemBuffers(const gl::Context& context, std::uint32_t resolution, s
       affine_(gl::make_program("hemicube", gl::shaders::hemicube_vert, gl::shaders::hemicube_frag)),
       bilinear_(
           gl::make_program("hemicube quads", gl::shaders::hemicube_vert, gl::shaders::hemicube_quad_frag)) {
-    GLint largest = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    const auto rows = static_cast<std::uint32_t>(largest);
+    GLint largest_texture = 0;
+    std::array<GLint, 2> largest_viewport{};
+    GLint subpixel_bits = 4;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture);
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, largest_viewport.data());
+    glGetIntegerv(GL_SUBPIXEL_BITS, &subpixel_bits);
+    grain_ = std::ldexp(1.0f, -subpixel_bits);
+    const auto rows = static_cast<std::uint32_t>(std::min(largest_texture, largest_viewport[1]));
     if (3 * resolution > rows) {
         throw GlError(fmt::format("resolution {} needs a texture of {} rows; this device allows {}",
                                   resolution, 3 * resolution, rows));
     }
     slots_ = std::clamp(slots, 1u, rows / (3 * resolution));
     describe_vertices(layout_.get());
-    targets_.resize(software_ ? 1 : 3);
+    // A GPU draws ahead while the CPU sums; large ones take much memory.
+    targets_.resize(software_ ? 1 : (resolution > 1024 ? 2 : 3));
     for (std::uint32_t i = 0; i < targets_.size(); ++i) {
         prepare_target(targets_[i], i);
     }
@@ -68,7 +76,8 @@ void ItemBuffers::prepare_target(Target& target, std::uint32_t index) const {
         throw GlError("item buffers: the driver refuses a framebuffer of R32UI and 32-bit float depth");
     }
     if (!software_) {
-        glNamedBufferStorage(target.pixels.get(), GLsizeiptr{4} * width * height, nullptr, GL_MAP_READ_BIT);
+        glNamedBufferStorage(target.pixels.get(), GLsizeiptr{4} * width * height, nullptr,
+                             GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
     }
     gl::label(GL_TEXTURE, target.ids.get(), fmt::format("item ids {}", index));
     gl::label(GL_TEXTURE, target.depth.get(), fmt::format("item depth {}", index));
@@ -76,10 +85,7 @@ void ItemBuffers::prepare_target(Target& target, std::uint32_t index) const {
 }
 
 void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
-    if (mapped_ != nullptr) {
-        glUnmapNamedBuffer(targets_[mapped_target_].pixels.get());
-        mapped_ = nullptr;
-    }
+    unmap();
     Target& target = targets_[(oldest_ + under_way_) % targets_.size()];
     ++under_way_;
     target.used = used;
@@ -111,15 +117,14 @@ void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
     const std::array<Part, 3> parts{{{stream.affine, affine_, false},
                                      {stream.bilinear, bilinear_, false},
                                      {stream.blocked, affine_, true}}};
-    const std::size_t total = stream.affine.size() + stream.bilinear.size() + stream.blocked.size();
+    const std::size_t total = stream.size();
     glNamedBufferData(target.vertices.get(), static_cast<GLsizeiptr>(total * sizeof(DrawVertex)), nullptr,
                       GL_STREAM_DRAW);
     glBindVertexArray(layout_.get());
     glVertexArrayVertexBuffer(layout_.get(), 0, target.vertices.get(), 0, sizeof(DrawVertex));
-    // Vertices are snapped to 1/256 texel, so along a silhouette, where a front hides a back that shares its
-    // edge, either may come out nearer by its change of depth over that distance. Fronts are set nearer by it
-    // and backs farther: the front wins.
-    constexpr float grain = 1.0f / 256.0f;
+    // Vertices are snapped to a grain of 1/256 texel or so; along a silhouette, where a front hides a back
+    // that shares its edge, either may come out nearer by its change of depth over that distance. Fronts are
+    // set nearer by it and backs farther: the front wins.
     constexpr float last_places = 16.0f;
     glEnable(GL_POLYGON_OFFSET_FILL);
     std::size_t first = 0;
@@ -130,7 +135,7 @@ void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
         const auto count = part.vertices.size();
         glNamedBufferSubData(target.vertices.get(), static_cast<GLintptr>(first * sizeof(DrawVertex)),
                              static_cast<GLsizeiptr>(count * sizeof(DrawVertex)), part.vertices.data());
-        glPolygonOffset(part.behind ? -grain : grain, part.behind ? -last_places : 0.0f);
+        glPolygonOffset(part.behind ? -grain_ : grain_, part.behind ? -last_places : 0.0f);
         glUseProgram(part.program.get());
         glDrawArrays(GL_TRIANGLES, static_cast<GLint>(first), static_cast<GLsizei>(count));
         first += count;
@@ -148,41 +153,56 @@ void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
 }
 
 const std::uint32_t* ItemBuffers::finish() {
-    Target& target = targets_[oldest_];
-    const auto rows = static_cast<GLsizei>(3 * resolution_ * target.used);
-    const std::uint32_t* result = nullptr;
-    if (software_) {
-        glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.get());
-        glReadPixels(0, 0, static_cast<GLsizei>(resolution_), rows, GL_RED_INTEGER, GL_UNSIGNED_INT,
-                     ids_.data());
-        result = ids_.data();
-    } else {
-        if (mapped_ != nullptr) {
-            glUnmapNamedBuffer(targets_[mapped_target_].pixels.get());
-        }
-        constexpr GLuint64 ten_seconds = 10'000'000'000u;
-        GLenum state = GL_TIMEOUT_EXPIRED;
-        while (state == GL_TIMEOUT_EXPIRED) {
-            state = glClientWaitSync(target.fence, GL_SYNC_FLUSH_COMMANDS_BIT, ten_seconds);
-        }
-        glDeleteSync(target.fence);
-        target.fence = nullptr;
-        if (state == GL_WAIT_FAILED) {
-            throw GlError("item buffers: waiting for the GPU failed");
-        }
-        mapped_ = static_cast<const std::uint32_t*>(
-            glMapNamedBufferRange(target.pixels.get(), 0,
-                                  GLsizeiptr{4} * rows * static_cast<GLsizei>(resolution_), GL_MAP_READ_BIT));
-        if (mapped_ == nullptr) {
-            throw GlError("item buffers: the read-back buffer cannot be mapped");
-        }
-        mapped_target_ = oldest_;
-        result = mapped_;
-    }
-    gl::check_errors("item buffers");
+    // The ring moves on first: whatever fails below, this batch is over.
+    const std::size_t index = oldest_;
+    Target& target = targets_[index];
     oldest_ = (oldest_ + 1) % targets_.size();
     --under_way_;
-    return result;
+    const auto width = static_cast<GLsizei>(resolution_);
+    const auto rows = static_cast<GLsizei>(3 * resolution_ * target.used);
+    if (software_) {
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer.get());
+        glReadPixels(0, 0, width, rows, GL_RED_INTEGER, GL_UNSIGNED_INT, ids_.data());
+        gl::check_errors("item buffers");
+        return ids_.data();
+    }
+    unmap();
+    constexpr GLuint64 ten_seconds = 10'000'000'000u;
+    const GLsync fence = std::exchange(target.fence, nullptr);
+    GLenum state = GL_TIMEOUT_EXPIRED;
+    while (state == GL_TIMEOUT_EXPIRED) {
+        state = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, ten_seconds);
+    }
+    glDeleteSync(fence);
+    if (state == GL_WAIT_FAILED) {
+        throw GlError("item buffers: waiting for the GPU failed");
+    }
+    mapped_ = static_cast<const std::uint32_t*>(
+        glMapNamedBufferRange(target.pixels.get(), 0, GLsizeiptr{4} * rows * width, GL_MAP_READ_BIT));
+    if (mapped_ == nullptr) {
+        throw GlError("item buffers: the read-back buffer cannot be mapped");
+    }
+    mapped_target_ = index;
+    gl::check_errors("item buffers");
+    return mapped_;
+}
+
+void ItemBuffers::discard() noexcept {
+    while (under_way_ > 0) {
+        Target& target = targets_[oldest_];
+        if (target.fence != nullptr) {
+            glDeleteSync(std::exchange(target.fence, nullptr));
+        }
+        oldest_ = (oldest_ + 1) % targets_.size();
+        --under_way_;
+    }
+}
+
+void ItemBuffers::unmap() noexcept {
+    if (mapped_ != nullptr) {
+        glUnmapNamedBuffer(targets_[mapped_target_].pixels.get());
+        mapped_ = nullptr;
+    }
 }
 
 } // namespace hemi

@@ -26,8 +26,11 @@ public:
 
     /// Starts drawing `used` hemicubes. At most depth() batches may be under way.
     void begin(const DrawStream& stream, std::uint32_t used);
-    /// Waits for the oldest batch. Its ids: 3·resolution² for each hemicube, valid until the next begin().
+    /// Waits for the oldest batch. Its ids: 3·resolution² for each hemicube, valid until the next begin() or
+    /// finish().
     [[nodiscard]] const std::uint32_t* finish();
+    /// Forgets the batches under way.
+    void discard() noexcept;
 
 private:
     struct Target {
@@ -39,11 +42,13 @@ private:
         GLsync fence = nullptr;
         std::uint32_t used = 0;
     };
+    void unmap() noexcept;
     void prepare_target(Target& target, std::uint32_t index) const;
 
     std::uint32_t resolution_;
     std::uint32_t slots_;
     bool software_;
+    float grain_ = 0.0f; ///< of the rasteriser's vertices, texels
     gl::Program affine_;
     gl::Program bilinear_;
     gl::VertexArray layout_;

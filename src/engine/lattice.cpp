@@ -10,8 +10,6 @@ namespace hemi {
 namespace {
 
 constexpr std::uint32_t none = 0xFFFFFFFFu;
-/// Vertices may be off the lattice by this much of a cell: text files keep six digits or so.
-constexpr double lattice_slack = 1e-4;
 
 struct CellKey {
     std::int32_t i, j;
@@ -31,11 +29,12 @@ struct CellKeyHash {
 struct Frame {
     Vec3 origin, u, v;
     Vec3 dual_u, dual_v, normal; ///< dual_u·u = 1, dual_u·v = 0
-    double cell = 0.0;           ///< shorter of |u|, |v|
+    double slack = 0.0;          ///< length by which vertices may be off
     bool triangles = false;
 
-    Frame(const Vec3& o, const Vec3& du, const Vec3& dv, bool split)
-        : origin(o), u(du), v(dv), cell(std::min(glm::length(du), glm::length(dv))), triangles(split) {
+    Frame(const Vec3& o, const Vec3& du, const Vec3& dv, bool split, const TouchingTolerance& tolerance)
+        : origin(o), u(du), v(dv), slack(0.5 * tolerance.at(std::min(glm::length(du), glm::length(dv)))),
+          triangles(split) {
         const Vec3 cross = glm::cross(u, v);
         const double squared = glm::dot(cross, cross);
         normal = cross / std::sqrt(squared);
@@ -48,9 +47,8 @@ struct Frame {
         const Vec3 offset = point - origin;
         const double i = glm::dot(offset, dual_u);
         const double j = glm::dot(offset, dual_v);
-        if (std::abs(i) > 1e6 || std::abs(j) > 1e6 || std::abs(i - std::round(i)) > lattice_slack ||
-            std::abs(j - std::round(j)) > lattice_slack ||
-            std::abs(glm::dot(offset, normal)) > lattice_slack * cell) {
+        if (!(std::abs(i) < 1e6 && std::abs(j) < 1e6) ||
+            glm::length(offset - std::round(i) * u - std::round(j) * v) > slack) {
             return std::nullopt;
         }
         return CellKey{static_cast<std::int32_t>(std::lround(i)), static_cast<std::int32_t>(std::lround(j))};
@@ -73,8 +71,8 @@ struct Region {
 class LatticeFinder {
 public:
     LatticeFinder(const PatchMesh& mesh, std::span<const std::array<std::uint32_t, 4>> surface_vertices,
-                  std::span<const Vec3> positions)
-        : mesh_(mesh), vertices_(surface_vertices), positions_(positions) {}
+                  std::span<const Vec3> positions, const TouchingTolerance& tolerance)
+        : mesh_(mesh), vertices_(surface_vertices), positions_(positions), tolerance_(tolerance) {}
 
     std::vector<MergedLattice> run() {
         build_adjacency();
@@ -100,7 +98,7 @@ private:
         }
         const Vec3 gap = at(s, 0) - at(s, 1) + at(s, 2) - at(s, 3);
         const double edge = std::min(glm::length(at(s, 1) - at(s, 0)), glm::length(at(s, 3) - at(s, 0)));
-        return glm::length(gap) <= lattice_slack * edge;
+        return glm::length(gap) <= tolerance_.at(edge);
     }
 
     static std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
@@ -131,7 +129,7 @@ private:
 
     [[nodiscard]] Frame frame_of(std::uint32_t s) const {
         if (count(s) == 4) {
-            return {at(s, 0), at(s, 1) - at(s, 0), at(s, 3) - at(s, 0), false};
+            return {at(s, 0), at(s, 1) - at(s, 0), at(s, 3) - at(s, 0), false, tolerance_};
         }
         // The longest edge is the cells' diagonal; the corner opposite to it is the lower left one.
         std::uint32_t corner = 0;
@@ -143,7 +141,8 @@ private:
                 corner = c;
             }
         }
-        return {at(s, corner), at(s, corner + 1) - at(s, corner), at(s, corner + 2) - at(s, corner), true};
+        return {at(s, corner), at(s, corner + 1) - at(s, corner), at(s, corner + 2) - at(s, corner), true,
+                tolerance_};
     }
 
     [[nodiscard]] std::optional<Placement> place(const Frame& frame, std::uint32_t s) const {
@@ -176,6 +175,9 @@ private:
             }
             const bool has_lower =
                 keys[0] == placement.cell || keys[1] == placement.cell || keys[2] == placement.cell;
+            if (keys[0] == keys[1] || keys[1] == keys[2] || keys[2] == keys[0]) {
+                return std::nullopt;
+            }
             if (sum == 2 && has_lower) {
                 placement.half = 0;
             } else if (sum == 4 && !has_lower) {
@@ -303,6 +305,7 @@ private:
     const PatchMesh& mesh_;
     std::span<const std::array<std::uint32_t, 4>> vertices_;
     std::span<const Vec3> positions_;
+    TouchingTolerance tolerance_;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> edges_;
     std::vector<bool> taken_;
     std::vector<MergedLattice> found_;
@@ -312,8 +315,9 @@ private:
 
 std::vector<MergedLattice> find_lattices(const PatchMesh& mesh,
                                          std::span<const std::array<std::uint32_t, 4>> surface_vertices,
-                                         std::span<const Vec3> positions) {
-    return LatticeFinder(mesh, surface_vertices, positions).run();
+                                         std::span<const Vec3> positions,
+                                         const TouchingTolerance& tolerance) {
+    return LatticeFinder(mesh, surface_vertices, positions, tolerance).run();
 }
 
 } // namespace hemi

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/outline.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <array>
@@ -22,8 +23,10 @@ struct MergedLattice {
 /// Surfaces that are in no lattice of two or more are in no result.
 /// @param surface_vertices  welded vertex of every surface corner, 4 a surface.
 /// @param positions         of the welded vertices.
+/// @param tolerance         vertices may be off the lattice by half of what still counts as touching: the
+///   neighbours' vertices along a merged edge are then inserted into it.
 [[nodiscard]] std::vector<MergedLattice>
 find_lattices(const PatchMesh& mesh, std::span<const std::array<std::uint32_t, 4>> surface_vertices,
-              std::span<const Vec3> positions);
+              std::span<const Vec3> positions, const TouchingTolerance& tolerance);
 
 } // namespace hemi

@@ -106,18 +106,14 @@ double squared_length(const OutlinePoint& a, const OutlinePoint& b) {
 } // namespace
 
 void insert_touching_vertices(std::vector<Outline>& outlines, std::span<const Vec3> positions,
-                              double tolerance) {
+                              const TouchingTolerance& tolerance) {
     std::vector<bool> used(positions.size(), false);
-    std::vector<std::uint64_t> directed;
-    const auto edge = [](std::uint32_t a, std::uint32_t b) { return (std::uint64_t{a} << 32) | b; };
     for (const Outline& outline : outlines) {
         for (std::size_t c = 0; c < outline.size(); ++c) {
             used[outline[c].vertex] = true;
-            directed.push_back(edge(outline[c].vertex, outline[(c + 1) % outline.size()].vertex));
         }
     }
-    std::sort(directed.begin(), directed.end());
-    const VertexGrid grid(positions, used, tolerance);
+    const VertexGrid grid(positions, used, tolerance.largest());
 
     std::vector<std::uint32_t> candidates;
     std::vector<std::pair<double, std::uint32_t>> touching;
@@ -127,15 +123,13 @@ void insert_touching_vertices(std::vector<Outline>& outlines, std::span<const Ve
             const OutlinePoint& from = outline[c];
             const OutlinePoint& to = outline[(c + 1) % outline.size()];
             refined.push_back(from);
-            if (std::binary_search(directed.begin(), directed.end(), edge(to.vertex, from.vertex))) {
-                continue;
-            }
             const Vec3& a = positions[from.vertex];
             const Vec3 along = positions[to.vertex] - a;
             const double length_squared = glm::dot(along, along);
             if (!(length_squared > 0.0)) {
                 continue; // corners closer than the welding tolerance
             }
+            const double slack = tolerance.at(std::sqrt(length_squared));
             grid.near_segment(a, positions[to.vertex], candidates);
             touching.clear();
             for (const std::uint32_t v : candidates) {
@@ -145,7 +139,7 @@ void insert_touching_vertices(std::vector<Outline>& outlines, std::span<const Ve
                 const Vec3 offset = positions[v] - a;
                 const double t = glm::dot(offset, along) / length_squared;
                 const Vec3 gap = offset - t * along;
-                if (t > 0.0 && t < 1.0 && glm::dot(gap, gap) <= tolerance * tolerance) {
+                if (t > 0.0 && t < 1.0 && glm::dot(gap, gap) <= slack * slack) {
                     touching.emplace_back(t, v);
                 }
             }

@@ -1,5 +1,6 @@
 #include "engine/row_accumulator.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -114,12 +115,18 @@ RowView RowAccumulator::take() {
             missing -= static_cast<double>(values_[k]) - value;
         }
     }
-    // What they cannot take, the shares that are doubles can; a share of exactly zero says something and
-    // stays.
-    if (row.blocked > 0.0) {
-        row.blocked += missing;
-    } else if (row.environment > 0.0) {
-        row.environment += missing;
+    // What they cannot take, the larger of the shares that are doubles can; a share of exactly zero says
+    // something and stays, and none may vanish or turn negative.
+    double& taker = row.blocked > row.environment ? row.blocked : row.environment;
+    if (taker > 0.0) {
+        if (missing < -0.5 * taker) {
+            float& largest =
+                *std::max_element(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(entries));
+            const float lower = std::nextafter(largest, 0.0f);
+            missing += static_cast<double>(largest) - static_cast<double>(lower);
+            largest = lower;
+        }
+        taker += missing;
     }
     return row;
 }

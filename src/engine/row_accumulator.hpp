@@ -11,7 +11,7 @@
 namespace hemi {
 
 /// Sums the delta form factors of an item buffer by patch and makes a row of F of them. Integer sums: the
-/// order does not matter. Memory: 4 bytes and a bit a patch.
+/// order does not matter. Memory: 12 bytes and a bit a patch.
 class RowAccumulator {
 public:
     /// @param item_of_id  draw id -> item; must outlive this.

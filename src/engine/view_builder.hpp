@@ -26,6 +26,7 @@ struct DrawStream {
     std::vector<DrawVertex> bilinear; ///< patches on general quadrilaterals
     std::vector<DrawVertex> blocked;  ///< back faces; at equal depth a front wins
 
+    [[nodiscard]] std::size_t size() const { return affine.size() + bilinear.size() + blocked.size(); }
     void clear() {
         affine.clear();
         bilinear.clear();

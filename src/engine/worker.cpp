@@ -8,7 +8,6 @@
 #include <deque>
 
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -119,9 +118,9 @@ private:
 } // namespace
 
 int run_hemicube_worker() {
-    // Ctrl-C goes to the whole process group; the program decides, and takes its workers with it.
+    // Ctrl-C goes to the whole process group; the program decides, and takes its workers with it. A program
+    // that vanishes is noticed at the next message.
     std::signal(SIGINT, SIG_IGN);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
     // Software GL scales by process, not by thread; read when the first context is made.
     setenv("LP_NUM_THREADS", "0", 1);
     try {

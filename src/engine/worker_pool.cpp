@@ -1,7 +1,9 @@
 #include "engine/worker_pool.hpp"
 
 #include "engine/worker_wire.hpp"
+#include "gl/context.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 
 #include <fmt/format.h>
 
@@ -123,7 +125,7 @@ public:
     ~WorkerProcess() {
         if (pid_ > 0) {
             kill(pid_, SIGKILL);
-            waitpid(pid_, nullptr, 0);
+            reap(nullptr);
         }
     }
 
@@ -158,16 +160,24 @@ public:
 
 private:
     static Descriptor high_copy(int fd) {
-        const int copy = fcntl(fd, F_DUPFD_CLOEXEC, 64);
+        const int copy = fcntl(fd, F_DUPFD_CLOEXEC, worker_results_fd + 1);
         if (copy < 0) {
             fail("descriptor");
         }
         return Descriptor(copy);
     }
 
+    bool reap(int* status) const {
+        pid_t got = -1;
+        do {
+            got = waitpid(pid_, status, 0);
+        } while (got < 0 && errno == EINTR);
+        return got == pid_;
+    }
+
     [[noreturn]] void ended() {
         int status = 0;
-        const bool reaped = waitpid(pid_, &status, 0) == pid_;
+        const bool reaped = reap(&status);
         pid_ = -1;
         if (reaped && WIFSIGNALED(status)) {
             throw Error(fmt::format("a worker process was killed by signal {} ({}); its rows are missing, so "
@@ -219,11 +229,18 @@ private:
         std::memcpy(geometry.data(), bytes.data(), bytes.size());
         std::uint32_t jobs =
             engine_.jobs != 0 ? engine_.jobs : std::max(1u, std::thread::hardware_concurrency());
-        jobs = std::min(jobs, std::max(1u, size_));
-        for (std::uint32_t i = 0; i < jobs; ++i) {
-            workers_.emplace_back(engine_.worker_program, geometry, result_slots * layout_.bytes());
-        }
+        const std::uint32_t blocks =
+            (size_ + FormFactorMatrix::block_rows - 1) / FormFactorMatrix::block_rows;
+        jobs = std::min(jobs, std::max(1u, blocks)); // nobody gets less than a block
+        const auto start_until = [&](std::uint32_t count) {
+            while (workers_.size() < count) {
+                workers_.emplace_back(engine_.worker_program, geometry, result_slots * layout_.bytes());
+            }
+        };
         try {
+            // Where it may turn out to be a GPU, one process asks first: it would be served by that one
+            // alone.
+            start_until(gl::is_surely_software(engine_.device) ? jobs : 1);
             const FromWorker ready = workers_[0].receive();
             renderer_ = ready.text.data();
             if (ready.software == 0) {
@@ -232,10 +249,9 @@ private:
                         fmt::format("{} jobs on {}: a GPU is served by one process; leave --jobs out",
                                     engine_.jobs, renderer_));
                 }
-                while (workers_.size() > 1) {
-                    workers_.pop_back();
-                }
+                jobs = 1;
             }
+            start_until(jobs);
             for (std::size_t i = 1; i < workers_.size(); ++i) {
                 static_cast<void>(workers_[i].receive());
             }
@@ -274,9 +290,11 @@ private:
             waiting.push_back({worker.fd(), POLLIN, 0});
         }
         while (done < patches.size()) {
-            if (poll(waiting.data(), waiting.size(), -1) < 0 && errno != EINTR) {
+            constexpr int look_up_ms = 200;
+            if (poll(waiting.data(), waiting.size(), look_up_ms) < 0 && errno != EINTR) {
                 fail("poll");
             }
+            stop_if_interrupted(); // also while a slow worker has nothing to say
             for (std::size_t w = 0; w < workers_.size(); ++w) {
                 if (waiting[w].revents == 0) {
                     continue;

@@ -9,7 +9,10 @@ namespace hemi {
 
 namespace {
 
-constexpr std::uint64_t magic = 0x31'57'49'4D'45'48u; // "HEMIW1"
+// "HEMI", and the sizes of what travels, so that another build is noticed.
+constexpr std::uint64_t magic = 0x494D4548u | (std::uint64_t{sizeof(DrawPolygon)} << 32) |
+                                (std::uint64_t{sizeof(EyePoint)} << 44) |
+                                (std::uint64_t{sizeof(FromWorker)} << 52);
 
 template <typename T>
 void append(std::string& bytes, std::span<const T> values) {

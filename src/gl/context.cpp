@@ -104,6 +104,19 @@ void check_device_name(const std::string& device) {
     }
 }
 
+bool is_surely_software(const std::string& device) {
+    if (const auto number = egl_number(device)) {
+        return egl_device_is_software(*number);
+    }
+    const std::size_t count = egl_device_count();
+    for (std::size_t i = 0; i < count && device != "osmesa"; ++i) {
+        if (!egl_device_is_software(i)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 std::unique_ptr<Context> make_context(const std::string& device) {
     check_device_name(device);
     if (device == "osmesa") {

@@ -46,6 +46,9 @@ private:
 /// @throws InvalidArgument unless `device` is a name that make_context() knows.
 void check_device_name(const std::string& device);
 
+/// Whether `device` rasterises on the CPU as far as can be told without making a context; false if in doubt.
+[[nodiscard]] bool is_surely_software(const std::string& device);
+
 /// Names of all devices that could be tried here: "egl:0" …, "osmesa".
 [[nodiscard]] std::vector<std::string> device_names();
 

@@ -2,7 +2,6 @@
 
 #include <glad/gl.h>
 
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,7 +13,6 @@ template <typename Traits>
 class UniqueObject {
 public:
     UniqueObject() : name_(Traits::create()) {}
-    explicit UniqueObject(GLuint name) noexcept : name_(name) {}
     UniqueObject(UniqueObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
     UniqueObject& operator=(UniqueObject&& other) noexcept {
         std::swap(name_, other.name_);

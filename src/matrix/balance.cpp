@@ -147,6 +147,11 @@ Reciprocity reciprocity(const FormFactorMatrix& factors, std::span<const double>
 
 GroupFactors group_factors(const FormFactorMatrix& factors, std::span<const double> areas,
                            std::span<const std::uint32_t> group_of, std::uint32_t groups) {
+    constexpr std::uint32_t most = 16384;
+    if (groups > most) {
+        throw InvalidArgument(fmt::format("a table of {} groups; at most {}, which is {} factors", groups,
+                                          most, std::uint64_t{most} * most));
+    }
     check_areas(factors, areas);
     if (group_of.size() != factors.size()) {
         throw InvalidArgument(fmt::format("{} patches with a group for {} rows of form factors",

@@ -167,6 +167,16 @@ Scene t_junction_room() {
     return scene;
 }
 
+Scene two_rooms() {
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(1.0), 5);
+    std::erase_if(scene.surfaces, [&](const Surface& s) { return scene.groups[s.group] == "z1"; });
+    add_polygon(scene, "z1", {Vec3(0, 0, 1), Vec3(0, 0.4, 1), Vec3(1, 0.4, 1), Vec3(1, 0, 1)}, {3, 5});
+    add_polygon(scene, "z1", {Vec3(0, 0.4, 1), Vec3(0, 1, 1), Vec3(1, 1, 1), Vec3(1, 0.4, 1)}, {3, 5});
+    add_room(scene, Vec3(1.0, 0.0, 0.0), Vec3(2.0, 1.0, 1.0), 5);
+    return scene;
+}
+
 Scene open_corner() {
     Scene scene = empty_scene();
     add_room(scene, Vec3(0.0), Vec3(1.0), 5);

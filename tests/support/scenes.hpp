@@ -28,6 +28,9 @@ void add_room(Scene& scene, const Vec3& lower, const Vec3& upper, std::uint32_t 
 [[nodiscard]] Scene lattice_room();
 /// Closed room whose ceiling is cut into strips that meet uncut walls in T-junctions.
 [[nodiscard]] Scene t_junction_room();
+/// Two closed unit rooms on either side of a partition of two back-to-back sheets; the ceiling of one is cut
+/// in the middle of the partition's upper edge.
+[[nodiscard]] Scene two_rooms();
 /// Three walls that meet in a corner, open otherwise.
 [[nodiscard]] Scene open_corner();
 /// Unit floor and unit wall at a right angle; the wall as one polygon ("wall") or as "left" and "right".

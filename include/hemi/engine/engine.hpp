@@ -22,7 +22,7 @@ struct HemicubeSettings {
 /// Where and how rows are computed; none of it changes a bit of them on the same kind of device.
 struct EngineSettings {
     std::string device = "auto"; ///< auto, egl, egl:N or osmesa
-    std::uint32_t jobs = 0;      ///< worker processes on software OpenGL; 0: one per core
+    std::uint32_t jobs = 0; ///< worker processes on software OpenGL; 0: one per core. A GPU is served by one
     /// Program that is started as worker (`PROGRAM --hemicube-worker`, which must call
     /// run_hemicube_worker). Empty: rows are computed in this process, by one context.
     std::string worker_program;
