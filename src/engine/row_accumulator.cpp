@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -35,7 +36,7 @@ std::uint64_t changes_of_64(const std::uint32_t* row) {
 RowAccumulator::RowAccumulator(const DeltaFormFactors& weights, std::span<const std::uint32_t> item_of_id,
                                std::uint32_t patches)
     : weights_(weights), item_of_id_(item_of_id), identity_(true), sums_(item_first_patch + patches),
-      touched_((sums_.size() + 63) / 64), columns_(patches), values_(patches) {
+      touched_((sums_.size() + 7) / 8 * 8), columns_(patches), values_(patches) {
     for (std::uint32_t id = 0; id < item_of_id.size() && identity_; ++id) {
         identity_ = item_of_id[id] == id;
     }
@@ -55,7 +56,7 @@ void RowAccumulator::add_rows(const std::uint32_t* ids) {
     // Local copies, so that the compiler need not fear that a sum overwrites them.
     const std::uint32_t* const item_of_id = item_of_id_.data();
     std::uint32_t* const sums = sums_.data();
-    std::uint64_t* const touched = touched_.data();
+    std::uint8_t* const touched = touched_.data();
     for (std::uint32_t y = 0; y < weights_.rows(); ++y) {
         const std::uint32_t* const row = ids + std::size_t{y} * resolution;
         const std::uint32_t* const prefix = weights_.prefix_row(y).data();
@@ -64,7 +65,7 @@ void RowAccumulator::add_rows(const std::uint32_t* ids) {
             const std::uint32_t item = identity ? row[last] : item_of_id[row[last]];
             const std::uint32_t upto = prefix[last + 1];
             sums[item] += upto - before;
-            touched[item >> 6] |= std::uint64_t{1} << (item & 63);
+            touched[item] = 1; // a byte, not a bit: neighbours would wait for each other's
             before = upto;
         };
         std::uint32_t x = 0;
@@ -89,12 +90,20 @@ RowView RowAccumulator::take() {
     row.environment = sums_[item_nothing] * unit;
     row.blocked = sums_[item_blocked] * unit;
     sums_[item_nothing] = sums_[item_blocked] = 0;
-    touched_[0] &= ~std::uint64_t{3};
+    touched_[item_nothing] = touched_[item_blocked] = 0;
     double sum = 0.0;
     std::size_t entries = 0;
-    for (std::size_t word = 0; word < touched_.size(); ++word) {
-        for (std::uint64_t mask = touched_[word]; mask != 0; mask &= mask - 1) {
-            const std::size_t item = word * 64 + static_cast<std::size_t>(std::countr_zero(mask));
+    for (std::size_t first = 0; first < touched_.size(); first += 8) {
+        std::uint64_t flags = 0;
+        std::memcpy(&flags, touched_.data() + first, sizeof flags);
+        if (flags == 0) {
+            continue;
+        }
+        for (std::size_t item = first; item < first + 8; ++item) {
+            if (touched_[item] == 0) {
+                continue;
+            }
+            touched_[item] = 0;
             const auto value = static_cast<float>(sums_[item] * unit);
             columns_[entries] = static_cast<std::uint32_t>(item - item_first_patch);
             values_[entries] = value;
@@ -102,7 +111,6 @@ RowView RowAccumulator::take() {
             sums_[item] = 0;
             sum += static_cast<double>(value);
         }
-        touched_[word] = 0;
     }
     row.columns = {columns_.data(), entries};
     row.values = {values_.data(), entries};
