@@ -247,7 +247,8 @@ std::vector<ExactCase> exact_cases() {
         std::uint32_t patches_per_face;
         double error;
     };
-    // About 1.5 times the measured error; it is of the eye points and halves with the patches' edges.
+    // About 1.5 times the measured error; it comes of the one eye point a patch and falls with the
+    // square of the patches' edges.
     const std::map<std::string, Limit> limits{
         {"unit_cube", {256, 2e-4}},        {"parallel_d0.1", {256, 5e-3}},   {"parallel_d1", {256, 2e-4}},
         {"perp_1_1", {256, 1e-4}},         {"perp_apart", {256, 2e-5}},      {"discs_64gon", {4, 3e-3}},
