@@ -31,8 +31,8 @@ private:
 
     const DeltaFormFactors& weights_;
     std::span<const std::uint32_t> item_of_id_;
-    bool identity_;                      ///< draw ids are items: no look-up is needed
-    std::vector<std::uint32_t> sums_;    ///< per item
+    bool identity_;                     ///< draw ids are items: no look-up is needed
+    std::vector<std::uint32_t> sums_;   ///< per item
     std::vector<std::uint8_t> touched_; ///< 1 per item that has a sum, padded to whole words
     std::vector<std::uint32_t> columns_;
     std::vector<float> values_;
