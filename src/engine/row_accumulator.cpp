@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -13,19 +12,44 @@ namespace hemi {
 
 namespace {
 
-/// Bit k is set where row[k] differs from row[k + 1], for k in [0, 64).
+/// Bit k is set where row[k] differs from row[k + 1], for k in [0, 64); with `row_ends` nothing beyond
+/// row[63] is read, and bit 63 is set.
+template <bool row_ends>
 std::uint64_t changes_of_64(const std::uint32_t* row) {
-    std::uint64_t mask = 0;
+    std::uint64_t mask = row_ends ? std::uint64_t{1} << 63 : 0;
+    constexpr int end = row_ends ? 63 : 64;
+    int k = 0;
 #if defined(__SSE2__)
-    for (int k = 0; k < 64; k += 4) {
+    for (; k + 4 <= end; k += 4) {
         const __m128i here = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + k));
         const __m128i next = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + k + 1));
         const int same = _mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(here, next)));
         mask |= static_cast<std::uint64_t>(~same & 0xF) << k;
     }
+#endif
+    for (; k < end; ++k) {
+        mask |= static_cast<std::uint64_t>(row[k] != row[k + 1]) << k;
+    }
+    return mask;
+}
+
+/// Bit k is set where sums[k] is not 0, for k in [0, 64).
+std::uint64_t nonzeros_of_64(const std::uint32_t* sums) {
+    std::uint64_t mask = 0;
+#if defined(__SSE2__)
+    const __m128i zero = _mm_setzero_si128();
+    const auto zeros_of_4 = [&](int k) {
+        return _mm_cmpeq_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(sums + k)), zero);
+    };
+    for (int k = 0; k < 64; k += 16) {
+        const __m128i low = _mm_packs_epi32(zeros_of_4(k), zeros_of_4(k + 4));
+        const __m128i high = _mm_packs_epi32(zeros_of_4(k + 8), zeros_of_4(k + 12));
+        const int zeros = _mm_movemask_epi8(_mm_packs_epi16(low, high));
+        mask |= static_cast<std::uint64_t>(~zeros & 0xFFFF) << k;
+    }
 #else
     for (int k = 0; k < 64; ++k) {
-        mask |= static_cast<std::uint64_t>(row[k] != row[k + 1]) << k;
+        mask |= static_cast<std::uint64_t>(sums[k] != 0) << k;
     }
 #endif
     return mask;
@@ -35,8 +59,8 @@ std::uint64_t changes_of_64(const std::uint32_t* row) {
 
 RowAccumulator::RowAccumulator(const DeltaFormFactors& weights, std::span<const std::uint32_t> item_of_id,
                                std::uint32_t patches)
-    : weights_(weights), item_of_id_(item_of_id), identity_(true), sums_(item_first_patch + patches),
-      touched_((sums_.size() + 7) / 8 * 8), columns_(patches), values_(patches) {
+    : weights_(weights), item_of_id_(item_of_id), identity_(true),
+      sums_((std::size_t{item_first_patch} + patches + 63) / 64 * 64), columns_(patches), values_(patches) {
     for (std::uint32_t id = 0; id < item_of_id.size() && identity_; ++id) {
         identity_ = item_of_id[id] == id;
     }
@@ -56,7 +80,6 @@ void RowAccumulator::add_rows(const std::uint32_t* ids) {
     // Local copies, so that the compiler need not fear that a sum overwrites them.
     const std::uint32_t* const item_of_id = item_of_id_.data();
     std::uint32_t* const sums = sums_.data();
-    std::uint8_t* const touched = touched_.data();
     for (std::uint32_t y = 0; y < weights_.rows(); ++y) {
         const std::uint32_t* const row = ids + std::size_t{y} * resolution;
         const std::uint32_t* const prefix = weights_.prefix_row(y).data();
@@ -65,15 +88,20 @@ void RowAccumulator::add_rows(const std::uint32_t* ids) {
             const std::uint32_t item = identity ? row[last] : item_of_id[row[last]];
             const std::uint32_t upto = prefix[last + 1];
             sums[item] += upto - before;
-            touched[item] = 1; // a byte, not a bit: neighbours would wait for each other's
             before = upto;
         };
-        std::uint32_t x = 0;
-        // The comparison reads one texel past the 64, so the row's last texel is left to the loop below.
-        for (; x + 64 < resolution; x += 64) {
-            for (std::uint64_t mask = changes_of_64(row + x); mask != 0; mask &= mask - 1) {
-                end_run(x + static_cast<std::uint32_t>(std::countr_zero(mask)));
+        const auto end_runs = [&](std::uint32_t first, std::uint64_t mask) {
+            for (; mask != 0; mask &= mask - 1) {
+                end_run(first + static_cast<std::uint32_t>(std::countr_zero(mask)));
             }
+        };
+        std::uint32_t x = 0;
+        for (; x + 64 < resolution; x += 64) {
+            end_runs(x, changes_of_64<false>(row + x));
+        }
+        if (x + 64 == resolution) {
+            end_runs(x, changes_of_64<true>(row + x));
+            continue;
         }
         for (; x + 1 < resolution; ++x) {
             if (row[x] != row[x + 1]) {
@@ -90,24 +118,15 @@ RowView RowAccumulator::take() {
     row.environment = sums_[item_nothing] * unit;
     row.blocked = sums_[item_blocked] * unit;
     sums_[item_nothing] = sums_[item_blocked] = 0;
-    touched_[item_nothing] = touched_[item_blocked] = 0;
     double sum = 0.0;
     std::size_t entries = 0;
-    for (std::size_t first = 0; first < touched_.size(); first += 8) {
-        std::uint64_t flags = 0;
-        std::memcpy(&flags, touched_.data() + first, sizeof flags);
-        if (flags == 0) {
-            continue;
-        }
-        for (std::size_t item = first; item < first + 8; ++item) {
-            if (touched_[item] == 0) {
-                continue;
-            }
-            touched_[item] = 0;
+    for (std::size_t first = 0; first < sums_.size(); first += 64) {
+        for (std::uint64_t mask = nonzeros_of_64(sums_.data() + first); mask != 0; mask &= mask - 1) {
+            const std::size_t item = first + static_cast<std::size_t>(std::countr_zero(mask));
             const auto value = static_cast<float>(sums_[item] * unit);
             columns_[entries] = static_cast<std::uint32_t>(item - item_first_patch);
             values_[entries] = value;
-            entries += sums_[item] != 0 ? 1 : 0; // 0: only texels too small to weigh anything
+            ++entries;
             sums_[item] = 0;
             sum += static_cast<double>(value);
         }

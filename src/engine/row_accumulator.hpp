@@ -11,7 +11,7 @@
 namespace hemi {
 
 /// Sums the delta form factors of an item buffer by patch and makes a row of F of them. Integer sums: the
-/// order does not matter. Memory: 13 bytes a patch.
+/// order does not matter. Memory: 12 bytes a patch.
 class RowAccumulator {
 public:
     /// @param item_of_id  draw id -> item; must outlive this.
@@ -31,9 +31,8 @@ private:
 
     const DeltaFormFactors& weights_;
     std::span<const std::uint32_t> item_of_id_;
-    bool identity_;                     ///< draw ids are items: no look-up is needed
-    std::vector<std::uint32_t> sums_;   ///< per item
-    std::vector<std::uint8_t> touched_; ///< 1 per item that has a sum, padded to whole words
+    bool identity_;                   ///< draw ids are items: no look-up is needed
+    std::vector<std::uint32_t> sums_; ///< per item; padded to whole groups of 64
     std::vector<std::uint32_t> columns_;
     std::vector<float> values_;
 };

@@ -1,6 +1,5 @@
 #include "hemi/engine/row_provider.hpp"
 
-#include "core/huge_pages.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
@@ -36,8 +35,6 @@ public:
         : wanted_(wanted) {
         block_.columns.reserve(expected_entries);
         block_.values.reserve(expected_entries);
-        prefer_huge_pages(block_.columns.data(), expected_entries * sizeof(std::uint32_t));
-        prefer_huge_pages(block_.values.data(), expected_entries * sizeof(float));
         block_.first_row = first_row;
         block_.begin.assign(std::size_t{rows} + 1, 0);
         block_.environment.assign(rows, 0.0);
