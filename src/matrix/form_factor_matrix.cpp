@@ -38,6 +38,10 @@ void check_shape(const RowBlock& block, std::uint32_t size) {
         refuse(block, fmt::format("{} columns and {} values; it must be as many", block.columns.size(),
                                   block.values.size()));
     }
+    if (!block.visibility.empty() && block.visibility.size() != block.values.size()) {
+        refuse(block, fmt::format("{} visibilities for {} values; it must be as many or none",
+                                  block.visibility.size(), block.values.size()));
+    }
     if (block.begin.front() != 0 || block.begin.back() != block.columns.size() ||
         !std::is_sorted(block.begin.begin(), block.begin.end())) {
         refuse(block, fmt::format("offsets must ascend from 0 to the {} entries", block.columns.size()));
@@ -116,6 +120,8 @@ RowView FormFactorMatrix::row(std::uint32_t i) const {
     const std::size_t count = block.begin[local + 1] - begin;
     return {.columns = std::span(block.columns).subspan(begin, count),
             .values = std::span(block.values).subspan(begin, count),
+            .visibility = block.visibility.empty() ? std::span<const std::uint8_t>()
+                                                   : std::span(block.visibility).subspan(begin, count),
             .environment = block.environment[local],
             .blocked = block.blocked[local]};
 }
@@ -142,7 +148,7 @@ std::uint64_t FormFactorMatrix::memory_bytes() const noexcept {
     std::uint64_t bytes = sizeof(*this) + blocks_.size() * sizeof(RowBlock);
     for (const RowBlock& block : blocks_) {
         bytes += block.begin.size() * sizeof(std::uint64_t);
-        bytes += block.columns.size() * (sizeof(std::uint32_t) + sizeof(float));
+        bytes += block.columns.size() * (sizeof(std::uint32_t) + sizeof(float)) + block.visibility.size();
         bytes += (block.environment.size() + block.blocked.size()) * sizeof(double);
         bytes += block.known.size();
     }

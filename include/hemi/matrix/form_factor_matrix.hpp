@@ -7,11 +7,17 @@
 
 namespace hemi {
 
+/// Visibility of a pair of patches as it is stored beside its factor: V = code / visibility_clear.
+/// Only pairs of which no sample was hidden are clear; all others are kept below.
+inline constexpr std::uint8_t visibility_clear = 255;
+
 /// One row of F, seen but not owned. `columns` ascend; `values[k]` is F(i, columns[k]), the share of what
 /// leaves patch i that arrives at patch columns[k]. Balance: sum of values + environment + blocked = 1.
 struct RowView {
     std::span<const std::uint32_t> columns;
     std::span<const float> values;
+    /// Where factors are F0·V: the code of V of every entry, else empty.
+    std::span<const std::uint8_t> visibility = {};
     double environment = 0.0; ///< e_i, share that meets nothing
     double blocked = 0.0;     ///< b_i, share that meets back faces
 
@@ -25,16 +31,18 @@ struct RowBlock {
     std::vector<std::uint64_t> begin; ///< rows + 1 offsets into columns and values, begin[0] = 0
     std::vector<std::uint32_t> columns;
     std::vector<float> values;
-    std::vector<double> environment; ///< e per row
-    std::vector<double> blocked;     ///< b per row
-    std::vector<std::uint8_t> known; ///< per row: 0 where the row was not computed (it is then empty)
+    std::vector<std::uint8_t> visibility; ///< code of V per entry; empty where V is not known
+    std::vector<double> environment;      ///< e per row
+    std::vector<double> blocked;          ///< b per row
+    std::vector<std::uint8_t> known;      ///< per row: 0 where the row was not computed (it is then empty)
 
     [[nodiscard]] std::uint32_t rows() const noexcept { return static_cast<std::uint32_t>(known.size()); }
 };
 
 /// Form factors F(i, j) of N patches: compressed sparse rows (float32 values, 32-bit columns) in independent
 /// blocks of `block_rows` rows, with the balance of every row in double.
-/// Memory: 8 bytes an entry plus about 25 bytes a row. Values are the raw ones; repair makes a copy.
+/// Memory: 8 bytes an entry (9 with visibility) plus about 25 bytes a row. Values are the raw ones; repair
+/// makes a copy.
 class FormFactorMatrix {
 public:
     /// Rows in every block but the last.
@@ -55,7 +63,8 @@ public:
     [[nodiscard]] std::span<const RowBlock> blocks() const noexcept { return blocks_; }
     /// Replaces the block that starts at `block.first_row`.
     /// @throws InvalidArgument if it does not fit the matrix: wrong first row or row count, offsets that do
-    ///   not ascend, columns out of range or not ascending, values that are not finite or negative.
+    ///   not ascend, columns out of range or not ascending, values that are not finite or negative, a
+    ///   visibility of another length than the values.
     void set_block(RowBlock block);
 
 private:
