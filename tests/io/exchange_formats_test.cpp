@@ -138,7 +138,7 @@ TEST_CASE("Exchange formats: rows that were not computed cannot be written", "[i
 TEST_CASE("Matrix Market: the entries are 1-based, in nine digits", "[io]") {
     const Folder folder;
     FormFactorMatrix matrix(2);
-    matrix.set_block({0, {0, 1, 2}, {1, 0}, {1.0f / 3.0f, 1.0f}, {0, 0}, {0, 0}, {1, 1}});
+    matrix.set_block({0, {0, 1, 2}, {1, 0}, {1.0f / 3.0f, 1.0f}, {}, {0, 0}, {0, 0}, {1, 1}});
     io::write_mtx(folder / "a.mtx", matrix);
     const std::string text = io::read_file(folder / "a.mtx");
     REQUIRE(text.starts_with("%%MatrixMarket matrix coordinate real general\n%"));
