@@ -2,6 +2,7 @@
 
 #include "core/gauss_legendre.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/engine/engine.hpp"
 
 #include <fmt/format.h>
 

@@ -35,7 +35,6 @@ struct EyePoints {
 /// @param count  a square: 1, 4, 9 … 64.
 /// @throws InvalidArgument if it is another number.
 [[nodiscard]] EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count);
-void check_eye_points(std::uint32_t count);
 
 /// Axes of a hemicube: z is the patch's normal, x and y are turned about it by an angle hashed from the patch
 /// index, the index of the eye point and the seed. Without the turn, patch edges fall exactly on texel

@@ -32,6 +32,9 @@ struct HemicubeSettings {
     bool operator==(const HemicubeSettings&) const = default;
 };
 
+/// @throws InvalidArgument if `count` is not 1, 4, 9 … 64.
+void check_eye_points(std::uint32_t count);
+
 /// Where and how rows are computed; none of it changes a bit of them on the same kind of device.
 struct EngineSettings {
     std::string device = "auto"; ///< auto, egl, egl:N or osmesa
