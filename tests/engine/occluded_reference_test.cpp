@@ -201,3 +201,44 @@ TEST_CASE("OccludedReference: partly hidden pairs agree with rays", "[engine]") 
     }
     CHECK(partly > 20);
 }
+
+TEST_CASE("OccludedReference: of a patch half under a block the other half sees the room", "[engine]") {
+    for (const double covered : {0.1, 0.5, 0.9}) {
+        INFO("covered " << covered);
+        const StraddledRoom room = straddled_room(covered);
+        const PatchMesh whole(room.whole);
+        const PatchMesh cut(room.cut);
+        const auto parent = parents(whole, cut);
+        const OccludedReference reference(cut, {"block"}, 24);
+        const OccludedReference finer(cut, {"block"}, 36);
+        for (std::uint32_t i = 0; i < whole.size(); ++i) {
+            const Vec3& centre = whole.centres()[i];
+            const bool beside = centre.y < 0.25 || centre.y > 0.75 || centre.x < 0.25 || centre.x > 0.75;
+            if (whole.groups()[whole.group(i)] != "z0" || (!beside && centre.x > 0.5)) {
+                continue;
+            }
+            INFO("patch at " << centre.x << ", " << centre.y);
+            const auto row = straddled_row(whole, cut, parent, reference, i);
+            const auto other = straddled_row(whole, cut, parent, finer, i);
+            double change = 0.0;
+            for (std::size_t j = 0; j < row.size(); ++j) {
+                change = std::max(change, std::abs(row[j] - other[j]));
+            }
+            CHECK(std::accumulate(row.begin(), row.end(), 0.0) ==
+                  Approx(beside ? 1.0 : 1.0 - covered).margin(1e-4).epsilon(0));
+            CHECK(change < 2e-5);
+        }
+    }
+}
+
+TEST_CASE("OccludedReference: rows close under a sheet sum to one", "[engine]") {
+    for (const double gap : {0.05, 0.2, 0.5}) {
+        const PatchMesh mesh(room_with_sheet(gap));
+        const OccludedReference reference(mesh, {"sheet"}, 48);
+        for (const std::uint32_t i : sampled_patches(mesh, 30)) {
+            INFO("gap " << gap << ", patch " << i << " of " << mesh.groups()[mesh.group(i)]);
+            const auto row = reference.row(i);
+            CHECK(std::accumulate(row.begin(), row.end(), 0.0) == Approx(1.0).margin(5e-5).epsilon(0));
+        }
+    }
+}

@@ -229,6 +229,83 @@ Scene fine_room_with_turned_boxes() {
     return room_with_turned_boxes(28, 9, 10);
 }
 
+StraddledRoom straddled_room(double covered) {
+    const double border = 0.5 - 0.25 * covered;
+    StraddledRoom room{empty_scene(), empty_scene()};
+    const auto add_rest = [border](Scene& scene) {
+        add_room(scene, Vec3(0.0), Vec3(1.0), 4);
+        std::erase_if(scene.surfaces, [&](const Surface& s) { return scene.groups[s.group] == "z0"; });
+        add_block(scene, "block", Vec3(border, 0.25, 0.0), Vec3(0.75, 0.75, 0.4), 2);
+        scene.enclosure = Enclosure::closed;
+    };
+    const auto add_floor = [](Scene& scene, double from, double to, std::uint32_t cells) {
+        add_polygon(scene, "z0", {Vec3(from, 0, 0), Vec3(to, 0, 0), Vec3(to, 1, 0), Vec3(from, 1, 0)},
+                    {cells, 4});
+    };
+    add_rest(room.whole);
+    add_floor(room.whole, 0.0, 1.0, 4);
+    add_rest(room.cut);
+    add_floor(room.cut, 0.0, 0.25, 1);
+    add_floor(room.cut, 0.25, border, 1);
+    add_floor(room.cut, border, 0.5, 1);
+    add_floor(room.cut, 0.5, 1.0, 2);
+    return room;
+}
+
+std::vector<std::uint32_t> parents(const PatchMesh& whole, const PatchMesh& cut) {
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t part = 0; part < cut.size(); ++part) {
+        for (std::uint32_t i = 0; i < whole.size(); ++i) {
+            if (glm::dot(whole.normal(i), cut.normal(part)) > 0.999 &&
+                distance_to_polygon(cut.centres()[part], whole.corners(i).polygon()) < rounding) {
+                result.push_back(i);
+                break;
+            }
+        }
+    }
+    if (result.size() != cut.size()) {
+        throw std::invalid_argument("parents: a patch is part of none");
+    }
+    return result;
+}
+
+std::vector<double> straddled_row(const PatchMesh& whole, const PatchMesh& cut,
+                                  std::span<const std::uint32_t> parents, const OccludedReference& reference,
+                                  std::uint32_t i) {
+    const auto under_the_block = [&](std::uint32_t part) {
+        for (const Surface& surface : cut.surfaces()) {
+            if (cut.groups()[surface.group] == "block" &&
+                glm::dot(area_vector(surface.polygon()), cut.normal(part)) < 0.0 &&
+                distance_to_polygon(cut.centres()[part], surface.polygon()) < rounding) {
+                return true;
+            }
+        }
+        return false;
+    };
+    std::vector<double> row(whole.size(), 0.0);
+    for (std::uint32_t part = 0; part < cut.size(); ++part) {
+        if (parents[part] != i || under_the_block(part)) {
+            continue;
+        }
+        const std::vector<double> factors = reference.row(part);
+        for (std::uint32_t j = 0; j < cut.size(); ++j) {
+            row[parents[j]] += cut.areas()[part] / whole.areas()[i] * factors[j];
+        }
+    }
+    return row;
+}
+
+Scene room_with_sheet(double gap) {
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(1.0), 4);
+    const double z = 0.25 * gap;
+    add_polygon(scene, "sheet",
+                {Vec3(0.3, 0.3, z), Vec3(0.55, 0.3, z), Vec3(0.55, 0.55, z), Vec3(0.3, 0.55, z)}, {2, 2});
+    scene.surfaces.back().two_sided = true;
+    scene.enclosure = Enclosure::closed;
+    return scene;
+}
+
 std::vector<std::uint32_t> sampled_patches(const PatchMesh& mesh, std::uint32_t count) {
     std::vector<std::uint32_t> patches;
     for (std::uint32_t k = 0; k < count; ++k) {

@@ -7,6 +7,7 @@
 #include "hemi/scene/scene.hpp"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,27 @@ private:
 [[nodiscard]] Scene coarse_room_with_turned_boxes();
 [[nodiscard]] Scene fine_room_with_turned_boxes();
 
+/// A room with a block on its floor, the border of which runs through the patches of the floor, beside the
+/// same room with the floor cut along that border.
+struct StraddledRoom {
+    Scene whole;
+    Scene cut;
+};
+/// Closed unit room, walls of 4 x 4 patches, with a "block". Of the floor's patches with x in 0.25 … 0.5 and
+/// y in 0.25 … 0.75 the share `covered` is under the block, of those with x in 0.5 … 0.75 all.
+[[nodiscard]] StraddledRoom straddled_room(double covered);
+/// The patch of `whole` that each patch of `cut` is a part of.
+[[nodiscard]] std::vector<std::uint32_t> parents(const PatchMesh& whole, const PatchMesh& cut);
+/// The row of patch i of `whole` from rows of `cut`: of each share of the patch that does not lie under the
+/// "block".
+[[nodiscard]] std::vector<double> straddled_row(const PatchMesh& whole, const PatchMesh& cut,
+                                                std::span<const std::uint32_t> parents,
+                                                const OccludedReference& reference, std::uint32_t i);
+
+/// Closed unit room, walls of 4 x 4 patches, with a two-sided "sheet" of 2 x 2 patches as large as a patch of
+/// the floor, `gap` times the size of a patch above it and a fifth of that size off its borders.
+[[nodiscard]] Scene room_with_sheet(double gap);
+
 /// `count` patches spread over all of the mesh, ascending, at irregular distances.
 [[nodiscard]] std::vector<std::uint32_t> sampled_patches(const PatchMesh& mesh, std::uint32_t count);
 
@@ -73,7 +95,7 @@ struct RowErrors {
     std::uint32_t worst_j = 0;
     std::uint64_t pairs = 0; ///< with reference factor above 0
 
-    /// Takes in the row of patch i. Only elements of the reference count that are in `row` or not 0.
+    /// Takes in the row of patch i.
     void add(std::uint32_t i, const RowView& row, const std::vector<double>& reference);
 
 private:
