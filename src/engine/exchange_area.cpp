@@ -1,0 +1,304 @@
+#include "hemi/engine/exchange_area.hpp"
+
+#include "core/gauss_rule.hpp"
+#include "engine/contour_integral.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace hemi {
+
+namespace {
+
+/// A convex polygon after up to two cuts.
+struct Polygon {
+    std::array<Vec3, 6> points;
+    std::size_t count = 0;
+
+    void add(const Vec3& point) { points[count++] = point; }
+    [[nodiscard]] std::span<const Vec3> span() const { return {points.data(), count}; }
+};
+
+/// The part of a polygon in front of the plane through `at`.
+Polygon clip(std::span<const Vec3> polygon, const Vec3& at, const Vec3& normal) {
+    Polygon front;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec3& here = polygon[k];
+        const Vec3& next = polygon[(k + 1) % polygon.size()];
+        const double height = glm::dot(here - at, normal);
+        const double next_height = glm::dot(next - at, normal);
+        if (height >= 0.0) {
+            front.add(here);
+        }
+        if ((height < 0.0 && next_height > 0.0) || (height > 0.0 && next_height < 0.0)) {
+            front.add(here + (height / (height - next_height)) * (next - here));
+        }
+    }
+    return front;
+}
+
+/// The bilinear map of [-1, 1]² onto a quadrilateral; onto a triangle whose third corner counts twice.
+struct BilinearMap {
+    Vec3 middle, u, v, twist;
+    double jacobian, jacobian_u, jacobian_v;
+
+    BilinearMap(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& normal)
+        : middle(0.25 * ((a + c) + (b + d))), u(0.25 * ((b - a) + (c - d))), v(0.25 * ((d - a) + (c - b))),
+          twist(0.25 * ((a - b) + (c - d))), jacobian(glm::dot(normal, glm::cross(u, v))),
+          jacobian_u(glm::dot(normal, glm::cross(u, twist))),
+          jacobian_v(glm::dot(normal, glm::cross(twist, v))) {}
+};
+
+/// Points and weights of a product rule over a polygon's area.
+template <std::size_t N>
+struct AreaRule {
+    std::array<double, N * N> x, y, z, weight;
+
+    explicit AreaRule(const BilinearMap& map) {
+        const GaussRule gauss = gauss_rule(N);
+        std::size_t k = 0;
+        for (std::size_t row = 0; row < N; ++row) {
+            for (std::size_t column = 0; column < N; ++column, ++k) {
+                const double s = gauss.points[column];
+                const double t = gauss.points[row];
+                const Vec3 point = map.middle + s * map.u + t * map.v + (s * t) * map.twist;
+                x[k] = point.x;
+                y[k] = point.y;
+                z[k] = point.z;
+                weight[k] = gauss.weights[column] * gauss.weights[row] *
+                            (map.jacobian + s * map.jacobian_u + t * map.jacobian_v);
+            }
+        }
+    }
+};
+
+/// A plane that counts from one of its points, so that distance from the origin costs no digits.
+struct Plane {
+    Vec3 at;
+    Vec3 normal;
+};
+
+/// Heights of points above a plane.
+template <std::size_t N>
+std::array<double, N> heights(const std::array<double, N>& x, const std::array<double, N>& y,
+                              const std::array<double, N>& z, const Plane& plane) {
+    std::array<double, N> result;
+    for (std::size_t k = 0; k < N; ++k) {
+        result[k] = plane.normal.x * (x[k] - plane.at.x) + plane.normal.y * (y[k] - plane.at.y) +
+                    plane.normal.z * (z[k] - plane.at.z);
+    }
+    return result;
+}
+
+/// ∫∫ cos cos / (pi r²) by all pairs of points of two rules. The heights of b's points above a's plane are
+/// r cos at a, whatever the point of a: one division a pair remains.
+template <std::size_t N, typename Rule>
+double product_rule(const Rule& a, const Plane& plane_a, const Rule& b, const Plane& plane_b) {
+    std::array<double, N> weight_a = heights<N>(a.x, a.y, a.z, plane_b);
+    std::array<double, N> weight_b = heights<N>(b.x, b.y, b.z, plane_a);
+    for (std::size_t k = 0; k < N; ++k) {
+        weight_a[k] *= a.weight[k];
+        weight_b[k] *= b.weight[k];
+    }
+    double sum = 0.0;
+    for (std::size_t k = 0; k < N; ++k) {
+        std::array<double, N> terms;
+        for (std::size_t l = 0; l < N; ++l) {
+            const double x = b.x[l] - a.x[k];
+            const double y = b.y[l] - a.y[k];
+            const double z = b.z[l] - a.z[k];
+            const double squared = x * x + y * y + z * z;
+            terms[l] = weight_b[l] / (squared * squared);
+        }
+        double row = 0.0;
+        for (std::size_t l = 0; l < N; ++l) {
+            row += terms[l];
+        }
+        sum += weight_a[k] * row;
+    }
+    return sum / std::numbers::pi;
+}
+
+template <std::size_t N>
+double product_rule(std::span<const Vec3> a, const Plane& plane_a, std::span<const Vec3> b,
+                    const Plane& plane_b) {
+    const auto quadrilateral = [](std::span<const Vec3> polygon, const Vec3& normal) {
+        return AreaRule<N>(
+            BilinearMap(polygon[0], polygon[1], polygon[2], polygon[polygon.size() - 1], normal));
+    };
+    return product_rule<N * N>(quadrilateral(a, plane_a.normal), plane_a, quadrilateral(b, plane_b.normal),
+                               plane_b);
+}
+
+/// Distances of bounding spheres, in diameters of the larger one, from which product rules of n x n points
+/// on either side do.
+struct Reach {
+    std::size_t points;
+    double distance;
+};
+constexpr std::array<Reach, 3> standard_reach{{{2, 6.0}, {3, 2.0}, {4, 0.8}}};
+constexpr std::array<Reach, 4> exact_reach{{{2, 80.0}, {3, 12.0}, {4, 4.5}, {6, 1.7}}};
+
+double product_rule(std::size_t points, std::span<const Vec3> a, const Plane& plane_a,
+                    std::span<const Vec3> b, const Plane& plane_b) {
+    switch (points) {
+    case 2:
+        return product_rule<2>(a, plane_a, b, plane_b);
+    case 3:
+        return product_rule<3>(a, plane_a, b, plane_b);
+    case 4:
+        return product_rule<4>(a, plane_a, b, plane_b);
+    default:
+        return product_rule<6>(a, plane_a, b, plane_b);
+    }
+}
+
+} // namespace
+
+double point_factor(const Vec3& at, const Vec3& normal, std::span<const Vec3> polygon) {
+    if (glm::dot(area_vector(polygon), at - polygon[0]) <= 0.0) {
+        return 0.0;
+    }
+    const Polygon front = clip(polygon, at, normal);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < front.count; ++k) {
+        const Vec3 a = front.points[k] - at;
+        const Vec3 b = front.points[(k + 1) % front.count] - at;
+        const Vec3 cross = glm::cross(a, b);
+        const double sine = glm::length(cross);
+        if (sine > 0.0) {
+            sum += std::atan2(sine, glm::dot(a, b)) * glm::dot(normal, cross) / sine;
+        }
+    }
+    // Seen from the front, a polygon that is counter-clockwise about its normal runs clockwise.
+    return std::max(0.0, -sum / (2.0 * std::numbers::pi));
+}
+
+ExchangeAreas::ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule)
+    : rule_(rule), rounding_(mesh.rounding()),
+      far_(rule == ExchangeRule::standard ? standard_reach[0].distance : exact_reach[0].distance),
+      patches_(mesh.size()) {
+    const Vec3 origin = mesh.bounds().centre();
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        PatchCorners corners = mesh.corners(i);
+        Bounds bounds;
+        for (std::uint32_t k = 0; k < corners.count; ++k) {
+            corners.points[k] -= origin;
+            bounds.add(corners.points[k]);
+        }
+        Patch& patch = patches_[i];
+        patch.corners = corners.count;
+        patch.normal = mesh.normal(i);
+        patch.area = mesh.areas()[i];
+        patch.centre = bounds.centre();
+        patch.radius = 0.0;
+        for (const Vec3& corner : corners.polygon()) {
+            patch.radius = std::max(patch.radius, glm::length(corner - patch.centre));
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3& corner = corners.points[std::min<std::size_t>(k, corners.count - 1)];
+            patch.corner_x[k] = corner.x;
+            patch.corner_y[k] = corner.y;
+            patch.corner_z[k] = corner.z;
+        }
+        const auto& p = corners.points;
+        const AreaRule<2> points(BilinearMap(p[0], p[1], p[2], p[corners.count - 1], patch.normal));
+        patch.x = points.x;
+        patch.y = points.y;
+        patch.z = points.z;
+        patch.weight = points.weight;
+    }
+}
+
+double ExchangeAreas::operator()(std::uint32_t i, std::uint32_t j) const {
+    if (i == j) {
+        return 0.0;
+    }
+    const Patch& a = patches_[std::min(i, j)];
+    const Patch& b = patches_[std::max(i, j)];
+    const Plane plane_a{a.centre, a.normal};
+    const Plane plane_b{b.centre, b.normal};
+    const auto [lowest_b, highest_b] =
+        std::ranges::minmax(heights<4>(b.corner_x, b.corner_y, b.corner_z, plane_a));
+    if (highest_b <= rounding_) {
+        return 0.0;
+    }
+    const auto [lowest_a, highest_a] =
+        std::ranges::minmax(heights<4>(a.corner_x, a.corner_y, a.corner_z, plane_b));
+    if (highest_a <= rounding_) {
+        return 0.0;
+    }
+    const bool clip = lowest_a < -rounding_ || lowest_b < -rounding_;
+    const double gap = glm::length(b.centre - a.centre) - a.radius - b.radius;
+    const double distance = gap / (2.0 * std::max(a.radius, b.radius));
+    if (!clip && distance >= far_) {
+        return product_rule<4>(a, plane_a, b, plane_b);
+    }
+    return near_area(a, b, clip, distance);
+}
+
+double ExchangeAreas::near_area(const Patch& a, const Patch& b, bool clipped, double distance) const {
+    // Coordinates of about 1 about the pair, in powers of two, so that the scene's units cost no bits.
+    const Vec3 middle = 0.5 * (a.centre + b.centre);
+    const double size = std::max(a.radius, b.radius) * std::max(1.0, distance);
+    const double unit = std::ldexp(1.0, std::ilogb(size));
+    const auto local = [&](const Patch& patch) {
+        Polygon polygon;
+        for (std::size_t k = 0; k < patch.corners; ++k) {
+            polygon.add((Vec3(patch.corner_x[k], patch.corner_y[k], patch.corner_z[k]) - middle) / unit);
+        }
+        return polygon;
+    };
+    const Plane plane_a{(a.centre - middle) / unit, a.normal};
+    const Plane plane_b{(b.centre - middle) / unit, b.normal};
+    Polygon polygon_a = local(a);
+    Polygon polygon_b = local(b);
+    if (clipped) {
+        polygon_a = clip(polygon_a.span(), plane_b.at, plane_b.normal);
+        polygon_b = clip(polygon_b.span(), plane_a.at, plane_a.normal);
+        if (polygon_a.count < 3 || polygon_b.count < 3) {
+            return 0.0;
+        }
+    }
+
+    const auto reaches = rule_ == ExchangeRule::standard ? std::span<const Reach>(standard_reach)
+                                                         : std::span<const Reach>(exact_reach);
+    for (const Reach& reach : reaches) {
+        if (distance < reach.distance) {
+            continue;
+        }
+        // A clipped polygon has up to five corners: triangles about the first one.
+        const auto pieces = [clipped](const Polygon& polygon) {
+            return clipped && polygon.count > 4 ? polygon.count - 2 : 1;
+        };
+        double sum = 0.0;
+        for (std::size_t k = 0; k < pieces(polygon_a); ++k) {
+            for (std::size_t l = 0; l < pieces(polygon_b); ++l) {
+                const auto piece = [&](const Polygon& polygon, std::size_t index) {
+                    Polygon part;
+                    if (pieces(polygon) == 1) {
+                        return polygon;
+                    }
+                    part.add(polygon.points[0]);
+                    part.add(polygon.points[index + 1]);
+                    part.add(polygon.points[index + 2]);
+                    return part;
+                };
+                sum += product_rule(reach.points, piece(polygon_a, k).span(), plane_a,
+                                    piece(polygon_b, l).span(), plane_b);
+            }
+        }
+        return std::max(0.0, sum) * unit * unit;
+    }
+
+    const double smaller = std::min(a.area, b.area) / (unit * unit);
+    ContourRule rule;
+    rule.tolerance = (rule_ == ExchangeRule::standard ? 1e-9 : 1e-13) * std::min(1.0, smaller);
+    rule.rounding = std::max(2.0 * rounding_ / unit, 1e-14);
+    return std::max(0.0, contour_integral(polygon_a.span(), polygon_b.span(), rule)) * unit * unit;
+}
+
+} // namespace hemi
