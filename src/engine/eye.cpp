@@ -1,6 +1,6 @@
 #include "engine/eye.hpp"
 
-#include "core/gauss_legendre.hpp"
+#include "core/gauss_rule.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
 
@@ -21,6 +21,21 @@ std::uint64_t splitmix(std::uint64_t value) {
 }
 
 constexpr std::uint32_t most_eyes_a_side = 8;
+
+/// Point of a rule on [0, 1]; the weights sum to 1.
+struct EdgePoint {
+    double at;
+    double weight;
+};
+
+std::vector<EdgePoint> edge_points(std::uint32_t k) {
+    const GaussRule rule = gauss_rule(k);
+    std::vector<EdgePoint> points;
+    for (std::size_t n = 0; n < k; ++n) {
+        points.push_back({0.5 * (1.0 + rule.points[n]), 0.5 * rule.weights[n]});
+    }
+    return points;
+}
 
 struct TrianglePoint {
     double b, c; ///< barycentric coordinates of corners 1 and 2
@@ -58,8 +73,8 @@ std::vector<TrianglePoint> triangle_points(std::uint32_t k) {
         six(0.053145049844817, 0.310352451033784, 0.082851075618374);
         return points;
     default:
-        for (const GaussPoint& u : gauss_legendre(k)) {
-            for (const GaussPoint& v : gauss_legendre(k)) {
+        for (const EdgePoint& u : edge_points(k)) {
+            for (const EdgePoint& v : edge_points(k)) {
                 points.push_back({u.at * (1.0 - v.at), u.at * v.at, 2.0 * u.at * u.weight * v.weight});
             }
         }
@@ -83,7 +98,7 @@ EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count) {
     check_eye_points(count);
     const auto k = static_cast<std::uint32_t>(std::lround(std::sqrt(count)));
     const std::vector<TrianglePoint> on_triangles = triangle_points(k);
-    const std::vector<GaussPoint> on_edges = gauss_legendre(k);
+    const std::vector<EdgePoint> on_edges = edge_points(k);
     EyePoints eyes;
     eyes.points.reserve(std::size_t{mesh.size()} * count);
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
@@ -108,8 +123,8 @@ EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count) {
             continue;
         }
         double area = 0.0;
-        for (const GaussPoint& v : on_edges) {
-            for (const GaussPoint& u : on_edges) {
+        for (const EdgePoint& v : on_edges) {
+            for (const EdgePoint& u : on_edges) {
                 const Vec3 along_u = (1.0 - v.at) * (p[1] - p[0]) + v.at * (p[2] - p[3]);
                 const Vec3 along_v = (1.0 - u.at) * (p[3] - p[0]) + u.at * (p[2] - p[1]);
                 eye.position = p[0] + u.at * (p[1] - p[0]) +
