@@ -136,6 +136,12 @@ bool FormFactorMatrix::all_known() const {
     });
 }
 
+bool FormFactorMatrix::has_visibility() const noexcept {
+    return entries() > 0 && std::all_of(blocks_.begin(), blocks_.end(), [](const RowBlock& block) {
+               return block.visibility.size() == block.values.size();
+           });
+}
+
 std::uint64_t FormFactorMatrix::entries() const noexcept {
     std::uint64_t count = 0;
     for (const RowBlock& block : blocks_) {

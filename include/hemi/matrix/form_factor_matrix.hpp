@@ -56,6 +56,8 @@ public:
     /// Whether row i was computed; `solve` leaves out rows that the scene does not require.
     [[nodiscard]] bool known(std::uint32_t i) const;
     [[nodiscard]] bool all_known() const;
+    /// Whether there are entries, and a visibility for each of them.
+    [[nodiscard]] bool has_visibility() const noexcept;
     /// Stored entries, all rows.
     [[nodiscard]] std::uint64_t entries() const noexcept;
     [[nodiscard]] std::uint64_t memory_bytes() const noexcept;
