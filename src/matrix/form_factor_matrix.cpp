@@ -169,4 +169,8 @@ void FormFactorMatrix::set_block(RowBlock block) {
     blocks_[block.first_row / block_rows] = std::move(block);
 }
 
+std::vector<RowBlock> FormFactorMatrix::take_blocks() {
+    return std::exchange(blocks_, FormFactorMatrix(size_).blocks_);
+}
+
 } // namespace hemi
