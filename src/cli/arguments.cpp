@@ -2,6 +2,7 @@
 
 #include "core/nearest_word.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/engine/engine.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -134,9 +135,10 @@ void add_device(CLI::App& app, std::string& device) {
 
 void add_rows(CLI::App& app, RowOptions& rows) {
     Options options(app, "Form factors");
-    options.value("--preset", "NAME", "plain: the textbook hemicube (the default)",
+    options.value("--preset", "NAME",
+                  "plain: the textbook hemicube; fast, default, exact: exact factors times visibility",
                   [&rows](const std::string& text) {
-                      (void)parse_choice("--preset", text, Words{"plain"}, Words{"fast", "default", "exact"});
+                      (void)parse_choice("--preset", text, Words{"plain", "fast", "default", "exact"});
                       rows.preset = text;
                   });
     options.value("--method", "NAME", "hemicube (the default)", [&rows](const std::string& text) {
@@ -144,16 +146,13 @@ void add_rows(CLI::App& app, RowOptions& rows) {
                            Words{"montecarlo", "contour", "direct", "hemisphere"});
         rows.method = text;
     });
-    options.value("--eye-points", "K", "sample points per patch; 1 is the only value so far",
+    options.value("--eye-points", "K", "sample points per patch: 1, 4, 9 ... 64 (as the preset says)",
                   [&rows](const std::string& text) {
                       rows.eye_points = to_index("--eye-points", text, 1);
-                      if (rows.eye_points != 1) {
-                          throw InvalidArgument(fmt::format("--eye-points {}: patches are sampled at their "
-                                                            "centre only; 1 is the only value so far",
-                                                            text));
-                      }
+                      check_eye_points(*rows.eye_points);
                   });
-    options.value("--resolution", "R", "texels along a full hemicube edge: even, 2 to 4096 (128)",
+    options.value("--resolution", "R",
+                  "texels along a full hemicube edge: even, 2 to 4096 (as the preset says; plain: 128)",
                   [&rows](const std::string& text) {
                       rows.resolution = to_index("--resolution", text, 2, 4096);
                       if (*rows.resolution % 2 != 0) {

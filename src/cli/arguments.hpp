@@ -41,7 +41,7 @@ struct RowOptions {
     std::string device = "auto";
     std::string preset = "plain";
     std::string method = "hemicube";
-    std::uint32_t eye_points = 1;
+    std::optional<std::uint32_t> eye_points;
     std::optional<std::uint32_t> resolution;
     std::optional<std::uint64_t> seed;
     bool merge = true;

@@ -62,7 +62,8 @@ struct Cost {
 /// rasteriser a hemicube of resolution 128 takes a core 0.8 ms and 5 µs more for every polygon drawn.
 Cost rule_of_thumb(const PatchMesh& mesh, const RowOptions& options) {
     const double patches = mesh.size();
-    const double resolution = hemicube_settings(options).resolution;
+    const HemicubeSettings hemicube = plan_rows(options, mesh.size()).hemicube;
+    const double resolution = hemicube.resolution;
     const double texels = 3.0 * resolution * resolution;
     const double in_view = 0.5 * patches;
     Cost cost;
@@ -71,19 +72,23 @@ Cost rule_of_thumb(const PatchMesh& mesh, const RowOptions& options) {
     cost.cores = options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency());
     const auto polygons = static_cast<double>(make_draw_list(mesh, options.merge).polygons.size());
     const double fill = resolution * resolution / (128.0 * 128.0);
-    cost.seconds = patches * (0.8e-3 * fill + 5e-6 * polygons) / cost.cores;
+    cost.seconds = patches * hemicube.eye_points * (0.8e-3 * fill + 5e-6 * polygons) / cost.cores;
     return cost;
 }
 
 Cost measure(const PatchMesh& mesh, const RowOptions& options) {
-    const auto engine = make_engine(mesh, options);
-    const MatrixEstimate estimate = estimate_matrix(*engine, all_patches(mesh.size()));
-    Cost cost;
-    cost.entries_per_row = estimate.entries_per_row;
-    cost.memory = estimate.memory_bytes;
-    cost.seconds = estimate.seconds;
-    cost.renderer = engine->renderer();
-    return cost;
+    const RowPlan plan = plan_rows(options, mesh.size());
+    const auto engine = make_engine(mesh, plan.hemicube, options);
+    const auto take = [&engine](const auto& estimate) {
+        Cost cost;
+        cost.entries_per_row = estimate.entries_per_row;
+        cost.memory = estimate.memory_bytes;
+        cost.seconds = estimate.seconds;
+        cost.renderer = engine->renderer();
+        return cost;
+    };
+    const auto patches = all_patches(mesh.size());
+    return plan.hybrid ? take(estimate_hybrid(*engine, patches)) : take(estimate_matrix(*engine, patches));
 }
 
 std::string cost_text(const Cost& cost, const PatchMesh& mesh) {

@@ -83,8 +83,7 @@ void check_memory(const MatrixEstimate& estimate, std::size_t rows, const RowOpt
         options.max_memory ? "--max-memory" : "80 % of the memory that is free"));
 }
 
-io::FactorFile describe(const LoadedScene& loaded, const RowOptions& options) {
-    const HemicubeSettings settings = hemicube_settings(options);
+io::FactorFile describe(const LoadedScene& loaded, const RowOptions& options, const RowPlan& plan) {
     io::FactorFile file;
     file.areas.assign(loaded.mesh.areas().begin(), loaded.mesh.areas().end());
     file.groups = loaded.mesh.groups();
@@ -92,9 +91,9 @@ io::FactorFile describe(const LoadedScene& loaded, const RowOptions& options) {
     file.geometry_hash = loaded.mesh.geometry_hash();
     file.preset = options.preset;
     file.method = options.method;
-    file.resolution = settings.resolution;
-    file.eye_points = options.eye_points;
-    file.seed = settings.seed;
+    file.resolution = plan.hemicube.resolution;
+    file.eye_points = plan.hemicube.eye_points;
+    file.seed = plan.hemicube.seed;
     file.enclosure = enclosure_name(loaded.scene.enclosure);
     return file;
 }
@@ -186,46 +185,106 @@ std::uint64_t memory_limit(const RowOptions& options) {
     return available / 10 * 8;
 }
 
-HemicubeSettings hemicube_settings(const RowOptions& options) {
-    HemicubeSettings settings;
-    settings.resolution = options.resolution.value_or(settings.resolution);
-    settings.seed = options.seed.value_or(settings.seed);
-    settings.merge_lattices = options.merge;
-    return settings;
+RowPlan plan_rows(const RowOptions& options, std::uint32_t patches) {
+    RowPlan plan;
+    HemicubeSettings& hemicube = plan.hemicube;
+    plan.hybrid = options.preset != "plain";
+    if (options.preset == "fast") {
+        hemicube.resolution = 64;
+    } else if (options.preset == "default") {
+        hemicube.eye_points = 4;
+        hemicube.resolution = 64;
+    } else if (options.preset == "exact") {
+        hemicube.eye_points = 16;
+        hemicube.resolution = 64;
+        plan.rule = ExchangeRule::exact;
+    }
+    (void)patches;
+    hemicube.resolution = options.resolution.value_or(hemicube.resolution);
+    hemicube.eye_points = options.eye_points.value_or(hemicube.eye_points);
+    hemicube.seed = options.seed.value_or(hemicube.seed);
+    hemicube.merge_lattices = options.merge;
+    hemicube.quantity = plan.hybrid ? RowQuantity::visibility : RowQuantity::form_factors;
+    return plan;
 }
 
-std::unique_ptr<RowProvider> make_engine(const PatchMesh& mesh, const RowOptions& options) {
+std::unique_ptr<RowProvider> make_engine(const PatchMesh& mesh, const HemicubeSettings& hemicube,
+                                         const RowOptions& options) {
     EngineSettings settings;
     settings.device = options.device;
     settings.jobs = options.jobs;
     settings.worker_program =
         "/proc/self/exe"; // the very file that runs, even if its name is another's by now
-    return std::make_unique<StoppableEngine>(
-        make_hemicube_engine(mesh, hemicube_settings(options), settings));
+    return std::make_unique<StoppableEngine>(make_hemicube_engine(mesh, hemicube, settings));
 }
+
+namespace {
+
+/// Whether the hybrid's table of pairs and its matrix fit; says so where they do not.
+bool hybrid_fits(RowProvider& visibility, std::span<const std::uint32_t> patches, const RowOptions& options,
+                 const Terminal& terminal) {
+    const HybridEstimate estimate =
+        estimate_hybrid(visibility, patches, patches.size() > sample_above ? sample_rows : 0);
+    if (patches.size() > sample_above) {
+        terminal.detail(fmt::format("{} rows and their pairs will need about {}, and {} for visibility",
+                                    count_text(patches.size()), memory_text(estimate.memory_bytes),
+                                    seconds_text(estimate.seconds)));
+    }
+    const std::uint64_t limit = memory_limit(options);
+    if (estimate.memory_bytes <= limit) {
+        return true;
+    }
+    terminal.warn(fmt::format("--preset {} would need {} for the pairs of {} patches; the limit is {}. Plain "
+                              "hemicube rows are computed instead",
+                              options.preset, memory_text(estimate.memory_bytes),
+                              count_text(visibility.size()), memory_text(limit)));
+    return false;
+}
+
+} // namespace
 
 Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
                   const RowOptions& options, const Terminal& terminal) {
+    RowPlan plan = plan_rows(options, loaded.mesh.size());
     Rows rows;
-    rows.file = describe(loaded, options);
     if (patches.empty()) {
+        rows.file = describe(loaded, options, plan);
         rows.file.factors = FormFactorMatrix(loaded.mesh.size());
         rows.file.renderer = "none";
         return rows;
     }
-    const auto engine = make_engine(loaded.mesh, options);
-    if (patches.size() > sample_above) {
+    auto engine = make_engine(loaded.mesh, plan.hemicube, options);
+    if (plan.hybrid && !hybrid_fits(*engine, patches, options, terminal)) {
+        RowOptions plain = options;
+        plain.preset = "plain";
+        return compute_rows(loaded, patches, plain, terminal);
+    }
+    if (!plan.hybrid && patches.size() > sample_above) {
         const MatrixEstimate estimate = estimate_matrix(*engine, patches, sample_rows);
         terminal.detail(fmt::format("{} rows will need about {} and {}", count_text(patches.size()),
                                     memory_text(estimate.memory_bytes), seconds_text(estimate.seconds)));
         check_memory(estimate, patches.size(), options);
     }
     stop_if_interrupted();
+    rows.file = describe(loaded, options, plan);
     const Stopwatch watch;
-    ProgressBar bar(terminal, "form factors", "rows");
-    rows.file.factors = compute_matrix(*engine, patches, bar.callback());
+    if (plan.hybrid) {
+        ProgressBar seen(terminal, "visibility", "rows");
+        std::optional<ProgressBar> paired; // starts its clock when its turn has come
+        const auto pairs_done = [&](std::size_t done, std::size_t total) {
+            if (!paired) {
+                paired.emplace(terminal, "form factors", "rows");
+            }
+            return paired->callback()(done, total);
+        };
+        rows.file.factors = compute_hybrid(*engine, loaded.mesh, patches, plan.rule, loaded.scene.enclosure,
+                                           seen.callback(), pairs_done);
+    } else {
+        ProgressBar bar(terminal, "form factors", "rows");
+        rows.file.factors = compute_matrix(*engine, patches, bar.callback());
+    }
     rows.seconds = watch.seconds();
-    rows.computed = patches.size();
+    rows.computed = patches.size() * plan.hemicube.eye_points;
     rows.file.renderer = engine->renderer();
     rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
     stop_if_interrupted();
@@ -249,7 +308,7 @@ Rows reuse_rows(const std::filesystem::path& path, const LoadedScene& loaded, co
     check_setting(common, path, "--seed", options.seed.value_or(0), file.seed);
     check_setting(common, path, "--preset", options.preset, file.preset);
     check_setting(common, path, "--method", options.method, file.method);
-    check_setting(common, path, "--eye-points", options.eye_points, file.eye_points);
+    check_setting(common, path, "--eye-points", options.eye_points.value_or(0), file.eye_points);
     return rows;
 }
 

@@ -4,6 +4,7 @@
 #include "cli/report.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/engine/hybrid.hpp"
 #include "hemi/io/factor_file.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
@@ -50,10 +51,18 @@ void refuse_all_but(const CommonOptions& common, std::span<const std::string> al
 /// Bytes that the form factors may take: `--max-memory`, else 80 % of what the system says is available.
 [[nodiscard]] std::uint64_t memory_limit(const RowOptions& options);
 
-[[nodiscard]] HemicubeSettings hemicube_settings(const RowOptions& options);
+/// How rows will be computed: the preset, and what single options replaced in it.
+struct RowPlan {
+    HemicubeSettings hemicube;
+    bool hybrid = false; ///< exact factors times visibility; else the texels alone
+    ExchangeRule rule = ExchangeRule::standard;
+};
+/// @param patches  of the whole scene: where many share the texels, one sharper eye sees more than several
+[[nodiscard]] RowPlan plan_rows(const RowOptions& options, std::uint32_t patches);
 
 /// An engine that stops with Cancelled, at the next row, once the user has interrupted.
-[[nodiscard]] std::unique_ptr<RowProvider> make_engine(const PatchMesh& mesh, const RowOptions& options);
+[[nodiscard]] std::unique_ptr<RowProvider>
+make_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const RowOptions& options);
 
 /// Rows of F with all that belongs to them, and how they came about.
 struct Rows {

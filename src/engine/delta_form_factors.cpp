@@ -95,4 +95,13 @@ DeltaFormFactors::DeltaFormFactors(std::uint32_t resolution) : resolution_(resol
     prefix_.back() = total;
 }
 
+DeltaFormFactors DeltaFormFactors::scaled(double share) const {
+    DeltaFormFactors result = *this;
+    const auto factor = static_cast<std::uint64_t>(std::clamp(share, 0.0, 1.0) * 0x1p32);
+    for (std::uint32_t& prefix : result.prefix_) {
+        prefix = static_cast<std::uint32_t>(prefix * factor >> 32); // monotonous, as before
+    }
+    return result;
+}
+
 } // namespace hemi

@@ -1,5 +1,11 @@
 #include "engine/eye.hpp"
 
+#include "core/gauss_rule.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/engine/engine.hpp"
+
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -14,17 +20,131 @@ std::uint64_t splitmix(std::uint64_t value) {
     return value ^ (value >> 31);
 }
 
+constexpr std::uint32_t most_eyes_a_side = 8;
+
+/// Point of a rule on [0, 1]; the weights sum to 1.
+struct EdgePoint {
+    double at;
+    double weight;
+};
+
+std::vector<EdgePoint> edge_points(std::uint32_t k) {
+    const GaussRule rule = gauss_rule(k);
+    std::vector<EdgePoint> points;
+    for (std::size_t n = 0; n < k; ++n) {
+        points.push_back({0.5 * (1.0 + rule.points[n]), 0.5 * rule.weights[n]});
+    }
+    return points;
+}
+
+struct TrianglePoint {
+    double b, c; ///< barycentric coordinates of corners 1 and 2
+    double weight;
+};
+
+/// Symmetric rules of degree 1, 2, 4 and 6; above, the rule of the square folded onto the triangle.
+/// Source: D. A. Dunavant, "High degree efficient symmetrical Gaussian quadrature rules for the triangle",
+/// International Journal for Numerical Methods in Engineering 21, 1985.
+std::vector<TrianglePoint> triangle_points(std::uint32_t k) {
+    std::vector<TrianglePoint> points;
+    const auto three = [&](double b, double weight) {
+        const double a = 1.0 - 2.0 * b;
+        points.insert(points.end(), {{b, b, weight}, {a, b, weight}, {b, a, weight}});
+    };
+    const auto six = [&](double a, double b, double weight) {
+        const double c = 1.0 - a - b;
+        points.insert(
+            points.end(),
+            {{a, b, weight}, {b, a, weight}, {a, c, weight}, {c, a, weight}, {b, c, weight}, {c, b, weight}});
+    };
+    switch (k) {
+    case 1:
+        return {{1.0 / 3.0, 1.0 / 3.0, 1.0}};
+    case 2:
+        three(1.0 / 6.0, 1.0 / 3.0);
+        return points;
+    case 3:
+        three(0.445948490915965, 0.223381589678011);
+        three(0.091576213509771, 0.109951743655322);
+        return points;
+    case 4:
+        three(0.249286745170910, 0.116786275726379);
+        three(0.063089014491502, 0.050844906370207);
+        six(0.053145049844817, 0.310352451033784, 0.082851075618374);
+        return points;
+    default:
+        for (const EdgePoint& u : edge_points(k)) {
+            for (const EdgePoint& v : edge_points(k)) {
+                points.push_back({u.at * (1.0 - v.at), u.at * v.at, 2.0 * u.at * u.weight * v.weight});
+            }
+        }
+        return points;
+    }
+}
+
 } // namespace
 
-std::vector<EyePoint> make_eye_points(const PatchMesh& mesh) {
-    std::vector<EyePoint> eyes(mesh.size());
-    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
-        eyes[patch] = {mesh.centres()[patch], mesh.normal(patch), mesh.surface_of()[patch]};
+void check_eye_points(std::uint32_t count) {
+    for (std::uint32_t k = 1; k <= most_eyes_a_side; ++k) {
+        if (k * k == count) {
+            return;
+        }
     }
+    throw InvalidArgument(fmt::format("{} eye points a patch; it must be 1, 4, 9, 16 … or {}", count,
+                                      most_eyes_a_side * most_eyes_a_side));
+}
+
+EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count) {
+    check_eye_points(count);
+    const auto k = static_cast<std::uint32_t>(std::lround(std::sqrt(count)));
+    const std::vector<TrianglePoint> on_triangles = triangle_points(k);
+    const std::vector<EdgePoint> on_edges = edge_points(k);
+    EyePoints eyes;
+    eyes.points.reserve(std::size_t{mesh.size()} * count);
+    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
+        EyePoint eye;
+        eye.position = mesh.centres()[patch];
+        eye.normal = mesh.normal(patch);
+        eye.surface = mesh.surface_of()[patch];
+        if (count == 1) {
+            eyes.points.push_back(eye);
+            continue;
+        }
+        const PatchCorners corners = mesh.corners(patch);
+        const auto& p = corners.points;
+        if (corners.count == 3) {
+            for (const TrianglePoint& point : on_triangles) {
+                eye.position = p[0] + point.b * (p[1] - p[0]) + point.c * (p[2] - p[0]);
+                eye.share = point.weight;
+                eyes.points.push_back(eye);
+                ++eye.index;
+            }
+            continue;
+        }
+        double area = 0.0;
+        for (const EdgePoint& v : on_edges) {
+            for (const EdgePoint& u : on_edges) {
+                const Vec3 along_u = (1.0 - v.at) * (p[1] - p[0]) + v.at * (p[2] - p[3]);
+                const Vec3 along_v = (1.0 - u.at) * (p[3] - p[0]) + u.at * (p[2] - p[1]);
+                eye.position = p[0] + u.at * (p[1] - p[0]) +
+                               v.at * ((1.0 - u.at) * (p[3] - p[0]) + u.at * (p[2] - p[1]));
+                eye.share = u.weight * v.weight * glm::length(glm::cross(along_u, along_v));
+                area += eye.share;
+                eyes.points.push_back(eye);
+                ++eye.index;
+            }
+        }
+        for (std::size_t at = eyes.first.back(); at < eyes.points.size(); ++at) {
+            eyes.points[at].share /= area;
+        }
+    }
+    eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
     return eyes;
 }
 
-EyeFrame::EyeFrame(const Vec3& normal, std::uint32_t patch, std::uint64_t seed) : z(normal) {
+EyeFrame::EyeFrame(const Vec3& normal, std::uint32_t patch, std::uint32_t eye, std::uint64_t seed)
+    : z(normal) {
     // The axis least along the normal gives a well-conditioned tangent.
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
@@ -36,7 +156,7 @@ EyeFrame::EyeFrame(const Vec3& normal, std::uint32_t patch, std::uint64_t seed) 
     other[axis] = 1.0;
     const Vec3 tangent = glm::normalize(glm::cross(other, normal));
     const Vec3 bitangent = glm::cross(normal, tangent);
-    const std::uint64_t hash = splitmix(splitmix(seed) ^ patch);
+    const std::uint64_t hash = splitmix(splitmix(seed) ^ patch ^ std::uint64_t{eye} << 32);
     const double angle = static_cast<double>(hash >> 11) * 0x1p-53 * 2.0 * std::numbers::pi;
     x = std::cos(angle) * tangent + std::sin(angle) * bitangent;
     y = glm::cross(z, x);

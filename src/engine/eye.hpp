@@ -4,6 +4,7 @@
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hemi {
@@ -12,18 +13,36 @@ namespace hemi {
 struct EyePoint {
     Vec3 position{0.0};
     Vec3 normal{0.0};
+    double share = 1.0;        ///< of its patch that it stands for; a patch's shares sum to 1
     std::uint32_t surface = 0; ///< the surface that it lies on
+    std::uint32_t index = 0;   ///< among the eye points of its patch
 };
 
-/// One eye point a patch: its centroid.
-[[nodiscard]] std::vector<EyePoint> make_eye_points(const PatchMesh& mesh);
+/// Where the hemicubes of all patches stand: those of patch i are [first[i], first[i + 1]).
+struct EyePoints {
+    std::vector<EyePoint> points;
+    std::vector<std::uint32_t> first; ///< N + 1
+
+    [[nodiscard]] std::uint32_t patches() const { return static_cast<std::uint32_t>(first.size() - 1); }
+    [[nodiscard]] std::span<const EyePoint> of(std::uint32_t patch) const {
+        return std::span(points).subspan(first[patch], first[patch + 1] - first[patch]);
+    }
+};
+
+/// Eye points of every patch. One: its centroid. k²: a Gauss–Legendre rule of k × k points on quadrilaterals,
+/// weighted by the share of the area they stand for; on triangles the symmetric rule of fewest points that
+/// integrates polynomials of degree k (1, 3, 6 or 12 points, k = 1 to 4; above that as on quadrilaterals).
+/// @param count  a square: 1, 4, 9 … 64.
+/// @throws InvalidArgument if it is another number.
+[[nodiscard]] EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count);
 
 /// Axes of a hemicube: z is the patch's normal, x and y are turned about it by an angle hashed from the patch
-/// index and the seed. Without the turn, patch edges fall exactly on texel centres in regular scenes.
+/// index, the index of the eye point and the seed. Without the turn, patch edges fall exactly on texel
+/// centres in regular scenes.
 struct EyeFrame {
     Vec3 x, y, z;
 
-    EyeFrame(const Vec3& normal, std::uint32_t patch, std::uint64_t seed);
+    EyeFrame(const Vec3& normal, std::uint32_t patch, std::uint32_t eye, std::uint64_t seed);
 };
 
 /// Faces of a hemicube, in the order of the item buffer.

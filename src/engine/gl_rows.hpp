@@ -16,9 +16,9 @@ namespace hemi {
 /// All that an engine needs to know of a mesh: what to draw, and from where. Can be sent to a worker.
 struct EngineGeometry {
     DrawList list;
-    std::vector<EyePoint> eyes; ///< one a patch
+    EyePoints eyes;
 };
-[[nodiscard]] EngineGeometry make_engine_geometry(const PatchMesh& mesh, bool merge_lattices);
+[[nodiscard]] EngineGeometry make_engine_geometry(const PatchMesh& mesh, const HemicubeSettings& settings);
 
 /// Rows by item buffers on one context of this process and thread.
 class GlRows {
@@ -35,9 +35,9 @@ public:
     /// Computes rows in the order given and hands each on.
     void rows(std::span<const std::uint32_t> patches, const RowSink& sink);
 
-    /// The item buffer of one eye: 3·resolution rows of `resolution` items (nothing, blocked, or
-    /// item_first_patch + patch). For tests and for looking at what a patch sees.
-    [[nodiscard]] std::vector<std::uint32_t> items(std::uint32_t patch);
+    /// The item buffer of one eye point of a patch: 3·resolution rows of `resolution` items (nothing,
+    /// blocked, or item_first_patch + patch). For tests and for looking at what a patch sees.
+    [[nodiscard]] std::vector<std::uint32_t> items(std::uint32_t patch, std::uint32_t eye = 0);
 
 private:
     struct State;

@@ -15,9 +15,7 @@ public:
                     std::string device)
         : geometry_(std::move(geometry)), settings_(settings), device_(std::move(device)) {}
 
-    [[nodiscard]] std::uint32_t size() const override {
-        return static_cast<std::uint32_t>(geometry_->eyes.size());
-    }
+    [[nodiscard]] std::uint32_t size() const override { return geometry_->eyes.patches(); }
     [[nodiscard]] std::string renderer() const override { return engine().renderer(); }
     void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
         engine().rows(patches, sink);
@@ -43,8 +41,7 @@ std::unique_ptr<RowProvider> make_hemicube_engine(const PatchMesh& mesh, const H
                                                   const EngineSettings& engine) {
     DeltaFormFactors::check_resolution(settings.resolution);
     gl::check_device_name(engine.device);
-    auto geometry =
-        std::make_unique<const EngineGeometry>(make_engine_geometry(mesh, settings.merge_lattices));
+    auto geometry = std::make_unique<const EngineGeometry>(make_engine_geometry(mesh, settings));
     if (engine.worker_program.empty()) {
         return std::make_unique<InProcessEngine>(std::move(geometry), settings, engine.device);
     }

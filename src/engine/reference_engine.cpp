@@ -1,5 +1,7 @@
 #include "engine/reference_engine.hpp"
 
+#include "hemi/core/error.hpp"
+
 #include "hemi/engine/delta_form_factors.hpp"
 
 #include <algorithm>
@@ -77,14 +79,20 @@ public:
         std::vector<float> values;
         for (const std::uint32_t patch : patches) {
             std::vector<std::uint64_t> sums(std::size_t{item_first_patch} + mesh_.size());
-            const std::vector<std::uint32_t> items = tracer_.items(patch);
-            const std::uint32_t resolution = weights_.resolution();
-            for (std::uint32_t y = 0; y < weights_.rows(); ++y) {
-                for (std::uint32_t x = 0; x < resolution; ++x) {
-                    sums[items[std::size_t{y} * resolution + x]] += weights_.weight(y, x);
+            std::uint64_t total = 0;
+            const auto eyes = tracer_.eyes().of(patch);
+            for (std::uint32_t eye = 0; eye < eyes.size(); ++eye) {
+                const DeltaFormFactors weights = weights_.scaled(eyes[eye].share);
+                const std::vector<std::uint32_t> items = tracer_.items(patch, eye);
+                const std::uint32_t resolution = weights.resolution();
+                for (std::uint32_t y = 0; y < weights.rows(); ++y) {
+                    for (std::uint32_t x = 0; x < resolution; ++x) {
+                        sums[items[std::size_t{y} * resolution + x]] += weights.weight(y, x);
+                    }
                 }
+                total += weights.sum();
             }
-            constexpr double unit = 1.0 / DeltaFormFactors::total;
+            const double unit = 1.0 / static_cast<double>(total);
             columns.clear();
             values.clear();
             for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
@@ -112,13 +120,14 @@ private:
 } // namespace
 
 ReferenceTracer::ReferenceTracer(const PatchMesh& mesh, const HemicubeSettings& settings)
-    : mesh_(mesh), settings_(settings), tolerance_(mesh.rounding()) {}
+    : mesh_(mesh), settings_(settings), eyes_(make_eye_points(mesh, settings.eye_points)),
+      tolerance_(mesh.rounding()) {}
 
-std::vector<std::uint32_t> ReferenceTracer::items(std::uint32_t patch) const {
+std::vector<std::uint32_t> ReferenceTracer::items(std::uint32_t patch, std::uint32_t eye_index) const {
     const std::uint32_t resolution = settings_.resolution;
     const Vec3 normal = mesh_.normal(patch);
-    const EyeFrame frame(normal, patch, settings_.seed);
-    const Vec3& eye = mesh_.centres()[patch];
+    const EyeFrame frame(normal, patch, eye_index, settings_.seed);
+    const Vec3& eye = eyes_.of(patch)[eye_index].position;
     std::vector<std::uint32_t> items;
     items.reserve(std::size_t{3} * resolution * resolution);
     for (int face = 0; face < hemicube_faces; ++face) {
@@ -191,6 +200,10 @@ bool ReferenceTracer::inside(const Surface& surface, const Vec3& normal, const V
 
 std::unique_ptr<RowProvider> make_reference_engine(const PatchMesh& mesh, const HemicubeSettings& settings) {
     DeltaFormFactors::check_resolution(settings.resolution);
+    check_eye_points(settings.eye_points);
+    if (settings.quantity != RowQuantity::form_factors) {
+        throw InvalidArgument("the reference engine finds form factors only");
+    }
     return std::make_unique<ReferenceEngine>(mesh, settings);
 }
 

@@ -21,8 +21,10 @@ public:
     /// @param mesh  must outlive the tracer.
     ReferenceTracer(const PatchMesh& mesh, const HemicubeSettings& settings);
 
-    /// The item buffer of one patch, as GlRows::items().
-    [[nodiscard]] std::vector<std::uint32_t> items(std::uint32_t patch) const;
+    /// The item buffer of one eye point of a patch, as GlRows::items().
+    [[nodiscard]] std::vector<std::uint32_t> items(std::uint32_t patch, std::uint32_t eye_index = 0) const;
+
+    [[nodiscard]] const EyePoints& eyes() const noexcept { return eyes_; }
 
     /// The nearest surface from `eye`, which lies on `patch`, in `direction`.
     [[nodiscard]] Hit trace(std::uint32_t patch, const Vec3& eye, const Vec3& direction) const;
@@ -32,6 +34,7 @@ private:
 
     const PatchMesh& mesh_;
     HemicubeSettings settings_;
+    EyePoints eyes_;
     double tolerance_;
 };
 

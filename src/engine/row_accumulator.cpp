@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -57,32 +58,32 @@ std::uint64_t nonzeros_of_64(const std::uint32_t* sums) {
 
 } // namespace
 
-RowAccumulator::RowAccumulator(const DeltaFormFactors& weights, std::span<const std::uint32_t> item_of_id,
-                               std::uint32_t patches)
-    : weights_(weights), item_of_id_(item_of_id), identity_(true),
+RowAccumulator::RowAccumulator(std::span<const std::uint32_t> item_of_id, std::uint32_t patches)
+    : item_of_id_(item_of_id), identity_(true),
       sums_((std::size_t{item_first_patch} + patches + 63) / 64 * 64), columns_(patches), values_(patches) {
     for (std::uint32_t id = 0; id < item_of_id.size() && identity_; ++id) {
         identity_ = item_of_id[id] == id;
     }
 }
 
-void RowAccumulator::add(const std::uint32_t* ids) {
+void RowAccumulator::add(const std::uint32_t* ids, const DeltaFormFactors& weights) {
     if (identity_) {
-        add_rows<true>(ids);
+        add_rows<true>(ids, weights);
     } else {
-        add_rows<false>(ids);
+        add_rows<false>(ids, weights);
     }
+    total_ += weights.sum();
 }
 
 template <bool identity>
-void RowAccumulator::add_rows(const std::uint32_t* ids) {
-    const std::uint32_t resolution = weights_.resolution();
+void RowAccumulator::add_rows(const std::uint32_t* ids, const DeltaFormFactors& weights) {
+    const std::uint32_t resolution = weights.resolution();
     // Local copies, so that the compiler need not fear that a sum overwrites them.
     const std::uint32_t* const item_of_id = item_of_id_.data();
     std::uint32_t* const sums = sums_.data();
-    for (std::uint32_t y = 0; y < weights_.rows(); ++y) {
+    for (std::uint32_t y = 0; y < weights.rows(); ++y) {
         const std::uint32_t* const row = ids + std::size_t{y} * resolution;
-        const std::uint32_t* const prefix = weights_.prefix_row(y).data();
+        const std::uint32_t* const prefix = weights.prefix_row(y).data();
         std::uint32_t before = prefix[0];
         const auto end_run = [&](std::uint32_t last) {
             const std::uint32_t item = identity ? row[last] : item_of_id[row[last]];
@@ -113,7 +114,7 @@ void RowAccumulator::add_rows(const std::uint32_t* ids) {
 }
 
 RowView RowAccumulator::take() {
-    constexpr double unit = 1.0 / DeltaFormFactors::total;
+    const double unit = 1.0 / std::exchange(total_, 0u);
     RowView row;
     row.environment = sums_[item_nothing] * unit;
     row.blocked = sums_[item_blocked] * unit;

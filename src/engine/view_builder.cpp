@@ -56,12 +56,13 @@ Vec3 in_face(int face, const Vec3& p) {
 
 ViewBuilder::ViewBuilder(const DrawList& list, std::uint32_t slots) : list_(list), slots_(slots) {}
 
-void ViewBuilder::add(const EyePoint& eye, const EyeFrame& frame, std::uint32_t slot, DrawStream& stream) {
+void ViewBuilder::add(const EyePoint& eye, const EyeFrame& frame, std::uint32_t slot, DrawStream& stream,
+                      FrontViews* fronts) {
     transform(eye, frame);
     cull(eye);
     const double scale = 1.0 / near_distance(eye);
     for (const Seen& seen : seen_) {
-        emit(seen, scale, slot, stream);
+        emit(seen, scale, slot, stream, fronts);
     }
 }
 
@@ -191,7 +192,25 @@ void ViewBuilder::clip(int face) {
     }
 }
 
-void ViewBuilder::emit(const Seen& seen, double scale, std::uint32_t slot, DrawStream& stream) {
+void ViewBuilder::record(const Seen& seen, int face, FrontViews& fronts) const {
+    if (clipped_.size() < 3) {
+        return;
+    }
+    fronts.views.push_back({seen.polygon, static_cast<std::uint32_t>(face), seen.back,
+                            static_cast<std::uint32_t>(fronts.points.size()),
+                            static_cast<std::uint32_t>(clipped_.size())});
+    const auto put = [&](const FaceVertex& v) {
+        fronts.points.push_back({v.right / v.depth, v.up / v.depth});
+    };
+    if (seen.back) {
+        std::for_each(clipped_.rbegin(), clipped_.rend(), put);
+    } else {
+        std::for_each(clipped_.begin(), clipped_.end(), put);
+    }
+}
+
+void ViewBuilder::emit(const Seen& seen, double scale, std::uint32_t slot, DrawStream& stream,
+                       FrontViews* fronts) {
     const DrawPolygon& polygon = list_.polygons[seen.polygon];
     const std::uint32_t first_id = seen.back ? polygon.back_id : polygon.front_id;
     const bool blocked = first_id == item_blocked;
@@ -226,6 +245,9 @@ void ViewBuilder::emit(const Seen& seen, double scale, std::uint32_t slot, DrawS
                 clipped_.push_back({at.x, at.y, at.z, corner.grid_u, corner.grid_v});
             }
             clip(face);
+            if (fronts != nullptr && !blocked) {
+                record(seen, face, *fronts);
+            }
             const auto put = [&](const FaceVertex& v) {
                 vertex.x = static_cast<float>(v.right * scale);
                 vertex.y = static_cast<float>((v.up * up_scale + v.depth * offset) * scale);

@@ -34,6 +34,27 @@ struct DrawStream {
     }
 };
 
+/// Where the polygons that an eye sees from the front fall on the faces of its hemicube, hidden or not.
+struct FrontViews {
+    struct View {
+        std::uint32_t polygon;
+        std::uint32_t face;
+        bool back; ///< the back of a two-sided one
+        std::uint32_t first_point;
+        std::uint32_t point_count;
+    };
+    struct Point {
+        double right, up; ///< on the face, at depth 1
+    };
+    std::vector<View> views;
+    std::vector<Point> points; ///< corners of convex polygons, clockwise on the face
+
+    void clear() {
+        views.clear();
+        points.clear();
+    }
+};
+
 /// Turns the draw list into what one eye sees, and clips it to the faces.
 ///
 /// Culls polygons on or behind the eye's plane, edge-on polygons and those outside a face's pyramid; tells
@@ -48,7 +69,9 @@ public:
     ViewBuilder(const DrawList& list, std::uint32_t slots);
 
     /// Appends the views of `eye`, the slot-th hemicube of the batch.
-    void add(const EyePoint& eye, const EyeFrame& frame, std::uint32_t slot, DrawStream& stream);
+    /// @param fronts  gets the views from the front; may be null.
+    void add(const EyePoint& eye, const EyeFrame& frame, std::uint32_t slot, DrawStream& stream,
+             FrontViews* fronts = nullptr);
 
 private:
     struct Seen {
@@ -64,7 +87,8 @@ private:
     void transform(const EyePoint& eye, const EyeFrame& frame);
     void cull(const EyePoint& eye);
     [[nodiscard]] double near_distance(const EyePoint& eye) const;
-    void emit(const Seen& seen, double scale, std::uint32_t slot, DrawStream& stream);
+    void emit(const Seen& seen, double scale, std::uint32_t slot, DrawStream& stream, FrontViews* fronts);
+    void record(const Seen& seen, int face, FrontViews& fronts) const;
     /// Clips the polygon in clipped_ to a face's pyramid.
     void clip(int face);
 

@@ -43,8 +43,7 @@ public:
         ready.set_text(engine.renderer());
         send(ready);
 
-        const ResultSlot layout(static_cast<std::uint32_t>(input.geometry.eyes.size()),
-                                input.settings.resolution);
+        const ResultSlot layout(input.geometry.eyes.patches(), input.settings);
         std::byte* buffer = map_whole(worker_results_fd, PROT_READ | PROT_WRITE).data();
         for (;;) {
             while (jobs_.empty()) {
@@ -91,6 +90,10 @@ private:
                             row.columns.size_bytes());
                 std::memcpy(layout.values(buffer, slot_) + entries, row.values.data(),
                             row.values.size_bytes());
+                if (!row.visibility.empty()) {
+                    std::memcpy(layout.visibility(buffer, slot_) + entries, row.visibility.data(),
+                                row.visibility.size_bytes());
+                }
             }
             entries += row.columns.size();
             ++rows;

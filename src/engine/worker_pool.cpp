@@ -199,8 +199,8 @@ class WorkerPool final : public RowProvider {
 public:
     WorkerPool(std::unique_ptr<const EngineGeometry> geometry, const HemicubeSettings& settings,
                EngineSettings engine)
-        : geometry_(std::move(geometry)), size_(static_cast<std::uint32_t>(geometry_->eyes.size())),
-          settings_(settings), engine_(std::move(engine)), layout_(size_, settings.resolution) {}
+        : geometry_(std::move(geometry)), size_(geometry_->eyes.patches()), settings_(settings),
+          engine_(std::move(engine)), layout_(size_, settings) {}
 
     [[nodiscard]] std::uint32_t size() const override { return size_; }
 
@@ -320,10 +320,15 @@ private:
         const RowHead* heads = layout_.heads(worker.results(), chunk.slot);
         const std::uint32_t* columns = layout_.columns(worker.results(), chunk.slot);
         const float* values = layout_.values(worker.results(), chunk.slot);
+        const std::uint8_t* visibility = layout_.visibility(worker.results(), chunk.slot);
         for (std::uint32_t r = 0; r < chunk.rows; ++r) {
             RowView row;
             row.columns = {columns, heads[r].entries};
             row.values = {values, heads[r].entries};
+            if (visibility != nullptr) {
+                row.visibility = {visibility, heads[r].entries};
+                visibility += heads[r].entries;
+            }
             row.environment = heads[r].environment;
             row.blocked = heads[r].blocked;
             sink(heads[r].patch, row);

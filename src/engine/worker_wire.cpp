@@ -70,14 +70,18 @@ private:
 
 } // namespace
 
-ResultSlot::ResultSlot(std::uint32_t patches, std::uint32_t resolution) {
+ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings)
+    : with_visibility_(settings.quantity == RowQuantity::visibility) {
     constexpr std::uint64_t texels_a_chunk = 1u << 22;
-    const std::uint64_t texels = std::uint64_t{3} * resolution * resolution;
+    const std::uint64_t texels = std::uint64_t{3} * settings.resolution * settings.resolution;
+    const std::uint64_t row_texels = texels * settings.eye_points;
     rows_ = static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(texels_a_chunk / texels, 1, FormFactorMatrix::block_rows));
-    row_entries_ = std::min<std::uint64_t>(patches, texels);
+        std::clamp<std::uint64_t>(texels_a_chunk / row_texels, 1, FormFactorMatrix::block_rows));
+    // Visibility is pooled: patches without a texel of their own have some.
+    row_entries_ = with_visibility_ ? patches : std::min<std::uint64_t>(patches, row_texels);
     constexpr std::size_t page = 4096;
-    bytes_ = rows_ * (sizeof(RowHead) + row_entries_ * (sizeof(std::uint32_t) + sizeof(float)));
+    bytes_ = rows_ * (sizeof(RowHead) +
+                      row_entries_ * (sizeof(std::uint32_t) + sizeof(float) + (with_visibility_ ? 1 : 0)));
     bytes_ = (bytes_ + page - 1) / page * page;
 }
 
@@ -95,7 +99,8 @@ std::string pack(const EngineGeometry& geometry, const HemicubeSettings& setting
     append(bytes, std::span<const std::uint32_t>(list.item_of_id));
     append(bytes, std::span<const std::uint32_t>(list.polygon_of_surface));
     append(bytes, list.tolerance);
-    append(bytes, std::span<const EyePoint>(geometry.eyes));
+    append(bytes, std::span<const EyePoint>(geometry.eyes.points));
+    append(bytes, std::span<const std::uint32_t>(geometry.eyes.first));
     return bytes;
 }
 
@@ -116,7 +121,8 @@ UnpackedGeometry unpack(std::span<const std::byte> bytes) {
     list.item_of_id = from.array<std::uint32_t>();
     list.polygon_of_surface = from.array<std::uint32_t>();
     list.tolerance = from.value<double>();
-    result.geometry.eyes = from.array<EyePoint>();
+    result.geometry.eyes.points = from.array<EyePoint>();
+    result.geometry.eyes.first = from.array<std::uint32_t>();
     return result;
 }
 

@@ -56,7 +56,7 @@ struct RowHead {
 /// Where things lie in a result slot.
 class ResultSlot {
 public:
-    ResultSlot(std::uint32_t patches, std::uint32_t resolution);
+    ResultSlot(std::uint32_t patches, const HemicubeSettings& settings);
 
     /// Most rows in a chunk: few enough that a chunk takes a fraction of a second.
     [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
@@ -70,10 +70,16 @@ public:
     [[nodiscard]] float* values(std::byte* buffer, std::uint32_t slot) const {
         return reinterpret_cast<float*>(columns(buffer, slot) + rows_ * row_entries_);
     }
+    /// Null where rows have none.
+    [[nodiscard]] std::uint8_t* visibility(std::byte* buffer, std::uint32_t slot) const {
+        return with_visibility_ ? reinterpret_cast<std::uint8_t*>(values(buffer, slot) + rows_ * row_entries_)
+                                : nullptr;
+    }
 
 private:
     std::uint32_t rows_;
     std::size_t row_entries_; ///< most entries of a row
+    bool with_visibility_;
     std::size_t bytes_;
 };
 

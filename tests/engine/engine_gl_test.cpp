@@ -54,7 +54,7 @@ std::size_t disagreements(const PatchMesh& mesh, const HemicubeSettings& setting
     const auto drawn = engine.items(patch);
     const auto traced = tracer.items(patch);
     REQUIRE(drawn.size() == traced.size());
-    const EyeFrame frame(mesh.normal(patch), patch, settings.seed);
+    const EyeFrame frame(mesh.normal(patch), patch, 0, settings.seed);
     const std::uint32_t resolution = settings.resolution;
     std::size_t wrong = 0;
     for (std::size_t texel = 0; texel < drawn.size(); ++texel) {
@@ -85,7 +85,7 @@ std::size_t disagreements(const PatchMesh& mesh, const HemicubeSettings& setting
 void check_against_rays(const PatchMesh& mesh, std::uint32_t resolution, std::uint32_t step) {
     HemicubeSettings settings;
     settings.resolution = resolution;
-    const EngineGeometry geometry = make_engine_geometry(mesh, true);
+    const EngineGeometry geometry = make_engine_geometry(mesh, settings);
     GlRows engine(geometry, settings, "osmesa");
     for (const std::uint32_t patch : every(step, mesh.size())) {
         INFO("patch " << patch);
@@ -120,7 +120,7 @@ TEST_CASE("GlRows: a quadrilateral with a straight corner shows the right cells 
             {4, 3});
         const PatchMesh mesh(scene);
         const HemicubeSettings settings{.resolution = 64};
-        const EngineGeometry geometry = make_engine_geometry(mesh, true);
+        const EngineGeometry geometry = make_engine_geometry(mesh, settings);
         GlRows engine(geometry, settings, "osmesa");
         INFO("start " << start);
         CHECK(disagreements(mesh, settings, 0, 1.0 / 256.0, engine) <=
@@ -132,8 +132,10 @@ TEST_CASE("GlRows: a merged lattice shows the same items as its faces", "[engine
     const PatchMesh mesh(lattice_room());
     HemicubeSettings settings;
     settings.resolution = 64;
-    const EngineGeometry merged = make_engine_geometry(mesh, true);
-    const EngineGeometry plain = make_engine_geometry(mesh, false);
+    HemicubeSettings unmerged = settings;
+    unmerged.merge_lattices = false;
+    const EngineGeometry merged = make_engine_geometry(mesh, settings);
+    const EngineGeometry plain = make_engine_geometry(mesh, unmerged);
     CHECK(merged.list.polygons.size() * 8 < plain.list.polygons.size());
     GlRows merged_engine(merged, settings, "osmesa");
     GlRows plain_engine(plain, settings, "osmesa");

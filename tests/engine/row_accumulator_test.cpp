@@ -10,14 +10,14 @@ TEST_CASE("RowAccumulator: shares never turn negative or vanish, whatever floats
     // One patch fills the hemicube but for a few texels that go to nothing or to back faces.
     const DeltaFormFactors weights(512);
     const std::vector<std::uint32_t> item_of_id{item_nothing, item_blocked, item_first_patch};
-    RowAccumulator accumulator(weights, item_of_id, 1);
+    RowAccumulator accumulator(item_of_id, 1);
     std::vector<std::uint32_t> ids(std::size_t{3} * 512 * 512);
     for (std::uint32_t texels = 0; texels < 64; ++texels) {
         std::fill(ids.begin(), ids.end(), 2u);
         for (std::uint32_t k = 0; k < texels; ++k) {
             ids[k * 7919u] = k % 3 == 0 ? 1 : 0;
         }
-        accumulator.add(ids.data());
+        accumulator.add(ids.data(), weights);
         const RowView row = accumulator.take();
         CHECK((texels > 0) == (row.blocked > 0.0));
         CHECK((texels > 1) == (row.environment > 0.0));
@@ -29,16 +29,16 @@ TEST_CASE("RowAccumulator: a look-up of ids gives the same row as ids that need 
     const DeltaFormFactors weights(32);
     const std::vector<std::uint32_t> identity{0, 1, 2, 3, 4};
     const std::vector<std::uint32_t> swapped{0, 1, 4, 3, 2};
-    RowAccumulator plain(weights, identity, 3);
-    RowAccumulator turned(weights, swapped, 3);
+    RowAccumulator plain(identity, 3);
+    RowAccumulator turned(swapped, 3);
     std::vector<std::uint32_t> ids(std::size_t{3} * 32 * 32);
     std::vector<std::uint32_t> other(ids.size());
     for (std::size_t k = 0; k < ids.size(); ++k) {
         ids[k] = static_cast<std::uint32_t>((k * k / 7) % 5);
         other[k] = swapped[ids[k]];
     }
-    plain.add(ids.data());
-    turned.add(other.data());
+    plain.add(ids.data(), weights);
+    turned.add(other.data(), weights);
     const RowView a = plain.take();
     const RowView b = turned.take();
     CHECK(std::vector<float>(a.values.begin(), a.values.end()) ==

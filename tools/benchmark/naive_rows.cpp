@@ -43,7 +43,7 @@ std::uint32_t item_of_back(const PatchMesh& mesh, std::uint32_t patch) {
 } // namespace
 
 NaiveRows::NaiveRows(const PatchMesh& mesh, const HemicubeSettings& settings, const std::string& device)
-    : context_(gl::make_context(device)), settings_(settings), eyes_(make_eye_points(mesh)),
+    : context_(gl::make_context(device)), settings_(settings), eyes_(make_eye_points(mesh, 1).points),
       near_(1e-4 * mesh.bounds().diagonal()), far_(1.01 * mesh.bounds().diagonal()),
       program_(gl::make_program("naive hemicube", vertex_source, fragment_source)),
       sums_(item_first_patch + mesh.size()) {
@@ -134,7 +134,7 @@ void NaiveRows::rows(std::span<const std::uint32_t> patches, const RowSink& sink
 
 void NaiveRows::draw_hemicube(std::uint32_t patch) {
     const EyePoint& eye = eyes_[patch];
-    const EyeFrame frame(eye.normal, patch, settings_.seed);
+    const EyeFrame frame(eye.normal, patch, 0, settings_.seed);
     std::uint32_t* ids = ids_.data();
     for (int face = 0; face < hemicube_faces; ++face) {
         const Target& target = face == 0 ? top_ : side_;

@@ -11,7 +11,7 @@ namespace hemi {
 ///
 /// Dimensionless, as integers in units of 1 / total, total = 2^32 - 1: exact integrals over the texel (not
 /// midpoint values), rounded cumulatively so that they sum to exactly `total` at any resolution and any
-/// order of summation gives the same bits.
+/// order of summation gives the same bits. One of several sample points of a patch weighs its share of that.
 /// Layout, as the engine's item buffers: top face `resolution` rows of `resolution` texels, then the four
 /// sides, each `resolution / 2` rows of `resolution`, row 0 touching the plane of the patch.
 /// Memory: 4 bytes for each of the 3·resolution·(resolution + 1) prefix sums.
@@ -25,10 +25,16 @@ public:
     /// @throws InvalidArgument if `resolution` is odd or out of range.
     explicit DeltaFormFactors(std::uint32_t resolution);
 
+    /// The weights of a sample point that stands for `share` of its patch, in (0, 1]: they sum to about
+    /// share·total, never more.
+    [[nodiscard]] DeltaFormFactors scaled(double share) const;
+
     /// @throws InvalidArgument if `resolution` is odd or out of range.
     static void check_resolution(std::uint32_t resolution);
 
     [[nodiscard]] std::uint32_t resolution() const noexcept { return resolution_; }
+    /// Sum of all weights.
+    [[nodiscard]] std::uint32_t sum() const noexcept { return prefix_.back(); }
     /// Rows of texels of one hemicube: 3·resolution.
     [[nodiscard]] std::uint32_t rows() const noexcept { return 3 * resolution_; }
 

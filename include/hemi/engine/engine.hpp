@@ -10,14 +10,30 @@
 
 namespace hemi {
 
+/// What the values of a row are.
+enum class RowQuantity : std::uint32_t {
+    form_factors, ///< F(i, j)
+    /// For every patch j of which the sample points of i would meet the front if nothing hid it: the share of
+    /// it that nothing hides, in [0, 1], weighted as F is, pooled over j's neighbours on the same plane where
+    /// too few texels meet it. `visibility` then says how much that rests on: the number of texels, at most
+    /// 254, or visibility_clear if none was hidden, and enough were seen.
+    visibility,
+};
+
 /// Settings that change the rows.
 struct HemicubeSettings {
     std::uint32_t resolution = 128; ///< texels along a full hemicube edge; even, 2 to 4096
     std::uint64_t seed = 0;         ///< of the hashed rotation of every hemicube about its normal
     bool merge_lattices = true;     ///< draw lattices of coplanar parallelogram cells as one polygon
+    std::uint32_t eye_points = 1;   ///< hemicubes a patch: 1, 4, 9 … 64 (see make_eye_points)
+
+    RowQuantity quantity = RowQuantity::form_factors;
 
     bool operator==(const HemicubeSettings&) const = default;
 };
+
+/// @throws InvalidArgument if `count` is not 1, 4, 9 … 64.
+void check_eye_points(std::uint32_t count);
 
 /// Where and how rows are computed; none of it changes a bit of them on the same kind of device.
 struct EngineSettings {
@@ -32,7 +48,8 @@ struct EngineSettings {
 /// On software OpenGL with a worker program, rows come from `jobs` worker processes; on a GPU from one
 /// context of this process.
 /// @param mesh  must outlive the engine.
-/// @throws InvalidArgument for a bad resolution or device name; NoDevice if the device is not there;
+/// @throws InvalidArgument for a bad resolution, number of eye points or device name; NoDevice if the device
+/// is not there;
 ///   GlError, or Error if a worker ends early (then no row is delivered in its place).
 [[nodiscard]] std::unique_ptr<RowProvider>
 make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const EngineSettings& engine);

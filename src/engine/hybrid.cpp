@@ -1,0 +1,444 @@
+#include "hemi/engine/hybrid.hpp"
+
+#include "core/parallel_for.hpp"
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+namespace hemi {
+
+namespace {
+
+constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+/// A row that sees less of the environment than this, measured, is not thought to be meant to.
+constexpr double leak_limit = 1e-4;
+
+/// What one patch's hemicubes say of another patch, in two bytes: the visible share in 4095ths, and how many
+/// texels that rests on as a power of two.
+class Sighting {
+public:
+    Sighting() = default;
+    Sighting(float share, std::uint8_t evidence) {
+        const std::uint32_t parts = static_cast<std::uint32_t>(std::lround(4095.0f * share));
+        const std::uint32_t strength =
+            evidence == visibility_clear
+                ? clear
+                : std::min<std::uint32_t>(static_cast<std::uint32_t>(std::bit_width(evidence)), clear - 1);
+        bits_ = static_cast<std::uint16_t>(parts | strength << 12);
+    }
+    [[nodiscard]] bool known() const { return bits_ >> 12 != 0; }
+    [[nodiscard]] bool is_clear() const { return bits_ >> 12 == clear; }
+    [[nodiscard]] double share() const { return (bits_ & 0xFFF) / 4095.0; }
+    /// In texels. A clear pair counts as one that many texels saw: how many is not kept.
+    [[nodiscard]] double weight() const {
+        return is_clear() ? 32.0 : static_cast<double>(1u << (bits_ >> 12)) * 0.5;
+    }
+
+private:
+    static constexpr std::uint32_t clear = 15;
+    std::uint16_t bits_ = 0;
+};
+
+/// V of a pair: 0 if nothing is seen, all ones if nothing was hidden, else in 65,534ths.
+using PairCode = std::uint16_t;
+constexpr PairCode pair_hidden = 0;
+constexpr PairCode pair_clear = 0xFFFF;
+
+PairCode pair_code(double visibility) {
+    // Less than half a unit is kept as one: the pair was seen.
+    return visibility <= 0.0 ? pair_hidden
+                             : static_cast<PairCode>(std::clamp(visibility * 65534.0 + 0.5, 1.0, 65534.0));
+}
+double visibility_of(PairCode code) {
+    return code == pair_clear ? 1.0 : code / 65534.0;
+}
+std::uint8_t stored_visibility(PairCode code) {
+    return code == pair_clear
+               ? visibility_clear
+               : static_cast<std::uint8_t>(
+                     std::clamp(visibility_of(code) * visibility_clear + 0.5, 1.0, visibility_clear - 1.0));
+}
+
+PairCode combine(Sighting a, Sighting b, double assumed) {
+    if (!a.known() && !b.known()) {
+        return pair_code(assumed);
+    }
+    if ((a.is_clear() || !a.known()) && (b.is_clear() || !b.known())) {
+        return pair_clear;
+    }
+    const double weight_a = a.known() ? a.weight() : 0.0;
+    const double weight_b = b.known() ? b.weight() : 0.0;
+    return pair_code((weight_a * a.share() + weight_b * b.share()) / (weight_a + weight_b));
+}
+
+/// Tells quickly which patches have parts in front of each other.
+class Facing {
+public:
+    explicit Facing(const PatchMesh& mesh) : patches_(mesh.size()), tolerance_(mesh.rounding()) {
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            const PatchCorners corners = mesh.corners(i);
+            Patch& patch = patches_[i];
+            patch.normal = mesh.normal(i);
+            patch.centre = mesh.centres()[i];
+            patch.height = glm::dot(patch.normal, patch.centre);
+            for (std::size_t k = 0; k < 4; ++k) {
+                patch.corners[k] = corners.points[std::min<std::size_t>(k, corners.count - 1)];
+            }
+        }
+    }
+    [[nodiscard]] bool operator()(std::uint32_t i, std::uint32_t j) const {
+        return above(patches_[i], patches_[j]) && above(patches_[j], patches_[i]);
+    }
+
+private:
+    struct Patch {
+        Vec3 normal;
+        Vec3 centre;
+        double height;
+        std::array<Vec3, 4> corners;
+    };
+    [[nodiscard]] bool above(const Patch& plane, const Patch& other) const {
+        double highest = -std::numeric_limits<double>::infinity();
+        for (const Vec3& corner : other.corners) {
+            highest = std::max(highest, glm::dot(plane.normal, corner));
+        }
+        return highest - plane.height > tolerance_;
+    }
+    std::vector<Patch> patches_;
+    double tolerance_;
+};
+
+/// For every patch the run of patches around it in the mesh's order that lie beside it and face alike: where
+/// too few texels fall on it, theirs stand in. Patches of a subdivided surface were pooled already.
+class Neighbours {
+public:
+    explicit Neighbours(const PatchMesh& mesh) : first_(mesh.size()), end_(mesh.size()) {
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            const auto alike = [&](std::uint32_t j) {
+                const double reach = 6.0 * std::sqrt(mesh.areas()[i]);
+                return glm::dot(mesh.normal(i), mesh.normal(j)) > 0.8 &&
+                       glm::distance(mesh.centres()[i], mesh.centres()[j]) < reach;
+            };
+            constexpr std::uint32_t most = 8;
+            std::uint32_t first = i;
+            while (first > 0 && i - first < most && alike(first - 1)) {
+                --first;
+            }
+            std::uint32_t end = i + 1;
+            while (end < mesh.size() && end - i <= most && alike(end)) {
+                ++end;
+            }
+            first_[i] = first;
+            end_[i] = end;
+        }
+    }
+    /// What is known of the neighbours of j, nearest in the order first; nothing if nothing is.
+    [[nodiscard]] Sighting stand_in(std::span<const Sighting> row, std::uint32_t j) const {
+        const std::uint32_t reach = std::max(j - first_[j], end_[j] - 1 - j);
+        for (std::uint32_t k = 1; k <= reach; ++k) {
+            const Sighting before = j >= first_[j] + k ? row[j - k] : Sighting();
+            const Sighting after = j + k < end_[j] ? row[j + k] : Sighting();
+            if (before.known() || after.known()) {
+                const double weight = (before.known() ? 1.0 : 0.0) + (after.known() ? 1.0 : 0.0);
+                const double share =
+                    ((before.known() ? before.share() : 0.0) + (after.known() ? after.share() : 0.0)) /
+                    weight;
+                return {static_cast<float>(share), 1};
+            }
+        }
+        return {};
+    }
+
+private:
+    std::vector<std::uint32_t> first_, end_;
+};
+
+class Hybrid {
+public:
+    Hybrid(const PatchMesh& mesh, std::span<const std::uint32_t> patches, ExchangeRule rule)
+        : mesh_(mesh), size_(mesh.size()), patches_(patches), areas_(mesh, rule), facing_(mesh),
+          row_of_(size_, nobody) {
+        for (std::uint32_t k = 0; k < patches.size(); ++k) {
+            row_of_[patches[k]] = k;
+        }
+        sightings_.resize(patches.size());
+        environment_.resize(patches.size());
+        blocked_.resize(patches.size());
+    }
+
+    void see(RowProvider& visibility, const Progress& progress) {
+        std::size_t done = 0;
+        visibility.rows(patches_, [&](std::uint32_t patch, const RowView& row) {
+            const std::uint32_t k = row_of_[patch];
+            if (k == nobody || !sightings_[k].empty()) {
+                throw Error(fmt::format("row {} of the visibility came twice or unasked", patch));
+            }
+            std::vector<Sighting>& sightings = sightings_[k];
+            sightings.resize(size_);
+            for (std::size_t entry = 0; entry < row.columns.size(); ++entry) {
+                sightings[row.columns[entry]] = {row.values[entry], row.visibility[entry]};
+            }
+            environment_[k] = row.environment;
+            blocked_[k] = row.blocked;
+            ++done;
+            if (progress && !progress(done, patches_.size())) {
+                throw Cancelled();
+            }
+        });
+        if (done != patches_.size()) {
+            throw Error(fmt::format("{} gave {} of {} rows of the visibility", visibility.renderer(), done,
+                                    patches_.size()));
+        }
+    }
+
+    /// One code for both directions of every pair; sightings become codes.
+    void combine_pairs() {
+        const Neighbours neighbours(mesh_);
+        codes_.resize(patches_.size());
+        std::vector<double> mean(patches_.size());
+        parallel_for(patches_.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                mean[k] = mean_share(sightings_[k]);
+            }
+        });
+        parallel_for(patches_.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const std::uint32_t i = patches_[k];
+                codes_[k].assign(size_, pair_hidden);
+                for (std::uint32_t j = 0; j < size_; ++j) {
+                    const std::uint32_t other = row_of_[j];
+                    Sighting there = sightings_[k][j];
+                    Sighting back = other == nobody ? Sighting() : sightings_[other][i];
+                    if (i == j || (there.known() && there.share() == 0.0 && !back.known()) ||
+                        !facing_(i, j)) {
+                        continue;
+                    }
+                    double assumed = 1.0;
+                    if (!there.known() && !back.known()) {
+                        there = neighbours.stand_in(sightings_[k], j);
+                        back = other == nobody ? Sighting() : neighbours.stand_in(sightings_[other], i);
+                        assumed = other == nobody ? mean[k] : 0.5 * (mean[k] + mean[other]);
+                    }
+                    codes_[k][j] = combine(there, back, assumed);
+                }
+            }
+        });
+        sightings_.clear();
+        sightings_.shrink_to_fit();
+    }
+
+    FormFactorMatrix factors(Enclosure enclosure, const Progress& progress) {
+        FormFactorMatrix matrix(size_);
+        std::vector<RowBlock> blocks = empty_blocks(matrix);
+        std::vector<std::uint64_t> next(size_); // where the next entry of a row goes, in its block
+        for (const RowBlock& block : blocks) {
+            for (std::uint32_t local = 0; local < block.rows(); ++local) {
+                next[block.first_row + local] = block.begin[local];
+            }
+        }
+        const bool open = is_open(enclosure);
+        constexpr std::size_t columns_at_once = 256;
+        for (RowBlock& block : blocks) {
+            const std::uint32_t first = block.first_row;
+            const std::uint32_t end = first + block.rows();
+            // A thread owns its columns: it fills their part of this block's rows above the diagonal, and
+            // this block's columns of the rows that they stand for, below the diagonal.
+            parallel_for(size_ - first, columns_at_once, [&](std::size_t from, std::size_t upto) {
+                for (std::uint32_t i = first; i < end; ++i) {
+                    fill(i, first + static_cast<std::uint32_t>(from),
+                         first + static_cast<std::uint32_t>(upto), blocks, next);
+                }
+            });
+            finish(block, open);
+            matrix.set_block(std::move(block));
+            if (progress && !progress(end, size_)) {
+                throw Cancelled();
+            }
+        }
+        return matrix;
+    }
+
+private:
+    static double mean_share(std::span<const Sighting> row) {
+        double sum = 0.0;
+        std::size_t known = 0;
+        for (const Sighting sighting : row) {
+            sum += sighting.known() ? sighting.share() : 0.0;
+            known += sighting.known() ? 1 : 0;
+        }
+        return known == 0 ? 1.0 : sum / static_cast<double>(known);
+    }
+
+    [[nodiscard]] bool is_open(Enclosure enclosure) const {
+        return enclosure == Enclosure::open || (enclosure == Enclosure::automatic &&
+                                                std::any_of(environment_.begin(), environment_.end(),
+                                                            [](double share) { return share > leak_limit; }));
+    }
+
+    /// Blocks with room for every pair that may be seen.
+    [[nodiscard]] std::vector<RowBlock> empty_blocks(const FormFactorMatrix& matrix) const {
+        std::vector<RowBlock> blocks(matrix.blocks().begin(), matrix.blocks().end());
+        parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t b = begin; b < end; ++b) {
+                RowBlock& block = blocks[b];
+                for (std::uint32_t local = 0; local < block.rows(); ++local) {
+                    const std::uint32_t k = row_of_[block.first_row + local];
+                    block.begin[local + 1] = block.begin[local];
+                    if (k != nobody) {
+                        block.known[local] = 1;
+                        block.environment[local] = environment_[k];
+                        block.blocked[local] = blocked_[k];
+                        block.begin[local + 1] += count_seen(codes_[k]);
+                    }
+                }
+                block.columns.resize(block.begin.back());
+                block.values.resize(block.begin.back());
+                block.visibility.resize(block.begin.back());
+            }
+        });
+        return blocks;
+    }
+
+    static std::uint64_t count_seen(std::span<const PairCode> codes) {
+        std::uint32_t count = 0;
+        for (const PairCode code : codes) {
+            count += code != pair_hidden ? 1u : 0u;
+        }
+        return count;
+    }
+
+    /// Pairs of i with the patches j > i in [from, upto): entry (i, j), and entry (j, i), whose columns so
+    /// come in ascending order.
+    void fill(std::uint32_t i, std::uint32_t from, std::uint32_t upto, std::vector<RowBlock>& blocks,
+              std::vector<std::uint64_t>& next) const {
+        from = std::max(from, i + 1);
+        if (from >= upto) {
+            return;
+        }
+        const std::uint32_t k = row_of_[i];
+        RowBlock& block = blocks[i / FormFactorMatrix::block_rows];
+        std::uint64_t here = 0;
+        if (k != nobody) {
+            here = block.begin[i - block.first_row] + count_seen(std::span(codes_[k]).first(from));
+        }
+        for (std::uint32_t j = from; j < upto; ++j) {
+            const std::uint32_t other_k = row_of_[j];
+            const PairCode code = k != nobody         ? codes_[k][j]
+                                  : other_k != nobody ? codes_[other_k][i]
+                                                      : pair_hidden;
+            if (code == pair_hidden) {
+                continue;
+            }
+            const double area = areas_(i, j) * visibility_of(code);
+            const std::uint8_t visibility = stored_visibility(code);
+            if (k != nobody) {
+                put(block, here++, j, area / mesh_.areas()[i], visibility);
+            }
+            if (other_k != nobody) {
+                put(blocks[j / FormFactorMatrix::block_rows], next[j]++, i, area / mesh_.areas()[j],
+                    visibility);
+            }
+        }
+    }
+
+    static void put(RowBlock& block, std::uint64_t at, std::uint32_t column, double value,
+                    std::uint8_t visibility) {
+        block.columns[at] = column;
+        block.values[at] = static_cast<float>(value);
+        block.visibility[at] = visibility;
+    }
+
+    /// Drops entries that are zero after all and settles the balance.
+    void finish(RowBlock& block, bool open) const {
+        std::uint64_t kept = 0;
+        for (std::uint32_t local = 0; local < block.rows(); ++local) {
+            const std::uint64_t begin = block.begin[local];
+            block.begin[local] = kept;
+            double sum = 0.0;
+            for (std::uint64_t entry = begin; entry < block.begin[local + 1]; ++entry) {
+                if (block.values[entry] > 0.0f) {
+                    block.columns[kept] = block.columns[entry];
+                    block.values[kept] = block.values[entry];
+                    block.visibility[kept] = block.visibility[entry];
+                    sum += static_cast<double>(block.values[entry]);
+                    ++kept;
+                }
+            }
+            if (open && block.environment[local] > 0.0) {
+                block.environment[local] = std::max(0.0, 1.0 - block.blocked[local] - sum);
+            }
+        }
+        block.begin.back() = kept;
+        block.columns.resize(kept);
+        block.values.resize(kept);
+        block.visibility.resize(kept);
+        block.columns.shrink_to_fit();
+        block.values.shrink_to_fit();
+        block.visibility.shrink_to_fit();
+    }
+
+    const PatchMesh& mesh_;
+    std::uint32_t size_;
+    std::span<const std::uint32_t> patches_;
+    ExchangeAreas areas_;
+    Facing facing_;
+    std::vector<std::uint32_t> row_of_; ///< patch -> position in patches_, or nobody
+    std::vector<std::vector<Sighting>> sightings_;
+    std::vector<std::vector<PairCode>> codes_;
+    std::vector<double> environment_, blocked_;
+};
+
+} // namespace
+
+HybridEstimate estimate_hybrid(RowProvider& visibility, std::span<const std::uint32_t> patches,
+                               std::uint32_t samples) {
+    std::vector<std::uint32_t> sampled;
+    const std::uint64_t count = std::min<std::uint64_t>(samples, patches.size());
+    for (std::uint64_t k = 0; k < count; ++k) {
+        sampled.push_back(patches[(2 * k + 1) * patches.size() / (2 * count)]);
+    }
+    HybridEstimate estimate;
+    if (!sampled.empty()) {
+        // The first row also pays for contexts and workers, which do not grow with the number of rows.
+        visibility.rows(std::span(sampled).first(1), [](std::uint32_t, const RowView&) {});
+        std::uint64_t entries = 0;
+        const auto start = std::chrono::steady_clock::now();
+        visibility.rows(sampled, [&](std::uint32_t, const RowView& row) {
+            entries += static_cast<std::uint64_t>(
+                std::count_if(row.values.begin(), row.values.end(), [](float v) { return v > 0.0f; }));
+        });
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+        const auto sampled_rows = static_cast<double>(sampled.size());
+        estimate.entries_per_row = static_cast<double>(entries) / sampled_rows;
+        estimate.seconds = elapsed.count() / sampled_rows * static_cast<double>(patches.size());
+    }
+    const auto rows = static_cast<double>(patches.size());
+    const double matrix =
+        estimate.entries_per_row * rows * (sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t)) +
+        static_cast<double>(FormFactorMatrix(visibility.size()).memory_bytes());
+    const double table = rows * visibility.size() * (sizeof(Sighting) + sizeof(PairCode));
+    estimate.memory_bytes = static_cast<std::uint64_t>(1.2 * matrix + table);
+    return estimate;
+}
+
+FormFactorMatrix compute_hybrid(RowProvider& visibility, const PatchMesh& mesh,
+                                std::span<const std::uint32_t> patches, ExchangeRule rule,
+                                Enclosure enclosure, const Progress& rows_done, const Progress& pairs_done) {
+    Hybrid hybrid(mesh, patches, rule);
+    hybrid.see(visibility, rows_done);
+    hybrid.combine_pairs();
+    return hybrid.factors(enclosure, pairs_done);
+}
+
+} // namespace hemi
