@@ -11,6 +11,13 @@ namespace hemi {
 
 namespace {
 
+/// A scene that is no more than this many roundings of its coordinates across is lost in them.
+constexpr double roundings_across = 200.0;
+
+double rounding_at(double magnitude) {
+    return 16.0 * std::numeric_limits<double>::epsilon() * magnitude;
+}
+
 bool finite(const Vec3& point) {
     return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
 }
@@ -97,6 +104,17 @@ void validate(const Scene& scene) {
                             s, scene.groups[surface.group], surface.patches->u, surface.patches->v));
         }
     }
+    const Bounds bounds = scene.bounds();
+    double magnitude = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        magnitude = std::max({magnitude, std::abs(bounds.lower[axis]), std::abs(bounds.upper[axis])});
+    }
+    if (!(bounds.diagonal() > roundings_across * rounding_at(magnitude))) {
+        throw InputError(
+            fmt::format("the scene is {:.3g} across at coordinates of up to {:.3g}, where double "
+                        "precision holds too few digits of it; move it towards the origin",
+                        bounds.diagonal(), magnitude));
+    }
 }
 
 std::optional<std::string> polygon_defect(std::span<const Vec3> polygon) {
@@ -113,12 +131,15 @@ std::optional<std::string> polygon_defect(std::span<const Vec3> polygon) {
             std::max({magnitude, std::abs(polygon[i].x), std::abs(polygon[i].y), std::abs(polygon[i].z)});
         longest = std::max(longest, glm::length(polygon[(i + 1) % polygon.size()] - polygon[i]));
     }
-    // Beyond this, areas and dot products overflow on the way.
-    if (magnitude > 1e100) {
-        return fmt::format("coordinate of magnitude {}; must be below 1e100", magnitude);
+    // The square of an area must neither overflow nor lose digits.
+    if (magnitude > 1e70) {
+        return fmt::format("coordinate of magnitude {}; must be below 1e70", magnitude);
+    }
+    if (longest > 0.0 && longest < 1e-70) {
+        return fmt::format("longest edge {}; must be above 1e-70", longest);
     }
     const Vec3 area = area_vector(polygon);
-    const double rounding = 16.0 * std::numeric_limits<double>::epsilon() * magnitude;
+    const double rounding = rounding_at(magnitude);
     if (!(longest > rounding) || !(glm::length(area) > longest * std::max(rounding, 1e-9 * longest))) {
         return std::string("zero area");
     }

@@ -68,7 +68,8 @@ struct Scene {
 };
 
 /// Checks what every part of hemi relies on: at least one surface, indices in range, one value per channel,
-/// reflectance in [0, 1), exitance finite and >= 0, finite planar convex polygons of positive area.
+/// reflectance in [0, 1), exitance finite and >= 0, finite planar convex polygons of positive area, a scene
+/// that is not lost in the rounding of its coordinates.
 /// @throws InputError naming the material or the group and surface, the value and the range.
 void validate(const Scene& scene);
 
