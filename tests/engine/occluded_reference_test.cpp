@@ -246,7 +246,8 @@ TEST_CASE("OccludedReference: rows close under a sheet sum to one", "[engine]") 
 }
 
 TEST_CASE("ExchangeAreas: agree with integrals of another kind", "[engine]") {
-    for (const Scene& scene : {coarse_room_with_turned_boxes(), tapered_box(5), room_with_sheet(0.05)}) {
+    for (const Scene& scene : {coarse_room_with_turned_boxes(), tapered_box(5), room_with_sheet(0.05),
+                               read_case("14_sphere_interior.obj"), read_case("17_needle_triangle.obj")}) {
         const PatchMesh mesh(scene);
         const ExchangeAreas exact(mesh, ExchangeRule::exact);
         const ExchangeAreas standard(mesh, ExchangeRule::standard);
