@@ -190,18 +190,24 @@ RowPlan plan_rows(const RowOptions& options, std::uint32_t patches) {
     HemicubeSettings& hemicube = plan.hemicube;
     plan.hybrid = options.preset != "plain";
     if (options.preset == "fast") {
+        hemicube.near_eye_points = 4;
         hemicube.resolution = 64;
     } else if (options.preset == "default") {
         hemicube.eye_points = 4;
+        hemicube.near_eye_points = 16;
         hemicube.resolution = 64;
     } else if (options.preset == "exact") {
         hemicube.eye_points = 16;
+        hemicube.near_eye_points = 64;
         hemicube.resolution = 64;
         plan.rule = ExchangeRule::exact;
     }
     (void)patches;
     hemicube.resolution = options.resolution.value_or(hemicube.resolution);
-    hemicube.eye_points = options.eye_points.value_or(hemicube.eye_points);
+    if (options.eye_points) { // every patch as many as were asked for
+        hemicube.eye_points = *options.eye_points;
+        hemicube.near_eye_points = 1;
+    }
     hemicube.seed = options.seed.value_or(hemicube.seed);
     hemicube.merge_lattices = options.merge;
     hemicube.quantity = plan.hybrid ? RowQuantity::visibility : RowQuantity::form_factors;

@@ -184,16 +184,16 @@ ExchangeAreas::ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule)
     const Vec3 origin = mesh.bounds().centre();
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         PatchCorners corners = mesh.corners(i);
-        Bounds bounds;
+        Vec3 sum(0.0);
         for (std::uint32_t k = 0; k < corners.count; ++k) {
             corners.points[k] -= origin;
-            bounds.add(corners.points[k]);
+            sum += corners.points[k];
         }
         Patch& patch = patches_[i];
         patch.corners = corners.count;
         patch.normal = mesh.normal(i);
         patch.area = mesh.areas()[i];
-        patch.centre = bounds.centre();
+        patch.centre = sum / static_cast<double>(corners.count);
         patch.radius = 0.0;
         for (const Vec3& corner : corners.polygon()) {
             patch.radius = std::max(patch.radius, glm::length(corner - patch.centre));

@@ -3,9 +3,11 @@
 #include "core/gauss_rule.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/scene/near_surface.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -82,6 +84,47 @@ std::vector<TrianglePoint> triangle_points(std::uint32_t k) {
     }
 }
 
+/// Appends the k x k points (or those of the triangle's rule) of a patch.
+void add_eye_points(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t k,
+                    std::vector<EyePoint>& points) {
+    EyePoint eye;
+    eye.position = mesh.centres()[patch];
+    eye.normal = mesh.normal(patch);
+    eye.surface = mesh.surface_of()[patch];
+    if (k == 1) {
+        points.push_back(eye);
+        return;
+    }
+    const PatchCorners corners = mesh.corners(patch);
+    const auto& p = corners.points;
+    if (corners.count == 3) {
+        for (const TrianglePoint& point : triangle_points(k)) {
+            eye.position = p[0] + point.b * (p[1] - p[0]) + point.c * (p[2] - p[0]);
+            eye.share = point.weight;
+            points.push_back(eye);
+            ++eye.index;
+        }
+        return;
+    }
+    const std::size_t first = points.size();
+    const std::vector<EdgePoint> on_edges = edge_points(k);
+    double area = 0.0;
+    for (const EdgePoint& v : on_edges) {
+        for (const EdgePoint& u : on_edges) {
+            const Vec3 along_u = (1.0 - v.at) * (p[1] - p[0]) + v.at * (p[2] - p[3]);
+            const Vec3 along_v = (1.0 - u.at) * (p[3] - p[0]) + u.at * (p[2] - p[1]);
+            eye.position = p[0] + u.at * (p[1] - p[0]) + v.at * along_v;
+            eye.share = u.weight * v.weight * glm::length(glm::cross(along_u, along_v));
+            area += eye.share;
+            points.push_back(eye);
+            ++eye.index;
+        }
+    }
+    for (std::size_t at = first; at < points.size(); ++at) {
+        points[at].share /= area;
+    }
+}
+
 } // namespace
 
 void check_eye_points(std::uint32_t count) {
@@ -94,50 +137,25 @@ void check_eye_points(std::uint32_t count) {
                                       most_eyes_a_side * most_eyes_a_side));
 }
 
-EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count) {
+EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count, std::uint32_t near_count) {
     check_eye_points(count);
-    const auto k = static_cast<std::uint32_t>(std::lround(std::sqrt(count)));
-    const std::vector<TrianglePoint> on_triangles = triangle_points(k);
-    const std::vector<EdgePoint> on_edges = edge_points(k);
+    check_eye_points(near_count);
+    const auto side = [](std::uint32_t square) {
+        return static_cast<std::uint32_t>(std::lround(std::sqrt(square)));
+    };
+    std::vector<std::uint32_t> wanted(mesh.size(), side(count));
+    if (near_count > count) {
+        for (const NearSurface& near : find_near_surfaces(mesh)) {
+            const double k = std::ceil(0.5 / std::max(near.gap, 0.01));
+            wanted[near.patch] =
+                std::max(side(count), std::min(side(near_count), static_cast<std::uint32_t>(k)));
+        }
+    }
     EyePoints eyes;
     eyes.points.reserve(std::size_t{mesh.size()} * count);
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
         eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
-        EyePoint eye;
-        eye.position = mesh.centres()[patch];
-        eye.normal = mesh.normal(patch);
-        eye.surface = mesh.surface_of()[patch];
-        if (count == 1) {
-            eyes.points.push_back(eye);
-            continue;
-        }
-        const PatchCorners corners = mesh.corners(patch);
-        const auto& p = corners.points;
-        if (corners.count == 3) {
-            for (const TrianglePoint& point : on_triangles) {
-                eye.position = p[0] + point.b * (p[1] - p[0]) + point.c * (p[2] - p[0]);
-                eye.share = point.weight;
-                eyes.points.push_back(eye);
-                ++eye.index;
-            }
-            continue;
-        }
-        double area = 0.0;
-        for (const EdgePoint& v : on_edges) {
-            for (const EdgePoint& u : on_edges) {
-                const Vec3 along_u = (1.0 - v.at) * (p[1] - p[0]) + v.at * (p[2] - p[3]);
-                const Vec3 along_v = (1.0 - u.at) * (p[3] - p[0]) + u.at * (p[2] - p[1]);
-                eye.position = p[0] + u.at * (p[1] - p[0]) +
-                               v.at * ((1.0 - u.at) * (p[3] - p[0]) + u.at * (p[2] - p[1]));
-                eye.share = u.weight * v.weight * glm::length(glm::cross(along_u, along_v));
-                area += eye.share;
-                eyes.points.push_back(eye);
-                ++eye.index;
-            }
-        }
-        for (std::size_t at = eyes.first.back(); at < eyes.points.size(); ++at) {
-            eyes.points[at].share /= area;
-        }
+        add_eye_points(mesh, patch, wanted[patch], eyes.points);
     }
     eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
     return eyes;

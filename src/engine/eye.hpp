@@ -32,9 +32,12 @@ struct EyePoints {
 /// Eye points of every patch. One: its centroid. k²: a Gauss–Legendre rule of k × k points on quadrilaterals,
 /// weighted by the share of the area they stand for; on triangles the symmetric rule of fewest points that
 /// integrates polynomials of degree k (1, 3, 6 or 12 points, k = 1 to 4; above that as on quadrilaterals).
-/// @param count  a square: 1, 4, 9 … 64.
-/// @throws InvalidArgument if it is another number.
-[[nodiscard]] EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count);
+/// @param count       a square: 1, 4, 9 … 64
+/// @param near_count  another: where a surface hovers close above a patch (find_near_surfaces), at a gap of
+///   g patch sizes, k is at least 1 / 2g, but k² at most this
+/// @throws InvalidArgument if one is another number.
+[[nodiscard]] EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count,
+                                        std::uint32_t near_count = 1);
 
 /// Axes of a hemicube: z is the patch's normal, x and y are turned about it by an angle hashed from the patch
 /// index, the index of the eye point and the seed. Without the turn, patch edges fall exactly on texel

@@ -120,7 +120,8 @@ private:
 } // namespace
 
 ReferenceTracer::ReferenceTracer(const PatchMesh& mesh, const HemicubeSettings& settings)
-    : mesh_(mesh), settings_(settings), eyes_(make_eye_points(mesh, settings.eye_points)),
+    : mesh_(mesh), settings_(settings),
+      eyes_(make_eye_points(mesh, settings.eye_points, settings.near_eye_points)),
       tolerance_(mesh.rounding()) {}
 
 std::vector<std::uint32_t> ReferenceTracer::items(std::uint32_t patch, std::uint32_t eye_index) const {

@@ -74,7 +74,7 @@ ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings)
     : with_visibility_(settings.quantity == RowQuantity::visibility) {
     constexpr std::uint64_t texels_a_chunk = 1u << 22;
     const std::uint64_t texels = std::uint64_t{3} * settings.resolution * settings.resolution;
-    const std::uint64_t row_texels = texels * settings.eye_points;
+    const std::uint64_t row_texels = texels * std::max(settings.eye_points, settings.near_eye_points);
     rows_ = static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(texels_a_chunk / row_texels, 1, FormFactorMatrix::block_rows));
     // Visibility is pooled: patches without a texel of their own have some.

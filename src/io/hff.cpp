@@ -15,7 +15,7 @@ namespace hemi::io {
 
 namespace {
 
-constexpr ChunkFormat hff_format{"HEMIFF\r\n", 1, "form factors (.hff)"};
+constexpr ChunkFormat hff_format{"HEMIFF\r\n", 2, "form factors (.hff)"};
 
 Json header(const FactorFile& file) {
     return {{"size", file.factors.size()},
@@ -46,9 +46,11 @@ void check(const FactorFile& file) {
 void write_block(ChunkWriter& writer, const RowBlock& block) {
     const std::uint32_t rows = block.rows();
     const std::uint64_t entries = block.columns.size();
-    writer.chunk("ROWS", {bytes_of(block.first_row), bytes_of(rows), bytes_of(entries), bytes_of(block.begin),
-                          bytes_of(block.environment), bytes_of(block.blocked), bytes_of(block.columns),
-                          bytes_of(block.values), bytes_of(block.known)});
+    const std::uint64_t visibilities = block.visibility.size();
+    writer.chunk("ROWS", {bytes_of(block.first_row), bytes_of(rows), bytes_of(entries),
+                          bytes_of(visibilities), bytes_of(block.begin), bytes_of(block.environment),
+                          bytes_of(block.blocked), bytes_of(block.columns), bytes_of(block.values),
+                          bytes_of(block.visibility), bytes_of(block.known)});
 }
 
 std::uint32_t integer32(const JsonNode& node) {
@@ -127,6 +129,7 @@ void read_block(ChunkReader& reader, FormFactorMatrix& factors, std::uint32_t fi
     block.first_row = payload.take<std::uint32_t>();
     const auto rows = payload.take<std::uint32_t>();
     const auto entries = payload.take<std::uint64_t>();
+    const auto visibilities = payload.take<std::uint64_t>();
     if (block.first_row != first_row) {
         payload.fail(fmt::format("starts at row {}, where row {} must come", block.first_row, first_row));
     }
@@ -135,6 +138,7 @@ void read_block(ChunkReader& reader, FormFactorMatrix& factors, std::uint32_t fi
     block.blocked = payload.take_array<double>(rows);
     block.columns = payload.take_array<std::uint32_t>(entries);
     block.values = payload.take_array<float>(entries);
+    block.visibility = payload.take_array<std::uint8_t>(visibilities);
     block.known = payload.take_array<std::uint8_t>(rows);
     payload.expect_end();
     if (std::any_of(block.known.begin(), block.known.end(), [](std::uint8_t known) { return known > 1; })) {

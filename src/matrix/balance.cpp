@@ -1,6 +1,8 @@
 #include "hemi/matrix/balance.hpp"
 
+#include "core/parallel_for.hpp"
 #include "hemi/core/error.hpp"
+#include "matrix/pairs.hpp"
 
 #include <fmt/format.h>
 
@@ -13,19 +15,6 @@ namespace hemi {
 namespace {
 
 constexpr double relevant_factor = 1e-4;
-
-void check_areas(const FormFactorMatrix& factors, std::span<const double> areas) {
-    if (areas.size() != factors.size()) {
-        throw InvalidArgument(
-            fmt::format("{} areas for {} rows of form factors", areas.size(), factors.size()));
-    }
-    for (std::size_t i = 0; i < areas.size(); ++i) {
-        if (!(areas[i] > 0.0) || !std::isfinite(areas[i])) {
-            throw InvalidArgument(
-                fmt::format("patch {}: area {}; it must be finite and above 0", i, areas[i]));
-        }
-    }
-}
 
 /// Gathers what differs between F(i, j) and F(j, i), pair by pair.
 class ReciprocityTally {
@@ -45,21 +34,36 @@ public:
             result_.worst_i = gap_i >= gap_j ? i : j;
             result_.worst_j = gap_i >= gap_j ? j : i;
         }
+        const double relative = gap > 0.0 ? gap / std::max(exchange_ij, exchange_ji) : 0.0;
+        result_.relative_max = std::max(result_.relative_max, relative);
         if (std::max(f_ij, f_ji) > relevant_factor) {
-            const double relative = gap / std::max(exchange_ij, exchange_ji);
             relative_squares_ += relative * relative;
             ++relevant_;
         }
     }
 
-    [[nodiscard]] Reciprocity result() {
-        if (result_.pairs > 0) {
-            result_.rms = std::sqrt(squares_ / static_cast<double>(result_.pairs));
+    void add(const ReciprocityTally& other) {
+        squares_ += other.squares_;
+        relative_squares_ += other.relative_squares_;
+        relevant_ += other.relevant_;
+        result_.pairs += other.result_.pairs;
+        result_.relative_max = std::max(result_.relative_max, other.result_.relative_max);
+        if (other.result_.max > result_.max) {
+            result_.max = other.result_.max;
+            result_.worst_i = other.result_.worst_i;
+            result_.worst_j = other.result_.worst_j;
+        }
+    }
+
+    [[nodiscard]] Reciprocity result() const {
+        Reciprocity result = result_;
+        if (result.pairs > 0) {
+            result.rms = std::sqrt(squares_ / static_cast<double>(result.pairs));
         }
         if (relevant_ > 0) {
-            result_.relative_rms = std::sqrt(relative_squares_ / static_cast<double>(relevant_));
+            result.relative_rms = std::sqrt(relative_squares_ / static_cast<double>(relevant_));
         }
-        return result_;
+        return result;
     }
 
 private:
@@ -103,46 +107,32 @@ RowSums row_sums(const FormFactorMatrix& factors) {
 
 Reciprocity reciprocity(const FormFactorMatrix& factors, std::span<const double> areas) {
     check_areas(factors, areas);
-    ReciprocityTally tally(areas);
-
-    // Row i meets its partners F(j, i), j > i, in ascending order of i, so one cursor a row walks through the
-    // entries left of every row's diagonal once. What a cursor passes without a partner is stored one way
-    // only.
-    std::vector<std::uint32_t> cursors(factors.size(), 0);
-    const auto pass_until = [&](std::uint32_t j, const RowView& row_j, std::uint32_t column) {
-        std::uint32_t& cursor = cursors[j];
-        for (; cursor < row_j.columns.size() && row_j.columns[cursor] < column; ++cursor) {
-            const std::uint32_t k = row_j.columns[cursor];
-            if (factors.known(k)) {
-                tally.add(k, 0.0, j, static_cast<double>(row_j.values[cursor]));
-            }
-        }
+    const std::span<const RowBlock> blocks = factors.blocks();
+    const std::vector<std::uint32_t> cuts = slice_rows(blocks);
+    std::vector<ReciprocityTally> tallies(cuts.size() - 1, ReciprocityTally(areas));
+    const auto value = [&](std::uint32_t i, std::uint64_t k) {
+        return k == not_stored ? 0.0 : static_cast<double>(block_of(blocks, i).values[k]);
     };
-    for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        if (!factors.known(i)) {
-            continue;
+    parallel_for(tallies.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            ReciprocityTally tally(areas);
+            visit_pairs(blocks, cuts[s], cuts[s + 1],
+                        [&](std::uint32_t i, std::uint64_t k_ij, std::uint32_t j, std::uint64_t k_ji) {
+                            tally.add(i, value(i, k_ij), j, value(j, k_ji));
+                        });
+            tallies[s] = tally;
         }
-        const RowView row_i = factors.row(i);
-        pass_until(i, row_i, i);
-        const auto right = std::upper_bound(row_i.columns.begin(), row_i.columns.end(), i);
-        for (auto k = static_cast<std::size_t>(right - row_i.columns.begin()); k < row_i.columns.size();
-             ++k) {
-            const std::uint32_t j = row_i.columns[k];
-            if (!factors.known(j)) {
-                continue;
-            }
-            const RowView row_j = factors.row(j);
-            pass_until(j, row_j, i);
-            std::uint32_t& cursor = cursors[j];
-            double f_ji = 0.0;
-            if (cursor < row_j.columns.size() && row_j.columns[cursor] == i) {
-                f_ji = static_cast<double>(row_j.values[cursor]);
-                ++cursor;
-            }
-            tally.add(i, static_cast<double>(row_i.values[k]), j, f_ji);
-        }
+    });
+    ReciprocityTally all(areas);
+    for (const ReciprocityTally& tally : tallies) {
+        all.add(tally);
     }
-    return tally.result();
+    return all.result();
+}
+
+bool is_reciprocal(const Reciprocity& reciprocity) {
+    // Half a unit in the last place either way.
+    return reciprocity.relative_max <= 1.01 * static_cast<double>(std::numeric_limits<float>::epsilon());
 }
 
 GroupFactors group_factors(const FormFactorMatrix& factors, std::span<const double> areas,

@@ -136,6 +136,12 @@ bool FormFactorMatrix::all_known() const {
     });
 }
 
+bool FormFactorMatrix::has_visibility() const noexcept {
+    return entries() > 0 && std::all_of(blocks_.begin(), blocks_.end(), [](const RowBlock& block) {
+               return block.visibility.size() == block.values.size();
+           });
+}
+
 std::uint64_t FormFactorMatrix::entries() const noexcept {
     std::uint64_t count = 0;
     for (const RowBlock& block : blocks_) {
@@ -161,6 +167,10 @@ void FormFactorMatrix::set_block(RowBlock block) {
         check_row(block, local, size_);
     }
     blocks_[block.first_row / block_rows] = std::move(block);
+}
+
+std::vector<RowBlock> FormFactorMatrix::take_blocks() {
+    return std::exchange(blocks_, FormFactorMatrix(size_).blocks_);
 }
 
 } // namespace hemi

@@ -314,6 +314,25 @@ TEST_CASE("ExchangeAreas: rows of closed convex scenes sum to one", "[engine]") 
     CHECK(worst_row(PatchMesh(t_junction_room()), ExchangeRule::exact) < 1e-8);
 }
 
+TEST_CASE("ExchangeAreas: rows of a closed hull of slanted triangles sum to one", "[engine]") {
+    // An irregular octahedron, faces inward.
+    const std::array<Vec3, 6> tip{Vec3(1.1, 0.1, 0.0),  Vec3(-0.9, 0.2, 0.1), Vec3(0.1, 1.3, 0.2),
+                                  Vec3(0.0, -0.8, 0.3), Vec3(0.1, 0.1, 0.7),  Vec3(0.2, 0.0, -1.0)};
+    Scene scene = empty_scene();
+    for (const std::array<std::size_t, 3> face : {std::array<std::size_t, 3>{0, 4, 2},
+                                                  {2, 4, 1},
+                                                  {1, 4, 3},
+                                                  {3, 4, 0},
+                                                  {2, 5, 0},
+                                                  {1, 5, 2},
+                                                  {3, 5, 1},
+                                                  {0, 5, 3}}) {
+        add_polygon(scene, "hull", {tip[face[0]], tip[face[1]], tip[face[2]]}, {3, 3});
+    }
+    CHECK(worst_row(PatchMesh(scene), ExchangeRule::standard) < 3e-6);
+    CHECK(worst_row(PatchMesh(scene), ExchangeRule::exact) < 1e-9);
+}
+
 TEST_CASE("ExchangeAreas: scale and place do not matter", "[engine]") {
     Scene cube = empty_scene();
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 6);

@@ -9,9 +9,9 @@ namespace hemi::io_test {
 
 namespace {
 
-io::FactorFile sample(std::uint32_t size) {
+io::FactorFile sample(std::uint32_t size, bool with_visibility = true) {
     io::FactorFile file;
-    file.factors = random_matrix(size, false);
+    file.factors = random_matrix(size, false, with_visibility);
     for (std::uint32_t i = 0; i < size; ++i) {
         file.areas.push_back(1.0 / (i + 3.0));
         file.group_of.push_back(i % 3);
@@ -56,10 +56,14 @@ void require_equal(const io::FactorFile& a, const io::FactorFile& b) {
 
 TEST_CASE("HFF: what is written is read back bit for bit", "[io]") {
     const Folder folder;
-    for (const std::uint32_t size : {0u, 1u, 63u, 64u, 65u, 200u}) {
-        const io::FactorFile file = sample(size);
-        io::write_hff(folder / "a.hff", file);
-        require_equal(file, io::read_hff(folder / "a.hff"));
+    for (const bool with_visibility : {true, false}) {
+        for (const std::uint32_t size : {0u, 1u, 63u, 64u, 65u, 200u}) {
+            const io::FactorFile file = sample(size, with_visibility);
+            io::write_hff(folder / "a.hff", file);
+            const io::FactorFile read = io::read_hff(folder / "a.hff");
+            require_equal(file, read);
+            REQUIRE(read.factors.has_visibility() == (with_visibility && file.factors.entries() > 0));
+        }
     }
     REQUIRE(folder.files() == 1);
 }
@@ -107,7 +111,7 @@ TEST_CASE("HFF: lies with a right checksum are noticed, and cost no memory", "[i
         std::string change;
         std::string part;
     };
-    const std::size_t environment = 16 + 65 * 8;
+    const std::size_t environment = 24 + 65 * 8;
     const std::vector<Bad> table{
         {0, 0, "[", "a.hff:1:"},
         {0, 2, "syze", "\"size\" is missing"},
@@ -123,8 +127,10 @@ TEST_CASE("HFF: lies with a right checksum are noticed, and cost no memory", "[i
         {4, 4, raw(0xFFFFFFFFu), "chunk ROWS: shorter than its own counts say"},
         {4, 8, raw(std::uint64_t{1} << 60), "chunk ROWS: shorter than its own counts say"},
         {4, 8, raw(~std::uint64_t{0}), "chunk ROWS: shorter than its own counts say"},
-        {4, 16, raw(std::uint64_t{1}), "offsets must ascend"},
-        {4, 24, raw(std::uint64_t{1} << 40), "offsets must ascend"},
+        {4, 16, raw(std::uint64_t{1} << 60), "chunk ROWS: shorter than its own counts say"},
+        {4, 16, raw(std::uint64_t{0}), "bytes too many"},
+        {4, 24, raw(std::uint64_t{1}), "offsets must ascend"},
+        {4, 32, raw(std::uint64_t{1} << 40), "offsets must ascend"},
         {4, environment, raw(-0.5), "environment share -0.5"},
         {4, environment, raw(std::nan("")), "environment share nan"},
         {4, environment + 64 * 16, raw(70u), "column"},
@@ -144,7 +150,7 @@ TEST_CASE("HFF: other files, other versions and directories are told apart", "[i
     require_parts(refusal(""), {"a.hff: 0 bytes; too short"});
     require_parts(refusal("v 0 0 0\nv 1 0 0\nv 1 1 0\n"), {"does not hold form factors (.hff)", "v 0 0 0"});
     require_parts(refusal("HEMIFF\n" + std::string(20, '\0')), {"does not hold form factors"});
-    require_parts(refusal("HEMIFF\r\n\2" + std::string(20, '\0')), {"version 2", "reads version 1"});
+    require_parts(refusal("HEMIFF\r\n\1" + std::string(20, '\0')), {"version 1", "reads version 2"});
     require_parts(message_of<InputError>([&] { (void)io::read_hff(folder / ""); }), {"cannot be read"});
     require_parts(message_of<InputError>([&] { (void)io::read_hff(folder / "no.hff"); }), {"No such file"});
 }

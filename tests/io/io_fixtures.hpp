@@ -70,8 +70,8 @@ inline void require_parts(const std::string& message, const std::vector<std::str
 }
 
 /// Rows of 0 to 40 entries in random columns, over many magnitudes; with row balance, and with unknown rows
-/// if asked.
-inline FormFactorMatrix random_matrix(std::uint32_t size, bool all_known) {
+/// and visibility if asked.
+inline FormFactorMatrix random_matrix(std::uint32_t size, bool all_known, bool with_visibility = false) {
     std::mt19937 random(size);
     const auto uniform = [&random] { return static_cast<double>(random()) / 4294967296.0; };
     FormFactorMatrix matrix(size);
@@ -85,6 +85,9 @@ inline FormFactorMatrix random_matrix(std::uint32_t size, bool all_known) {
                 if (uniform() < 20.0 / size) {
                     block.columns.push_back(j);
                     block.values.push_back(static_cast<float>(std::exp(-60.0 * uniform() * uniform())));
+                    if (with_visibility) {
+                        block.visibility.push_back(static_cast<std::uint8_t>(256.0 * uniform()));
+                    }
                 }
             }
             block.begin.push_back(block.columns.size());
@@ -104,6 +107,7 @@ inline void require_same_entries(const FormFactorMatrix& a, const FormFactorMatr
         REQUIRE(a.blocks()[k].begin == b.blocks()[k].begin);
         REQUIRE(a.blocks()[k].columns == b.blocks()[k].columns);
         REQUIRE(a.blocks()[k].values == b.blocks()[k].values);
+        REQUIRE(a.blocks()[k].visibility == b.blocks()[k].visibility);
     }
 }
 

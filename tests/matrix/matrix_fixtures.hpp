@@ -3,6 +3,7 @@
 #include "hemi/matrix/form_factor_matrix.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <random>
@@ -125,6 +126,77 @@ inline ReciprocalScene reciprocal_scene(std::uint32_t size, std::uint64_t seed) 
         }
     }
     return scene;
+}
+
+/// A_i F(i, j) of the scene's pairs.
+inline DenseRows exchange_of(const ReciprocalScene& scene) {
+    DenseRows exchange = scene.rows;
+    for (std::size_t i = 0; i < exchange.size(); ++i) {
+        for (double& value : exchange[i]) {
+            value *= scene.areas[i];
+        }
+    }
+    return exchange;
+}
+
+inline ReciprocalScene scene_of(const DenseRows& exchange, const std::vector<double>& areas) {
+    ReciprocalScene scene{areas, exchange};
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+        for (double& value : scene.rows[i]) {
+            value /= areas[i];
+        }
+    }
+    return scene;
+}
+
+/// Scales symmetric exchange areas until row i sums to `targets[i]`: x_ij = s_i s_j m_ij.
+inline void scale_to_targets(DenseRows& exchange, const std::vector<double>& targets) {
+    for (int sweep = 0; sweep < 2000; ++sweep) {
+        std::vector<double> scale(exchange.size());
+        for (std::size_t i = 0; i < exchange.size(); ++i) {
+            double sum = 0.0;
+            for (const double value : exchange[i]) {
+                sum += value;
+            }
+            scale[i] = sum > 0.0 ? std::sqrt(targets[i] / sum) : 1.0;
+        }
+        for (std::size_t i = 0; i < exchange.size(); ++i) {
+            for (std::size_t j = 0; j < exchange.size(); ++j) {
+                exchange[i][j] *= scale[i] * scale[j];
+            }
+        }
+    }
+}
+
+/// Areas between 1 and `ratio` and rows with A_i F(i, j) = A_j F(j, i) that sum to 1. Half of the pairs see
+/// each other.
+inline ReciprocalScene closed_scene(std::uint32_t size, std::uint64_t seed, double ratio = 2.0) {
+    Random random(seed);
+    std::vector<double> areas;
+    DenseRows exchange(size, std::vector<double>(size, 0.0));
+    for (std::uint32_t i = 0; i < size; ++i) {
+        areas.push_back(std::pow(ratio, random()));
+        for (std::uint32_t j = 0; j < i; ++j) {
+            const double value = random() < 0.5 ? (0.1 + random()) * areas[i] * areas[j] : 0.0;
+            exchange[i][j] = exchange[j][i] = value;
+        }
+    }
+    scale_to_targets(exchange, areas);
+    return scene_of(exchange, areas);
+}
+
+/// The matrix with a code of visibility for every entry.
+template <class Code>
+FormFactorMatrix with_visibility(FormFactorMatrix matrix, const Code& code_of) {
+    for (RowBlock& block : matrix.take_blocks()) {
+        for (std::uint32_t local = 0; local < block.rows(); ++local) {
+            for (std::uint64_t k = block.begin[local]; k < block.begin[local + 1]; ++k) {
+                block.visibility.push_back(code_of(block.first_row + local, block.columns[k]));
+            }
+        }
+        matrix.set_block(std::move(block));
+    }
+    return matrix;
 }
 
 } // namespace hemi::test

@@ -50,8 +50,8 @@ public:
 
 private:
     struct Patch {
-        Vec3 centre;   ///< of the bounding sphere
-        double radius; ///< of the bounding sphere
+        Vec3 centre;   ///< mean of the corners, so in the patch's plane
+        double radius; ///< of the sphere about it that holds the patch
         Vec3 normal;
         double area;
         /// 2 x 2 Gauss points and their weights.

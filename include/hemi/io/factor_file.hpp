@@ -28,7 +28,8 @@ struct FactorFile {
 };
 
 /// Writes `.hff`: a chunk file (see chunk_file.hpp) whose rows are independent, checksummed blocks with
-/// their own 64-bit offsets and row balance. Raw rows, complete under the final name or not there at all.
+/// their own 64-bit offsets, row balance and, where it is known, visibility. Raw rows, complete under the
+/// final name or not there at all.
 void write_hff(const std::filesystem::path& path, const FactorFile& file);
 /// @throws InputError for anything that is not a sound `.hff`: every length, offset, index and checksum is
 /// tested.

@@ -30,13 +30,17 @@ struct Reciprocity {
     double rms = 0.0;          ///< of F(i, j) - F(j, i)·A_j / A_i over the pairs, absolute
     double max = 0.0;          ///< largest such difference
     double relative_rms = 0.0; ///< of the relative error, over pairs with F > 1e-4 either way
+    double relative_max = 0.0; ///< largest relative error, over all pairs
     std::uint32_t worst_i = 0; ///< the pair of the largest difference
     std::uint32_t worst_j = 0;
     std::uint64_t pairs = 0;
 };
-/// Memory: 4 bytes a row and 12 an entry of the largest block; linear in the number of entries times log.
+/// Memory: O(N). The same bits on any number of threads.
 /// @param areas  N areas.
 [[nodiscard]] Reciprocity reciprocity(const FormFactorMatrix& factors, std::span<const double> areas);
+
+/// Whether A_i F(i, j) and A_j F(j, i) differ by no more than the rounding of both to floats.
+[[nodiscard]] bool is_reciprocal(const Reciprocity& reciprocity);
 
 /// F summed over groups of patches, area-weighted on the leaving side:
 /// F(g, h) = sum_{i in g} A_i sum_{j in h} F(i, j) / sum_{i in g} A_i.

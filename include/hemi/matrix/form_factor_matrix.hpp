@@ -41,8 +41,7 @@ struct RowBlock {
 
 /// Form factors F(i, j) of N patches: compressed sparse rows (float32 values, 32-bit columns) in independent
 /// blocks of `block_rows` rows, with the balance of every row in double.
-/// Memory: 8 bytes an entry (9 with visibility) plus about 25 bytes a row. Values are the raw ones; repair
-/// makes a copy.
+/// Memory: 8 bytes an entry (9 with visibility) plus about 25 bytes a row.
 class FormFactorMatrix {
 public:
     /// Rows in every block but the last.
@@ -56,6 +55,8 @@ public:
     /// Whether row i was computed; `solve` leaves out rows that the scene does not require.
     [[nodiscard]] bool known(std::uint32_t i) const;
     [[nodiscard]] bool all_known() const;
+    /// Whether there are entries, and a visibility for each of them.
+    [[nodiscard]] bool has_visibility() const noexcept;
     /// Stored entries, all rows.
     [[nodiscard]] std::uint64_t entries() const noexcept;
     [[nodiscard]] std::uint64_t memory_bytes() const noexcept;
@@ -66,6 +67,8 @@ public:
     ///   not ascend, columns out of range or not ascending, values that are not finite or negative, a
     ///   visibility of another length than the values.
     void set_block(RowBlock block);
+    /// All blocks, to be changed and set again; until then every row is unknown.
+    [[nodiscard]] std::vector<RowBlock> take_blocks();
 
 private:
     std::uint32_t size_;

@@ -1,0 +1,323 @@
+#include "matrix/closure.hpp"
+
+#include "core/parallel_for.hpp"
+#include "hemi/core/covered.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hemi {
+
+namespace {
+
+constexpr std::uint32_t block_rows = FormFactorMatrix::block_rows;
+
+// A pair held at a bound has its value there, with the sign as the mark: the weight of what is not above 0
+// is 0.
+double magnitude(float value) {
+    return std::abs(static_cast<double>(value));
+}
+double movable(float value) {
+    return std::max(static_cast<double>(value), 0.0);
+}
+
+/// V of a code; the lowest code stands for half a step.
+double visibility(std::uint8_t code) {
+    return std::max<double>(code, 0.5) / visibility_clear;
+}
+
+/// Calls `visit(k)` for entries of row i left of the diagonal that lead to unknown rows: their pairs are
+/// stored nowhere else.
+template <class Visit>
+void visit_unknown_left(std::span<const RowBlock> blocks, std::uint32_t i, const Visit& visit) {
+    const RowBlock& block = block_of(blocks, i);
+    const std::uint64_t end = first_from(block, i % block_rows, i);
+    for (std::uint64_t k = block.begin[i % block_rows]; k < end; ++k) {
+        if (!is_known(blocks, block.columns[k])) {
+            visit(k);
+        }
+    }
+}
+
+} // namespace
+
+Closure::Closure(std::vector<RowBlock>& blocks, std::span<const double> areas, bool with_visibility,
+                 const RepairSettings& settings)
+    : blocks_(blocks), areas_(areas), with_visibility_(with_visibility), settings_(settings),
+      cuts_(slice_rows(blocks)), pairs_(blocks, static_cast<std::uint32_t>(areas.size()), 1),
+      gap_(areas.size(), 0.0), diagonal_(areas.size(), 0.0), multiplier_(areas.size(), 0.0) {
+    for (const RowBlock& block : blocks) {
+        all_known_ = all_known_ && std::find(block.known.begin(), block.known.end(), 0) == block.known.end();
+    }
+    const double rule = settings.unoccluded_error * settings.unoccluded_error;
+    for (std::size_t code = 0; code < variance_.size(); ++code) {
+        const double v = visibility(static_cast<std::uint8_t>(code));
+        const double sampling = code == visibility_clear ? 0.0 : v * (1.0 - v);
+        variance_[code] = with_visibility_ ? (sampling + rule) / (v * v) : 1.0;
+    }
+}
+
+/// y = W z over pairs of known rows.
+void Closure::multiply(const std::vector<double>& z, std::vector<double>& y) {
+    const auto scale = [this](std::uint32_t i) { return areas_[i] * areas_[i]; };
+    if (with_visibility_) {
+        pairs_.apply(
+            scale,
+            [this](const RowBlock& block, std::uint32_t) {
+                return [values = block.values.data(), codes = block.visibility.data(),
+                        variance = variance_.data()](std::uint64_t k) {
+                    const double value = movable(values[k]);
+                    return value * value * variance[codes[k]];
+                };
+            },
+            z.data(), y.data());
+    } else {
+        pairs_.apply(
+            scale,
+            [](const RowBlock& block, std::uint32_t) {
+                return [values = block.values.data()](std::uint64_t k) {
+                    const double value = movable(values[k]);
+                    return value * value;
+                };
+            },
+            z.data(), y.data());
+    }
+}
+
+void Closure::find_gaps() {
+    const std::vector<double> ones(gap_.size(), 1.0);
+    std::vector<double> sums(gap_.size());
+    pairs_.apply([this](std::uint32_t i) { return areas_[i]; },
+                 [](const RowBlock& block, std::uint32_t) {
+                     return [values = block.values.data()](std::uint64_t k) { return magnitude(values[k]); };
+                 },
+                 ones.data(), sums.data());
+    for (std::uint32_t i = 0; i < gap_.size(); ++i) {
+        const RowBlock& block = block_of(blocks_, i);
+        const std::uint32_t local = i % block_rows;
+        if (!all_known_) {
+            visit_unknown_left(blocks_, i,
+                               [&](std::uint64_t k) { sums[i] += areas_[i] * magnitude(block.values[k]); });
+        }
+        const std::uint64_t self = first_from(block, local, i);
+        if (self < block.begin[local + 1] && block.columns[self] == i) {
+            sums[i] += areas_[i] * magnitude(block.values[self]);
+        }
+        const double target = std::max(0.0, 1.0 - block.environment[local] - block.blocked[local]);
+        gap_[i] = areas_[i] * target - sums[i];
+    }
+}
+
+void Closure::find_diagonal() {
+    multiply(std::vector<double>(gap_.size(), 1.0), diagonal_);
+    for (std::uint32_t i = 0; i < gap_.size(); ++i) {
+        const RowBlock& block = block_of(blocks_, i);
+        if (!is_known(blocks_, i) || block.blocked[i % block_rows] > covered_above) {
+            diagonal_[i] = 0.0;
+        } else if (!all_known_) {
+            visit_unknown_left(blocks_, i, [&](std::uint64_t k) {
+                const double x = areas_[i] * movable(block.values[k]);
+                diagonal_[i] += x * x * variance_[with_visibility_ ? block.visibility[k] : 0];
+            });
+        }
+        if (diagonal_[i] == 0.0) {
+            gap_[i] = 0.0;
+            multiplier_[i] = 0.0;
+        }
+    }
+}
+
+/// Largest gap as an error of a row sum.
+double Closure::relative_gap(const std::vector<double>& gap) const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < gap.size(); ++i) {
+        largest = std::max(largest, std::abs(gap[i]) / areas_[i]);
+    }
+    return largest;
+}
+
+/// (diag(W 1) + W) l = gap by conjugate gradients from the present multipliers.
+/// @return iterations
+std::uint32_t Closure::find_multipliers() {
+    // Where targets contradict each other the residual ends at what contradicts; the best is kept.
+    constexpr std::uint32_t patience = 60;
+    constexpr double progress = 0.9;
+    const std::size_t size = gap_.size();
+    std::vector<double> residual = gap_;
+    std::vector<double> product(size);
+    const auto apply = [&](const std::vector<double>& z) {
+        multiply(z, product);
+        for (std::size_t i = 0; i < size; ++i) {
+            product[i] = diagonal_[i] > 0.0 ? product[i] + diagonal_[i] * z[i] : 0.0;
+        }
+    };
+    apply(multiplier_);
+    for (std::size_t i = 0; i < size; ++i) {
+        residual[i] -= product[i];
+    }
+    std::vector<double> l = multiplier_;
+    std::vector<double> direction(size, 0.0);
+    double best = relative_gap(residual);
+    double mark = best;
+    double rho_before = 0.0;
+    std::uint32_t iteration = 0;
+    std::uint32_t since = 0;
+    while (best > settings_.tolerance && iteration < settings_.max_iterations && since < patience) {
+        double rho = 0.0;
+        for (std::size_t i = 0; i < size; ++i) {
+            rho += diagonal_[i] > 0.0 ? residual[i] * residual[i] / diagonal_[i] : 0.0;
+        }
+        const double beta = iteration == 0 ? 0.0 : rho / rho_before;
+        rho_before = rho;
+        for (std::size_t i = 0; i < size; ++i) {
+            direction[i] = diagonal_[i] > 0.0 ? residual[i] / diagonal_[i] + beta * direction[i] : 0.0;
+        }
+        apply(direction);
+        double curvature = 0.0;
+        for (std::size_t i = 0; i < size; ++i) {
+            curvature += direction[i] * product[i];
+        }
+        ++iteration;
+        const double alpha = rho / curvature;
+        if (!(curvature > 0.0) || !std::isfinite(alpha)) {
+            break;
+        }
+        for (std::size_t i = 0; i < size; ++i) {
+            l[i] += alpha * direction[i];
+            residual[i] -= alpha * product[i];
+        }
+        const double gap = relative_gap(residual);
+        if (gap < best) {
+            best = gap;
+            multiplier_ = l;
+        }
+        ++since;
+        if (best < progress * mark) {
+            mark = best;
+            since = 0;
+        }
+    }
+    return iteration;
+}
+
+/// x of an entry with its multipliers; of a held one its bound.
+double Closure::exchange(std::uint32_t i, const RowBlock& block, std::uint64_t k, double multipliers) const {
+    const double x = areas_[i] * movable(block.values[k]);
+    const double weight = x * x * variance_[with_visibility_ ? block.visibility[k] : 0];
+    return areas_[i] * magnitude(block.values[k]) + weight * multipliers;
+}
+
+/// The largest x of an entry that is not held.
+double Closure::limit(std::uint32_t i, const RowBlock& block, std::uint64_t k) const {
+    if (!with_visibility_ || block.visibility[k] == visibility_clear) {
+        return std::numeric_limits<double>::infinity();
+    }
+    return areas_[i] * movable(block.values[k]) / visibility(block.visibility[k]) *
+           (1.0 + settings_.unoccluded_error);
+}
+
+/// Calls `visit(first, last, tally)` for every slice of rows, in threads.
+template <class Visit>
+void Closure::for_slices(const Visit& visit) {
+    parallel_for(cuts_.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t s = begin; s < end; ++s) {
+            visit(s, cuts_[s], cuts_[s + 1]);
+        }
+    });
+}
+
+Closure::Tally Closure::hold_at_bounds() {
+    std::vector<Tally> tallies(cuts_.size() - 1);
+    for_slices([&](std::size_t s, std::uint32_t first, std::uint32_t last) {
+        Tally tally;
+        for (std::uint32_t i = first; i < last; ++i) {
+            RowBlock& block = blocks_[i / block_rows];
+            const auto hold = [&](std::uint64_t k) {
+                float& value = block.values[k];
+                if (!(value > 0.0F)) {
+                    return;
+                }
+                const double x = exchange(i, block, k, multiplier_[i] + multiplier_[block.columns[k]]);
+                const double most = limit(i, block, k);
+                if (x < 0.0) {
+                    value = 0.0F;
+                    ++tally.at_zero;
+                    tally.largest_change = std::max(tally.largest_change, 1.0);
+                } else if (x > most) {
+                    tally.largest_change =
+                        std::max(tally.largest_change, most / (areas_[i] * movable(value)) - 1.0);
+                    value = -static_cast<float>(most / areas_[i]);
+                    ++tally.at_unoccluded;
+                }
+            };
+            for (std::uint64_t k = first_from(block, i % block_rows, i + 1);
+                 k < block.begin[i % block_rows + 1]; ++k) {
+                hold(k);
+            }
+            if (!all_known_) {
+                visit_unknown_left(blocks_, i, hold);
+            }
+        }
+        tallies[s] = tally;
+    });
+    Tally all;
+    for (const Tally& tally : tallies) {
+        all.at_zero += tally.at_zero;
+        all.at_unoccluded += tally.at_unoccluded;
+        all.largest_change = std::max(all.largest_change, tally.largest_change);
+    }
+    return all;
+}
+
+/// The values as the multipliers make them, both directions from one.
+Closure::Tally Closure::write() {
+    std::vector<double> largest(cuts_.size() - 1, 0.0);
+    for_slices([&](std::size_t s, std::uint32_t first, std::uint32_t last) {
+        double change = 0.0;
+        const auto write_entry = [&](std::uint32_t i, RowBlock& block, std::uint64_t k) {
+            float& value = block.values[k];
+            const double before = areas_[i] * magnitude(value);
+            const double x = exchange(i, block, k, multiplier_[i] + multiplier_[block.columns[k]]);
+            if (before > 0.0) {
+                change = std::max(change, std::abs(x - before) / before);
+            }
+            value = static_cast<float>(std::max(x, 0.0) / areas_[i]);
+        };
+        visit_pairs(std::span<const RowBlock>(blocks_), first, last,
+                    [&](std::uint32_t i, std::uint64_t k_ij, std::uint32_t j, std::uint64_t k_ji) {
+                        RowBlock& block = blocks_[i / block_rows];
+                        write_entry(i, block, k_ij);
+                        blocks_[j / block_rows].values[k_ji] = static_cast<float>(
+                            areas_[i] * static_cast<double>(block.values[k_ij]) / areas_[j]);
+                    });
+        for (std::uint32_t i = first; i < last && !all_known_; ++i) {
+            RowBlock& block = blocks_[i / block_rows];
+            for (std::uint64_t k = block.begin[i % block_rows]; k < block.begin[i % block_rows + 1]; ++k) {
+                if (!is_known(blocks_, block.columns[k])) {
+                    write_entry(i, block, k);
+                }
+            }
+        }
+        largest[s] = change;
+    });
+    return {.largest_change = *std::max_element(largest.begin(), largest.end())};
+}
+
+void Closure::run(RepairReport& report) {
+    for (bool settled = false; !settled;) {
+        find_gaps();
+        find_diagonal();
+        report.iterations += find_multipliers();
+        ++report.passes;
+        // After the last pass pairs are put at their bounds without a new solution for the others.
+        const Tally held = hold_at_bounds();
+        report.at_zero += held.at_zero;
+        report.at_unoccluded += held.at_unoccluded;
+        report.largest_change = std::max(report.largest_change, held.largest_change);
+        settled = (held.at_zero == 0 && held.at_unoccluded == 0) || report.passes >= settings_.max_passes;
+    }
+    report.largest_change = std::max(report.largest_change, write().largest_change);
+}
+
+} // namespace hemi

@@ -1,0 +1,122 @@
+#pragma once
+
+#include "core/parallel_for.hpp"
+#include "matrix/pairs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// Products of a symmetric matrix over pairs of patches with a field: y_i = sum_j w_ij z_j. The weight of a
+/// pair comes from the entry right of the diagonal only, so w_ij = w_ji exactly. Rows are summed by slice and
+/// then in the order of slices: the same bits on any number of threads.
+/// Memory: up to 16 fields.
+class PairProduct {
+public:
+    /// @param stride  values a patch, side by side: 1, 2 or a multiple of 4
+    PairProduct(std::span<const RowBlock> blocks, std::uint32_t size, std::size_t stride)
+        : blocks_(blocks), size_(size), stride_(stride), cuts_(slice_rows(blocks)) {
+        for (std::size_t s = 0; s + 1 < cuts_.size(); ++s) {
+            partial_.emplace_back((size_ - cuts_[s]) * stride_);
+        }
+    }
+
+    /// @param weight_of  weight_of(block, row): a function of an entry's position in the block, the weight
+    ///   of its pair over `scale(row)`
+    /// @param z,y  size·stride values
+    template <class Scale, class WeightOf>
+    void apply(const Scale& scale, const WeightOf& weight_of, const double* z, double* y) {
+        parallel_for(partial_.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t s = begin; s < end; ++s) {
+                std::fill(partial_[s].begin(), partial_[s].end(), 0.0);
+                for (std::uint32_t i = cuts_[s]; i < cuts_[s + 1]; ++i) {
+                    add_row(s, i, scale(i), weight_of(block_of(blocks_, i), i), z);
+                }
+            }
+        });
+        constexpr std::size_t grain = 8192;
+        parallel_for(size_ * stride_, grain, [&](std::size_t begin, std::size_t end) {
+            std::fill(y + begin, y + end, 0.0);
+            for (std::size_t s = 0; s < partial_.size(); ++s) {
+                const std::size_t offset = cuts_[s] * stride_;
+                for (std::size_t k = std::max(begin, offset); k < end; ++k) {
+                    y[k] += partial_[s][k - offset];
+                }
+            }
+        });
+    }
+
+private:
+    template <class Weight>
+    void add_row(std::size_t slice, std::uint32_t i, double scale, const Weight& weight, const double* z) {
+        const RowBlock& block = block_of(blocks_, i);
+        const std::uint32_t local = i % FormFactorMatrix::block_rows;
+        const std::uint64_t begin = first_from(block, local, i + 1);
+        const std::uint64_t end = block.begin[local + 1];
+        double* const y = partial_[slice].data();
+        const std::size_t first = cuts_[slice];
+        if (stride_ == 1) {
+            add_entries<1>(block, begin, end, i, scale, weight, z, y, first);
+        } else if (stride_ == 2) {
+            add_entries<2>(block, begin, end, i, scale, weight, z, y, first);
+        } else {
+            for (std::size_t c = 0; c < stride_; c += 4) {
+                add_entries<4>(block, begin, end, i, scale, weight, z + c, y + c, first);
+            }
+        }
+    }
+
+    /// Both directions of the pairs of one row, for `width` neighbouring channels.
+    template <std::size_t width, class Weight>
+    void add_entries(const RowBlock& block, std::uint64_t begin, std::uint64_t end, std::uint32_t i,
+                     double scale, const Weight& weight, const double* z, double* y,
+                     std::size_t first) const {
+        // Independent partial sums hide the latency of the additions.
+        constexpr std::size_t lanes = width == 1 ? 4 : 2;
+        const std::uint32_t* const columns = block.columns.data();
+        std::array<std::array<double, width>, lanes> sums{};
+        std::array<double, width> from_i{};
+        for (std::size_t c = 0; c < width; ++c) {
+            from_i[c] = scale * z[i * stride_ + c];
+        }
+        const auto add = [&](std::uint64_t k, std::array<double, width>& sum) {
+            const double w = weight(k);
+            const std::size_t j = columns[k];
+            const double* const z_j = z + j * stride_;
+            double* const y_j = y + (j - first) * stride_;
+            for (std::size_t c = 0; c < width; ++c) {
+                sum[c] += w * z_j[c];
+                y_j[c] += w * from_i[c];
+            }
+        };
+        std::uint64_t k = begin;
+        for (; k + lanes <= end; k += lanes) {
+            for (std::size_t lane = 0; lane < lanes; ++lane) {
+                add(k + lane, sums[lane]);
+            }
+        }
+        for (; k < end; ++k) {
+            add(k, sums[0]);
+        }
+        for (std::size_t c = 0; c < width; ++c) {
+            double sum = sums[0][c];
+            for (std::size_t lane = 1; lane < lanes; ++lane) {
+                sum += sums[lane][c];
+            }
+            y[(i - first) * stride_ + c] += scale * sum;
+        }
+    }
+
+    std::span<const RowBlock> blocks_;
+    std::uint32_t size_;
+    std::size_t stride_;
+    std::vector<std::uint32_t> cuts_;
+    std::vector<std::vector<double>> partial_; // per slice, patches from its first row on
+};
+
+} // namespace hemi
