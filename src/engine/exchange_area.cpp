@@ -84,6 +84,15 @@ double product_rule(std::span<const Vec3> a, const Plane& plane_a, std::span<con
                                AreaRule<N>(BilinearMap(b, plane_b.normal)), plane_b);
 }
 
+/// What rounding of the corners can do to lengths, wherever the scene lies.
+double coordinate_rounding(const Bounds& bounds) {
+    double magnitude = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        magnitude = std::max({magnitude, std::abs(bounds.lower[axis]), std::abs(bounds.upper[axis])});
+    }
+    return 16.0 * std::numeric_limits<double>::epsilon() * magnitude;
+}
+
 /// Distances of bounding spheres, in diameters of the larger one, from which product rules of n x n points
 /// on either side do.
 struct Reach {
@@ -129,7 +138,7 @@ double point_factor(const Vec3& at, const Vec3& normal, std::span<const Vec3> po
 }
 
 ExchangeAreas::ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule)
-    : rule_(rule), rounding_(mesh.rounding()),
+    : rule_(rule), rounding_(coordinate_rounding(mesh.bounds())),
       far_(rule == ExchangeRule::standard ? standard_reach[0].distance : exact_reach[0].distance),
       patches_(mesh.size()) {
     const Vec3 origin = mesh.bounds().centre();
@@ -142,6 +151,7 @@ ExchangeAreas::ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule)
         }
         Patch& patch = patches_[i];
         patch.corners = corners.count;
+        patch.surface = mesh.surface_of()[i];
         patch.normal = mesh.normal(i);
         patch.area = mesh.areas()[i];
         patch.centre = sum / static_cast<double>(corners.count);
@@ -164,11 +174,11 @@ ExchangeAreas::ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule)
 }
 
 double ExchangeAreas::operator()(std::uint32_t i, std::uint32_t j) const {
-    if (i == j) {
-        return 0.0;
-    }
     const Patch& a = patches_[std::min(i, j)];
     const Patch& b = patches_[std::max(i, j)];
+    if (a.surface == b.surface) {
+        return 0.0;
+    }
     const Vec3 offset = b.centre - a.centre;
     const double height_b = glm::dot(offset, a.normal);
     const double height_a = -glm::dot(offset, b.normal);

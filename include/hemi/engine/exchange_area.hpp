@@ -43,7 +43,7 @@ public:
     explicit ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule = ExchangeRule::standard);
 
     /// A_i F(i, j) = A_j F(j, i); both orders give the same bits. 0 where the two do not face each other, and
-    /// for i = j.
+    /// on one surface.
     [[nodiscard]] double operator()(std::uint32_t i, std::uint32_t j) const;
 
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(patches_.size()); }
@@ -59,6 +59,7 @@ private:
         /// Corners; those of a triangle end with the third one twice.
         std::array<double, 4> corner_x, corner_y, corner_z;
         std::uint32_t corners;
+        std::uint32_t surface;
     };
 
     [[nodiscard]] double near_area(const Patch& a, const Patch& b, bool clipped, double distance) const;
