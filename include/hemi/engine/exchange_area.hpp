@@ -54,7 +54,7 @@ private:
         double radius; ///< of the sphere about it that holds the patch
         Vec3 normal;
         double area;
-        /// 2 x 2 Gauss points and their weights.
+        /// Points and weights of the rule for far patches.
         std::array<double, 4> x, y, z, weight;
         /// Corners; those of a triangle end with the third one twice.
         std::array<double, 4> corner_x, corner_y, corner_z;
