@@ -139,7 +139,7 @@ struct Reach {
     std::size_t points;
     double distance;
 };
-constexpr std::array<Reach, 3> standard_reach{{{2, 6.0}, {3, 2.0}, {4, 0.8}}};
+constexpr std::array<Reach, 3> standard_reach{{{2, 5.5}, {3, 1.6}, {4, 0.6}}};
 constexpr std::array<Reach, 4> exact_reach{{{2, 80.0}, {3, 12.0}, {4, 4.5}, {6, 1.7}}};
 
 double product_rule(std::size_t points, std::span<const Vec3> a, const Plane& plane_a,
@@ -219,20 +219,27 @@ double ExchangeAreas::operator()(std::uint32_t i, std::uint32_t j) const {
     }
     const Patch& a = patches_[std::min(i, j)];
     const Patch& b = patches_[std::max(i, j)];
+    const Vec3 offset = b.centre - a.centre;
+    const double height_b = glm::dot(offset, a.normal);
+    const double height_a = -glm::dot(offset, b.normal);
+    if (height_b <= -b.radius || height_a <= -a.radius) {
+        return 0.0;
+    }
     const Plane plane_a{a.centre, a.normal};
     const Plane plane_b{b.centre, b.normal};
-    const auto [lowest_b, highest_b] =
-        std::ranges::minmax(heights<4>(b.corner_x, b.corner_y, b.corner_z, plane_a));
-    if (highest_b <= rounding_) {
-        return 0.0;
+    bool clip = false;
+    // Spheres decide for most pairs.
+    if (height_b < b.radius || height_a < a.radius) {
+        const auto [lowest_b, highest_b] =
+            std::ranges::minmax(heights<4>(b.corner_x, b.corner_y, b.corner_z, plane_a));
+        const auto [lowest_a, highest_a] =
+            std::ranges::minmax(heights<4>(a.corner_x, a.corner_y, a.corner_z, plane_b));
+        if (highest_b <= rounding_ || highest_a <= rounding_) {
+            return 0.0;
+        }
+        clip = lowest_a < -rounding_ || lowest_b < -rounding_;
     }
-    const auto [lowest_a, highest_a] =
-        std::ranges::minmax(heights<4>(a.corner_x, a.corner_y, a.corner_z, plane_b));
-    if (highest_a <= rounding_) {
-        return 0.0;
-    }
-    const bool clip = lowest_a < -rounding_ || lowest_b < -rounding_;
-    const double gap = glm::length(b.centre - a.centre) - a.radius - b.radius;
+    const double gap = glm::length(offset) - a.radius - b.radius;
     const double distance = gap / (2.0 * std::max(a.radius, b.radius));
     if (!clip && distance >= far_) {
         return product_rule<4>(a, plane_a, b, plane_b);
@@ -296,7 +303,7 @@ double ExchangeAreas::near_area(const Patch& a, const Patch& b, bool clipped, do
 
     const double smaller = std::min(a.area, b.area) / (unit * unit);
     ContourRule rule;
-    rule.tolerance = (rule_ == ExchangeRule::standard ? 1e-9 : 1e-13) * std::min(1.0, smaller);
+    rule.tolerance = (rule_ == ExchangeRule::standard ? 1e-6 : 1e-13) * std::min(1.0, smaller);
     rule.rounding = std::max(2.0 * rounding_ / unit, 1e-14);
     return std::max(0.0, contour_integral(polygon_a.span(), polygon_b.span(), rule)) * unit * unit;
 }

@@ -27,19 +27,6 @@ double visibility(std::uint8_t code) {
     return std::max<double>(code, 0.5) / visibility_clear;
 }
 
-/// Calls `visit(k)` for entries of row i left of the diagonal that lead to unknown rows: their pairs are
-/// stored nowhere else.
-template <class Visit>
-void visit_unknown_left(std::span<const RowBlock> blocks, std::uint32_t i, const Visit& visit) {
-    const RowBlock& block = block_of(blocks, i);
-    const std::uint64_t end = first_from(block, i % block_rows, i);
-    for (std::uint64_t k = block.begin[i % block_rows]; k < end; ++k) {
-        if (!is_known(blocks, block.columns[k])) {
-            visit(k);
-        }
-    }
-}
-
 } // namespace
 
 Closure::Closure(std::vector<RowBlock>& blocks, std::span<const double> areas, bool with_visibility,

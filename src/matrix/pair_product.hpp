@@ -76,8 +76,9 @@ private:
     void add_entries(const RowBlock& block, std::uint64_t begin, std::uint64_t end, std::uint32_t i,
                      double scale, const Weight& weight, const double* z, double* y,
                      std::size_t first) const {
-        // Independent partial sums hide the latency of the additions.
-        constexpr std::size_t lanes = width == 1 ? 4 : 2;
+        // Independent partial sums hide the latency of the additions; as many for every width, so that all
+        // channels are summed alike.
+        constexpr std::size_t lanes = 4;
         const std::uint32_t* const columns = block.columns.data();
         std::array<std::array<double, width>, lanes> sums{};
         std::array<double, width> from_i{};
@@ -100,15 +101,11 @@ private:
                 add(k + lane, sums[lane]);
             }
         }
-        for (; k < end; ++k) {
-            add(k, sums[0]);
+        for (std::size_t lane = 0; k < end; ++k, ++lane) {
+            add(k, sums[lane]);
         }
         for (std::size_t c = 0; c < width; ++c) {
-            double sum = sums[0][c];
-            for (std::size_t lane = 1; lane < lanes; ++lane) {
-                sum += sums[lane][c];
-            }
-            y[(i - first) * stride_ + c] += scale * sum;
+            y[(i - first) * stride_ + c] += scale * ((sums[0][c] + sums[1][c]) + (sums[2][c] + sums[3][c]));
         }
     }
 

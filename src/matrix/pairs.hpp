@@ -29,6 +29,19 @@ void check_areas(const FormFactorMatrix& factors, std::span<const double> areas)
         std::lower_bound(columns + block.begin[local], columns + block.begin[local + 1], column) - columns);
 }
 
+/// Calls `visit(k)` for entries of row i left of the diagonal that lead to unknown rows: their pairs are
+/// stored nowhere else.
+template <class Visit>
+void visit_unknown_left(std::span<const RowBlock> blocks, std::uint32_t i, const Visit& visit) {
+    const RowBlock& block = block_of(blocks, i);
+    const std::uint64_t end = first_from(block, i % FormFactorMatrix::block_rows, i);
+    for (std::uint64_t k = block.begin[i % FormFactorMatrix::block_rows]; k < end; ++k) {
+        if (!is_known(blocks, block.columns[k])) {
+            visit(k);
+        }
+    }
+}
+
 /// Where rows are cut for threads: slice s is rows [cuts[s], cuts[s + 1]), whole blocks with about equal
 /// numbers of entries. Depends on the matrix alone, so that sums over slices do not depend on the machine.
 [[nodiscard]] std::vector<std::uint32_t> slice_rows(std::span<const RowBlock> blocks);

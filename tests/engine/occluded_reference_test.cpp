@@ -1,6 +1,8 @@
 #include "support/occluded_reference.hpp"
 #include "support/scenes.hpp"
 
+#include "hemi/engine/exchange_area.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -210,7 +212,7 @@ TEST_CASE("OccludedReference: of a patch half under a block the other half sees 
         const PatchMesh cut(room.cut);
         const auto parent = parents(whole, cut);
         const OccludedReference reference(cut, {"block"}, 24);
-        const OccludedReference finer(cut, {"block"}, 36);
+        const OccludedReference finer(cut, {"block"}, 32);
         for (std::uint32_t i = 0; i < whole.size(); ++i) {
             const Vec3& centre = whole.centres()[i];
             const bool beside = centre.y < 0.25 || centre.y > 0.75 || centre.x < 0.25 || centre.x > 0.75;
@@ -234,11 +236,32 @@ TEST_CASE("OccludedReference: of a patch half under a block the other half sees 
 TEST_CASE("OccludedReference: rows close under a sheet sum to one", "[engine]") {
     for (const double gap : {0.05, 0.2, 0.5}) {
         const PatchMesh mesh(room_with_sheet(gap));
-        const OccludedReference reference(mesh, {"sheet"}, 48);
+        const OccludedReference reference(mesh, {"sheet"}, 32);
         for (const std::uint32_t i : sampled_patches(mesh, 30)) {
             INFO("gap " << gap << ", patch " << i << " of " << mesh.groups()[mesh.group(i)]);
             const auto row = reference.row(i);
             CHECK(std::accumulate(row.begin(), row.end(), 0.0) == Approx(1.0).margin(5e-5).epsilon(0));
         }
+    }
+}
+
+TEST_CASE("ExchangeAreas: agree with integrals of another kind", "[engine]") {
+    for (const Scene& scene : {coarse_room_with_turned_boxes(), tapered_box(5), room_with_sheet(0.05),
+                               read_case("14_sphere_interior.obj"), read_case("17_needle_triangle.obj")}) {
+        const PatchMesh mesh(scene);
+        const ExchangeAreas exact(mesh, ExchangeRule::exact);
+        const ExchangeAreas standard(mesh, ExchangeRule::standard);
+        double exact_error = 0.0;
+        double standard_error = 0.0;
+        for (const std::uint32_t i : sampled_patches(mesh, 12)) {
+            for (std::uint32_t j = 0; j < mesh.size(); ++j) {
+                const double area = std::min(mesh.areas()[i], mesh.areas()[j]);
+                const double expected = exchange_area(mesh.corners(i).polygon(), mesh.corners(j).polygon());
+                exact_error = std::max(exact_error, std::abs(exact(i, j) - expected) / area);
+                standard_error = std::max(standard_error, std::abs(standard(i, j) - expected) / area);
+            }
+        }
+        CHECK(exact_error < 1e-9);
+        CHECK(standard_error < 3e-6);
     }
 }

@@ -1,5 +1,7 @@
 #include "support/polygon_factors.hpp"
 
+#include "core/gauss_rule.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -67,28 +69,10 @@ struct Node {
 
 /// Gauss–Legendre on [0, 1].
 std::vector<Node> gauss_nodes(std::size_t n) {
-    std::vector<Node> nodes(n);
+    const GaussRule rule = gauss_rule(n);
+    std::vector<Node> nodes;
     for (std::size_t k = 0; k < n; ++k) {
-        double x =
-            std::cos(std::numbers::pi * (static_cast<double>(k) + 0.75) / (static_cast<double>(n) + 0.5));
-        double slope = 1.0;
-        for (int step = 0; step < 100; ++step) {
-            double p = 1.0;
-            double before = 0.0;
-            for (std::size_t m = 1; m <= n; ++m) {
-                const double order = static_cast<double>(m);
-                const double next = ((2.0 * order - 1.0) * x * p - (order - 1.0) * before) / order;
-                before = p;
-                p = next;
-            }
-            slope = static_cast<double>(n) * (x * p - before) / (x * x - 1.0);
-            const double change = p / slope;
-            x -= change;
-            if (std::abs(change) < 1e-16) {
-                break;
-            }
-        }
-        nodes[k] = {0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope)};
+        nodes.push_back({0.5 * (1.0 + rule.points[k]), 0.5 * rule.weights[k]});
     }
     return nodes;
 }

@@ -45,7 +45,7 @@ struct QuadraturePoint {
     Vec3 position{0.0};
     double weight = 0.0; ///< of the polygon's area; all weights sum to 1
 };
-/// n x n Gauss points of a triangle or quadrilateral.
+/// n x n Gauss points of a triangle or quadrilateral, n at most 32.
 [[nodiscard]] std::vector<QuadraturePoint> gauss_points(std::span<const Vec3> polygon, std::size_t n);
 
 /// A_i F(i, j) of two convex polygons, unoccluded, of the parts that lie in front of each other: the double
