@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -171,6 +172,16 @@ void add_rows(CLI::App& app, RowOptions& rows) {
                [&rows](const std::string& text) { rows.jobs = to_index("--jobs", text, 1, 1024); });
 }
 
+void add_repair(CLI::App& app, std::optional<Repair>& repair) {
+    Options(app, "Form factors")
+        .value("--repair", "KIND",
+               "none, reciprocity or closure (closure where factors have visibility, else none)",
+               [&repair](const std::string& text) {
+                   repair = static_cast<Repair>(
+                       parse_choice("--repair", text, Words{"none", "reciprocity", "closure"}));
+               });
+}
+
 void add_max_memory(CLI::App& app, RowOptions& rows) {
     Options(app, "Computing")
         .value("--max-memory", "SIZE", "such as 512M or 2G (80 % of what is free)",
@@ -191,12 +202,15 @@ void add_environment(CLI::App& app, SceneOptions& scene) {
 
 void add_solver(CLI::App& app, SolverSettings& solver) {
     Options options(app, "Solver");
-    options.value("--solver", "NAME", "gauss-seidel (the default) or jacobi",
-                  [&solver](const std::string& text) {
-                      const std::size_t choice =
-                          parse_choice("--solver", text, Words{"gauss-seidel", "jacobi"}, Words{"cg"});
-                      solver.method = choice == 0 ? SolverMethod::gauss_seidel : SolverMethod::jacobi;
-                  });
+    options.value(
+        "--solver", "NAME",
+        "auto, gauss-seidel, jacobi or cg (auto: cg for high reflectance and reciprocal rows)",
+        [&solver](const std::string& text) {
+            constexpr std::array methods{SolverMethod::automatic, SolverMethod::gauss_seidel,
+                                         SolverMethod::jacobi, SolverMethod::conjugate_gradient};
+            solver.method =
+                methods[parse_choice("--solver", text, Words{"auto", "gauss-seidel", "jacobi", "cg"})];
+        });
     options.value("--tolerance", "T", "relative residual to reach (1e-6)",
                   [&solver](const std::string& text) {
                       solver.tolerance = parse_positive("--tolerance", text);
@@ -244,6 +258,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     add_scene(app, a.scene);
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
+    add_repair(app, a.rows.repair);
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
     add_solver(app, a.solver);
@@ -266,6 +281,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
+    add_repair(app, a.rows.repair);
     add_max_memory(app, a.rows);
     Options output(app, "Output");
     auto* file = output.path("-o,--output", "FILE", a.output,
@@ -286,6 +302,7 @@ void add_check(CLI::App& app, CheckArguments& a) {
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
+    add_repair(app, a.rows.repair);
     add_max_memory(app, a.rows);
     add_common(app, a.common);
     app.footer(
@@ -316,6 +333,7 @@ void add_render(CLI::App& app, RenderArguments& a) {
 void add_view(CLI::App& app, ViewArguments& a) {
     add_scene(app, a.scene, "SCENE|RESULT", ".hres");
     add_rows(app, a.rows);
+    add_repair(app, a.rows.repair);
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
     add_solver(app, a.solver);
@@ -334,6 +352,7 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
     add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz");
     add_positional(app, "OUT", a.output,
                    "form factors: .mtx .csv .npz (.hff from .hff); - for .csv on stdout");
+    add_repair(app, a.repair);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi convert room.hff room.npz\n"

@@ -3,6 +3,7 @@
 #include "cli/terminal.hpp"
 #include "cli/values.hpp"
 #include "hemi/display/picture.hpp"
+#include "hemi/matrix/repair.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 #include "hemi/solver/solver.hpp"
@@ -48,6 +49,7 @@ struct RowOptions {
     std::uint32_t jobs = 0;                  ///< 0: one per core
     std::optional<std::uint64_t> max_memory; ///< bytes
     double max_row_error = 1e-4;
+    std::optional<Repair> repair; ///< none: what suits the rows
 };
 
 struct PictureOptions {
@@ -109,6 +111,7 @@ struct ConvertArguments {
     CommonOptions common;
     std::filesystem::path input;
     std::filesystem::path output;
+    std::optional<Repair> repair; ///< none: what suits the rows
 };
 
 struct InfoArguments {

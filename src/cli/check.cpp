@@ -2,6 +2,7 @@
 #include "cli/findings.hpp"
 #include "cli/outputs.hpp"
 #include "cli/pipeline.hpp"
+#include "cli/repair_rows.hpp"
 #include "cli/report.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/scene_reader.hpp"
@@ -89,7 +90,8 @@ std::string_view leak_reason(const Findings& findings) {
     return "they see the environment: there are gaps near them, or they face the outside";
 }
 
-std::string to_text(const Findings& findings, const PatchNames& names, double max_row_error) {
+std::string to_text(const Findings& findings, const RowRepair& repair, const PatchNames& names,
+                    double max_row_error) {
     const RowSums& sums = findings.sums;
     const Reciprocity& pairs = findings.reciprocity;
     std::string text = summary_line(
@@ -98,6 +100,7 @@ std::string to_text(const Findings& findings, const PatchNames& names, double ma
     text +=
         summary_line("row balance", fmt::format("sum + environment + blocked differs from 1 by up to {:.3g}",
                                                 sums.balance_error_max));
+    text += repair_summary(repair);
     text += summary_line(
         "bounds",
         fmt::format("largest factor {}, {} above 1", number_text(findings.largest_factor),
@@ -151,8 +154,8 @@ Json section_json(const std::vector<PatchFinding>& findings, const PatchNames& n
     return {{"count", findings.size()}, {"worst", worst}};
 }
 
-Json to_json(const Findings& findings, const io::FactorFile& file, const PatchNames& names,
-             double max_row_error) {
+Json to_json(const Findings& findings, const RowRepair& repair, const io::FactorFile& file,
+             const PatchNames& names, double max_row_error) {
     Json turned = Json::array();
     for (const TurnedGroup& group : findings.turned) {
         turned.push_back({{"group", names.groups[group.group]},
@@ -172,6 +175,7 @@ Json to_json(const Findings& findings, const io::FactorFile& file, const PatchNa
             {"above_one", findings.outside_bounds},
             {"reciprocity",
              findings.reciprocity.pairs > 0 ? reciprocity_json(findings.reciprocity) : Json(nullptr)},
+            {"repair", repair_json(repair)},
             {"enclosure", verdict_name(findings.enclosure)},
             {"declared", findings.declared},
             {"leaking", sums.leaking},
@@ -193,7 +197,8 @@ io::FactorFile read_file(const CheckArguments& arguments) {
                         "balance and no areas",
                         path.string()));
     }
-    refuse_all_but(arguments.common, std::vector<std::string>{"--enclosure", "--max-row-error"}, path);
+    refuse_all_but(arguments.common, std::vector<std::string>{"--enclosure", "--max-row-error", "--repair"},
+                   path);
     io::FactorFile file = io::read_hff(path);
     if (arguments.scene.enclosure) {
         file.enclosure = enclosure_name(*arguments.scene.enclosure);
@@ -213,13 +218,14 @@ ExitStatus run(const CheckArguments& arguments, const Terminal& terminal) {
         file = read_file(arguments);
     }
     settle_contacts(file);
+    const RowRepair repair = repair_rows(file, arguments.rows.repair);
     const PatchNames names = loaded ? loaded->names() : PatchNames{file.groups, file.group_of, {}};
     const double limit = arguments.rows.max_row_error;
     const Findings findings = find_defects(file, loaded ? &loaded->mesh : nullptr, limit);
     if (arguments.common.json) {
-        print_json(to_json(findings, file, names, limit));
+        print_json(to_json(findings, repair, file, names, limit));
     } else if (!terminal.quiet()) {
-        print(to_text(findings, names, limit));
+        print(to_text(findings, repair, names, limit));
     }
     if (findings.enclosure == EnclosureVerdict::nearly_closed) {
         terminal.warn(

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/outputs.hpp"
 #include "cli/pipeline.hpp"
+#include "cli/repair_rows.hpp"
 #include "cli/report.hpp"
 #include "cli/stored_factors.hpp"
 #include "hemi/core/error.hpp"
@@ -39,8 +40,21 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
                         "{} does not have; `hemi factors SCENE -o FILE.hff` makes one",
                         arguments.output.string(), arguments.input.string()));
     }
-    const io::FactorFile file = read_input(arguments.input);
+    if (arguments.repair && (to_hff || !from_hff)) {
+        throw InvalidArgument(to_hff ? "--repair: a .hff holds the rows before the repair, which is redone "
+                                       "when it is read"
+                                     : "--repair needs areas and row balance, which only a .hff has");
+    }
+    io::FactorFile file = read_input(arguments.input);
+    Repair repaired = Repair::none;
+    if (from_hff && !to_hff) {
+        settle_contacts(file);
+        repaired = repair_rows(file, arguments.repair).report.repair;
+    }
     write_factors(arguments.output, file);
+    if (repaired != Repair::none) {
+        terminal.note(fmt::format("written are the rows after the repair ({})", repair_name(repaired)));
+    }
     if (from_hff && !to_hff) {
         terminal.note(
             fmt::format("not in {}: areas, group names, row balance (environment, blocked), settings and "

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/outputs.hpp"
 #include "cli/pipeline.hpp"
+#include "cli/repair_rows.hpp"
 #include "cli/report.hpp"
 #include "cli/stored_factors.hpp"
 #include "hemi/core/error.hpp"
@@ -22,6 +23,7 @@ namespace {
 struct Seconds {
     double load = 0.0;
     double factors = 0.0;
+    double repair = 0.0;
     double total = 0.0;
 };
 
@@ -29,6 +31,7 @@ struct Seconds {
 struct Subject {
     std::optional<LoadedScene> loaded;
     Rows rows;
+    RowRepair repair;
     Seconds seconds;
 
     [[nodiscard]] PatchNames names() const {
@@ -40,6 +43,11 @@ struct Subject {
 bool table_goes_to_file(const FactorsArguments& arguments) {
     return arguments.by_group && arguments.output &&
            (is_standard_output(*arguments.output) || extension_of(*arguments.output) == ".csv");
+}
+
+/// `.hff` holds the rows as they were computed; repair is redone when it is read.
+bool holds_raw_rows(const std::filesystem::path& path) {
+    return extension_of(path) == ".hff";
 }
 
 Outputs check_outputs(const FactorsArguments& arguments) {
@@ -62,6 +70,10 @@ Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal) 
     Subject subject;
     subject.loaded = load_scene(arguments.scene, terminal);
     const PatchMesh& mesh = subject.loaded->mesh;
+    if (arguments.row && arguments.rows.repair.value_or(Repair::none) != Repair::none) {
+        throw InvalidArgument("--repair needs all rows, but --row computes one; store them first with -o "
+                              "FILE.hff");
+    }
     if (arguments.row && *arguments.row >= mesh.size()) {
         throw InvalidArgument(fmt::format("--row {}: the scene has {}, counted from 0", *arguments.row,
                                           plural(mesh.size(), "patch", "patches")));
@@ -84,7 +96,8 @@ Subject from_file(const FactorsArguments& arguments) {
         throw InvalidArgument(fmt::format(
             "{}: must be a scene (.json, .obj) or form factors with names (.hff)", path.string()));
     }
-    refuse_all_but(arguments.common, std::vector<std::string>{"--row", "--by-group", "--output"}, path);
+    refuse_all_but(arguments.common, std::vector<std::string>{"--row", "--by-group", "--output", "--repair"},
+                   path);
     if (!arguments.row && !arguments.by_group) {
         throw InvalidArgument(
             fmt::format("{}: of a file, --row or --by-group can be shown; `hemi info` tells what "
@@ -166,9 +179,11 @@ Json groups_json(const Subject& subject, const GroupFactors& groups) {
             {"environment", groups.environment},
             {"blocked", groups.blocked},
             {"row_sum", row_sum_json(row_sums(file.factors))},
+            {"repair", repair_json(subject.repair)},
             {"seconds",
              {{"load", subject.seconds.load},
               {"factors", subject.seconds.factors},
+              {"repair", subject.seconds.repair},
               {"total", subject.seconds.total}}}};
 }
 
@@ -249,11 +264,16 @@ std::string summary(const Subject& subject, const RowSums& sums, const Enclosure
                                           plural(mesh.surfaces().size(), "surface", "surfaces"),
                                           plural(mesh.groups().size(), "group", "groups")));
     text += rows_summary(subject.rows, sums, enclosure);
-    text +=
-        summary_line("seconds", fmt::format("load {:.3f}, factors {:.3f}, total {:.3f}", subject.seconds.load,
-                                            subject.seconds.factors, subject.seconds.total));
+    text += repair_summary(subject.repair);
+    text += summary_line("seconds", fmt::format("load {:.3f}, factors {:.3f}, repair {:.3f}, total {:.3f}",
+                                                subject.seconds.load, subject.seconds.factors,
+                                                subject.seconds.repair, subject.seconds.total));
     if (arguments.output && !is_standard_output(*arguments.output)) {
-        text += summary_line("written", arguments.output->string());
+        const bool repaired = subject.repair.report.repair != Repair::none;
+        const char* const which = !repaired                           ? ""
+                                  : holds_raw_rows(*arguments.output) ? " (the rows before the repair)"
+                                                                      : " (the rows after the repair)";
+        text += summary_line("written", arguments.output->string() + which);
     }
     return text;
 }
@@ -269,9 +289,11 @@ Json summary_json(const Subject& subject, const RowSums& sums) {
             {"row_sum", row_sum_json(sums)},
             {"environment_max", sums.environment_max},
             {"blocked_max", sums.blocked_max},
+            {"repair", repair_json(subject.repair)},
             {"seconds",
              {{"load", subject.seconds.load},
               {"factors", subject.seconds.factors},
+              {"repair", subject.seconds.repair},
               {"total", subject.seconds.total}}}};
 }
 
@@ -283,14 +305,24 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     const bool is_scene = io::is_scene_file(arguments.scene.path);
     Subject subject = is_scene ? from_scene(arguments, terminal) : from_file(arguments);
     io::FactorFile& file = subject.rows.file;
+    if (arguments.row && is_scene) {
+        show_row(arguments, subject);
+        return ExitStatus::ok;
+    }
+    const bool writes = arguments.output && !table_goes_to_file(arguments);
+    if (writes && holds_raw_rows(*arguments.output)) {
+        write_factors(*arguments.output, file);
+    }
+    settle_contacts(file);
+    subject.repair = repair_rows(file, arguments.rows.repair);
+    subject.seconds.repair = subject.repair.seconds;
+    if (writes && !holds_raw_rows(*arguments.output)) {
+        write_factors(*arguments.output, file);
+    }
     if (arguments.row) {
         show_row(arguments, subject);
         return ExitStatus::ok;
     }
-    if (arguments.output && !table_goes_to_file(arguments)) {
-        write_factors(*arguments.output, file);
-    }
-    settle_contacts(file);
     const RowSums sums = row_sums(file.factors);
     const EnclosureFinding enclosure = find_leaks(file.factors, file.enclosure, arguments.rows.max_row_error);
     if (arguments.by_group) {

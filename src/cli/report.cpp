@@ -141,6 +141,7 @@ Json reciprocity_json(const Reciprocity& reciprocity) {
     return {{"rms", reciprocity.rms},
             {"max", reciprocity.max},
             {"relative_rms", reciprocity.relative_rms},
+            {"relative_max", reciprocity.relative_max},
             {"worst", reciprocity.pairs > 0 ? Json{reciprocity.worst_i, reciprocity.worst_j} : Json()},
             {"pairs", reciprocity.pairs}};
 }

@@ -86,8 +86,12 @@ Solution solve_scene(const LoadedScene& loaded, const FormFactorMatrix& factors,
     const auto reflectance = spread_materials(scene, loaded.mesh, channels, &Material::reflectance);
     const auto exitance = spread_materials(scene, loaded.mesh, channels, &Material::exitance);
     const std::span<const double> environment(scene.environment);
-    const RadiosityProblem problem{&factors, channels, reflectance, exitance,
-                                   environment.first(std::min<std::size_t>(channels, environment.size()))};
+    const RadiosityProblem problem{&factors,
+                                   channels,
+                                   reflectance,
+                                   exitance,
+                                   environment.first(std::min<std::size_t>(channels, environment.size())),
+                                   loaded.mesh.areas()};
 
     const auto dark = [](std::span<const double> values) {
         return std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; });
@@ -115,7 +119,8 @@ Solution solve_scene(const LoadedScene& loaded, const FormFactorMatrix& factors,
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
         solution.blocked[i] = factors.row(i).blocked;
     }
-    solution.solver = settings.method == SolverMethod::gauss_seidel ? "gauss-seidel" : "jacobi";
+    solution.solver = solver_name(found.method);
+    solution.why = found.why;
     solution.sweeps = found.sweeps;
     solution.residual = found.residual;
     solution.dominance = found.dominance;

@@ -21,6 +21,7 @@ struct Solution {
     std::vector<double> irradiance; ///< empty unless asked for
     std::vector<double> blocked;    ///< b_i per patch, 0 where the row was not computed
     std::string solver;
+    std::string why; ///< a sentence: why this solver
     std::uint32_t sweeps = 0;
     double residual = 0.0;
     double dominance = 0.0;

@@ -2,6 +2,7 @@
 #include "cli/outputs.hpp"
 #include "cli/picture_output.hpp"
 #include "cli/pipeline.hpp"
+#include "cli/repair_rows.hpp"
 #include "cli/report.hpp"
 #include "cli/signals.hpp"
 #include "cli/solution.hpp"
@@ -89,18 +90,22 @@ void report_savings(const LoadedScene& loaded, const Rows& rows, const Solution&
 }
 
 std::string summary(const LoadedScene& loaded, const Rows& rows, const RowSums& sums,
-                    const EnclosureFinding& enclosure, const Solution& solution, const Seconds& seconds,
-                    const std::string& picture) {
+                    const EnclosureFinding& enclosure, const RowRepair& repair, const Solution& solution,
+                    const Seconds& seconds, const std::string& picture) {
     std::string text =
         summary_line("scene", fmt::format("{}, {}, {}", plural(loaded.mesh.size(), "patch", "patches"),
                                           plural(loaded.mesh.surfaces().size(), "surface", "surfaces"),
                                           plural(loaded.mesh.groups().size(), "group", "groups")));
     text += rows_summary(rows, sums, enclosure);
+    text += repair_summary(repair);
     text += summary_line("dominance", fmt::format("{:.6g} (largest reflectance x row sum; below 1 converges)",
                                                   solution.dominance));
-    text +=
-        summary_line("solver", fmt::format("{}, {}, residual {:.3g}", solution.solver,
-                                           plural(solution.sweeps, "sweep", "sweeps"), solution.residual));
+    const bool gradients = solution.solver == solver_name(SolverMethod::conjugate_gradient);
+    text += summary_line("solver", fmt::format("{}, {}, residual {:.3g}", solution.solver,
+                                               gradients ? plural(solution.sweeps, "iteration", "iterations")
+                                                         : plural(solution.sweeps, "sweep", "sweeps"),
+                                               solution.residual));
+    text += summary_line("", solution.why);
     text += summary_line("seconds", fmt::format("load {:.3f}, factors {:.3f}, repair {:.3f}, solve {:.3f}, "
                                                 "render {:.3f}, total {:.3f}",
                                                 seconds.load, seconds.factors, seconds.repair, seconds.solve,
@@ -152,33 +157,37 @@ Json share_json(const LoadedScene& loaded, const std::vector<double>& areas, con
     return json;
 }
 
-Json to_json(const LoadedScene& loaded, const Rows& rows, const RowSums& sums, const Solution& solution,
-             const Seconds& seconds) {
+Json to_json(const LoadedScene& loaded, const Rows& rows, const RowSums& sums, const RowRepair& repair,
+             const Solution& solution, const Seconds& seconds) {
     const std::uint32_t channels = solution.channels;
     const std::vector<double> areas = group_areas(loaded);
     const FormFactorMatrix& factors = rows.file.factors;
-    return {
-        {"schema", "hemi/solve/1"},
-        {"renderer", rows.file.renderer},
-        {"patches", loaded.mesh.size()},
-        {"channels", loaded.scene.channels},
-        {"groups", loaded.mesh.groups()},
-        {"areas", areas},
-        {"radiosity", rows_json(group_means(loaded, areas, solution.radiosity, channels), channels)},
-        {"exitance", rows_json(group_means(loaded, areas, solution.exitance, channels), channels)},
-        {"environment", share_json(loaded, areas, factors, &RowView::environment)},
-        {"blocked", share_json(loaded, areas, factors, &RowView::blocked)},
-        {"solver", {{"name", solution.solver}, {"sweeps", solution.sweeps}, {"residual", solution.residual}}},
-        {"row_sum", row_sum_json(sums)},
-        {"reciprocity",
-         factors.all_known() ? reciprocity_json(reciprocity(factors, loaded.mesh.areas())) : Json(nullptr)},
-        {"seconds",
-         {{"load", seconds.load},
-          {"factors", seconds.factors},
-          {"repair", seconds.repair},
-          {"solve", seconds.solve},
-          {"render", seconds.render},
-          {"total", seconds.total}}}};
+    return {{"schema", "hemi/solve/1"},
+            {"renderer", rows.file.renderer},
+            {"patches", loaded.mesh.size()},
+            {"channels", loaded.scene.channels},
+            {"groups", loaded.mesh.groups()},
+            {"areas", areas},
+            {"radiosity", rows_json(group_means(loaded, areas, solution.radiosity, channels), channels)},
+            {"exitance", rows_json(group_means(loaded, areas, solution.exitance, channels), channels)},
+            {"environment", share_json(loaded, areas, factors, &RowView::environment)},
+            {"blocked", share_json(loaded, areas, factors, &RowView::blocked)},
+            {"solver",
+             {{"name", solution.solver},
+              {"sweeps", solution.sweeps},
+              {"residual", solution.residual},
+              {"why", solution.why}}},
+            {"row_sum", row_sum_json(sums)},
+            {"reciprocity",
+             factors.all_known() ? reciprocity_json(repair.report.reciprocity_after) : Json(nullptr)},
+            {"repair", repair_json(repair)},
+            {"seconds",
+             {{"load", seconds.load},
+              {"factors", seconds.factors},
+              {"repair", seconds.repair},
+              {"solve", seconds.solve},
+              {"render", seconds.render},
+              {"total", seconds.total}}}};
 }
 
 void write_files(const SolveArguments& arguments, const LoadedScene& loaded, const Rows& rows,
@@ -213,7 +222,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     seconds.load = loaded.seconds;
 
     const Stopwatch factors_watch;
-    const Rows rows = find_rows(arguments, loaded, terminal);
+    Rows rows = find_rows(arguments, loaded, terminal);
     const FormFactorMatrix& factors = rows.file.factors;
     if (arguments.result || arguments.radiosity) {
         if (!factors.all_known()) {
@@ -221,10 +230,12 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
                                          arguments.factors->string()));
         }
     }
-    const RowSums sums = row_sums(factors);
     const EnclosureFinding enclosure =
         find_leaks(factors, enclosure_name(loaded.scene.enclosure), arguments.rows.max_row_error);
     seconds.factors = factors_watch.seconds();
+    const RowRepair repair = repair_rows(rows.file, arguments.rows.repair);
+    seconds.repair = repair.seconds;
+    const RowSums sums = row_sums(factors);
     report_covered(sums, terminal);
 
     const bool with_irradiance = arguments.result || arguments.radiosity;
@@ -244,9 +255,9 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     seconds.total = total.seconds();
     report_savings(loaded, rows, solution, arguments.rows, terminal);
     if (arguments.common.json) {
-        print_json(to_json(loaded, rows, sums, solution, seconds));
+        print_json(to_json(loaded, rows, sums, repair, solution, seconds));
     } else if (!terminal.quiet()) {
-        const std::string text = summary(loaded, rows, sums, enclosure, solution, seconds, picture);
+        const std::string text = summary(loaded, rows, sums, enclosure, repair, solution, seconds, picture);
         if (outputs.uses_standard_output()) {
             std::fputs(text.c_str(), stderr);
         } else {

@@ -2,6 +2,7 @@
 #include "cli/outputs.hpp"
 #include "cli/picture_output.hpp"
 #include "cli/pipeline.hpp"
+#include "cli/repair_rows.hpp"
 #include "cli/solution.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/result_file.hpp"
@@ -55,6 +56,7 @@ void view_scene(const ViewArguments& arguments, const Terminal& terminal) {
     {
         Rows rows = compute_rows(loaded, reflecting_patches(loaded), arguments.rows, terminal);
         settle_contacts(rows.file);
+        (void)repair_rows(rows.file, arguments.rows.repair);
         solution = solve_scene(loaded, rows.file.factors, arguments.solver, false, terminal);
     }
     input.radiosity = std::move(solution.radiosity);

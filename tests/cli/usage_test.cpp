@@ -53,6 +53,7 @@ TEST_CASE("Command line: a mistyped word gets the nearest right one", "[cli]") {
     refuses({"solve", "x.json", "--solver", "jakobi"}, "did you mean jacobi?");
     refuses({"solve", "x.json", "--device", "osmessa"}, "did you mean osmesa?");
     refuses({"check", "x.json", "--enclosure", "close"}, "did you mean closed?");
+    refuses({"solve", "x.json", "--repair", "closur"}, "did you mean closure?");
 }
 
 TEST_CASE("Command line: what does not exist yet is said to be so", "[cli]") {
@@ -61,7 +62,6 @@ TEST_CASE("Command line: what does not exist yet is said to be so", "[cli]") {
     refuses({"solve", "x.json", "--preset", "fast"}, "does not exist yet; plain is the only one");
     refuses({"solve", "x.json", "--preset", "exact"}, "does not exist yet");
     refuses({"solve", "x.json", "--method", "montecarlo"}, "does not exist yet; hemicube is the only one");
-    refuses({"solve", "x.json", "--solver", "cg"}, "does not exist yet");
     refuses({"solve", "x.json", "--eye-points", "4"}, "1 is the only value so far");
 }
 
@@ -70,6 +70,9 @@ TEST_CASE("Command line: options that do not apply are refused", "[cli]") {
             "--solver does not apply to `hemi factors`; it belongs to solve");
     refuses({"solve", "x.json", "--row", "1"}, "it belongs to factors");
     refuses({"devices", "--resolution", "64"}, "does not apply to `hemi devices`");
+    refuses({"convert", "x.mtx", "x.csv", "--repair", "closure"}, "only a .hff has");
+    refuses({"convert", "x.hff", "y.hff", "--repair", "closure"}, "redone when it is read");
+    refuses({"info", "x.json", "--repair", "closure"}, "--repair does not apply to `hemi info`");
     refuses({"solve", "x.json", "--size", "80x60"}, "--size"); // no picture to be of that size
     refuses({"solve", "x.json", "--flat"}, "--flat");
     refuses({"info", "x.json", "--device", "osmesa"}, "--measure"); // nothing is computed

@@ -16,7 +16,7 @@ struct RowSums {
     double mean = 0.0;
     double environment_max = 0.0;     ///< largest e_i
     double blocked_max = 0.0;         ///< largest b_i
-    double balance_error_max = 0.0;   ///< largest |sum + e + b - 1|
+    double balance_error_max = 0.0;   ///< largest |sum + e + b - 1| of a row that is not covered
     std::uint32_t known = 0;          ///< rows that were computed
     std::uint32_t leaking = 0;        ///< rows with e_i > 0
     std::uint32_t covered = 0;        ///< rows with b_i > covered_above
