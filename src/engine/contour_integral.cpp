@@ -140,15 +140,15 @@ double edge_integral(const Edge& a, const Edge& b, const ContourRule& rule) {
     if (approach.distance <= rule.rounding) {
         return touching_integral(outer, inner, approach);
     }
-    if (rule.fixed_order != 0) {
-        return gauss_integral(outer, inner, rule.fixed_order);
-    }
     const double lean = glm::length(glm::cross(a.direction, b.direction)) * inner.length;
     // The closed form loses digits with the square of its largest length over the shorter edge.
     constexpr double closed_form_reach = 6.0;
     if (lean <= rule.rounding &&
         approach.distance + outer.length + inner.length <= closed_form_reach * outer.length) {
         return parallel_integral(outer, inner);
+    }
+    if (rule.fixed_order != 0) {
+        return gauss_integral(outer, inner, rule.fixed_order);
     }
     return graded_integral(outer, inner, rule.tolerance);
 }

@@ -12,8 +12,8 @@ struct ContourRule {
     double tolerance = 1e-9;
     /// Distance below which edges touch, or are parallel: what rounding can do to them.
     double rounding = 0.0;
-    /// If not 0: a Gauss rule of this many points for all pairs of edges that do not touch, whatever the
-    /// tolerance.
+    /// If not 0: a Gauss rule of this many points, whatever the tolerance, for all pairs of edges that
+    /// neither touch nor are near and parallel.
     std::size_t fixed_order = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include "core/gauss_rule.hpp"
 #include "engine/contour_integral.hpp"
+#include "engine/convex_polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,45 +13,6 @@
 namespace hemi {
 
 namespace {
-
-/// A convex polygon after up to two cuts.
-struct Polygon {
-    std::array<Vec3, 6> points;
-    std::size_t count = 0;
-
-    void add(const Vec3& point) { points[count++] = point; }
-    [[nodiscard]] std::span<const Vec3> span() const { return {points.data(), count}; }
-};
-
-/// The part of a polygon in front of the plane through `at`.
-Polygon clip(std::span<const Vec3> polygon, const Vec3& at, const Vec3& normal) {
-    Polygon front;
-    for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec3& here = polygon[k];
-        const Vec3& next = polygon[(k + 1) % polygon.size()];
-        const double height = glm::dot(here - at, normal);
-        const double next_height = glm::dot(next - at, normal);
-        if (height >= 0.0) {
-            front.add(here);
-        }
-        if ((height < 0.0 && next_height > 0.0) || (height > 0.0 && next_height < 0.0)) {
-            front.add(here + (height / (height - next_height)) * (next - here));
-        }
-    }
-    return front;
-}
-
-/// The bilinear map of [-1, 1]² onto a quadrilateral; onto a triangle whose third corner counts twice.
-struct BilinearMap {
-    Vec3 middle, u, v, twist;
-    double jacobian, jacobian_u, jacobian_v;
-
-    BilinearMap(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& normal)
-        : middle(0.25 * ((a + c) + (b + d))), u(0.25 * ((b - a) + (c - d))), v(0.25 * ((d - a) + (c - b))),
-          twist(0.25 * ((a - b) + (c - d))), jacobian(glm::dot(normal, glm::cross(u, v))),
-          jacobian_u(glm::dot(normal, glm::cross(u, twist))),
-          jacobian_v(glm::dot(normal, glm::cross(twist, v))) {}
-};
 
 /// Points and weights of a product rule over a polygon's area.
 template <std::size_t N>
@@ -64,21 +26,14 @@ struct AreaRule {
             for (std::size_t column = 0; column < N; ++column, ++k) {
                 const double s = gauss.points[column];
                 const double t = gauss.points[row];
-                const Vec3 point = map.middle + s * map.u + t * map.v + (s * t) * map.twist;
+                const Vec3 point = map.point(s, t);
                 x[k] = point.x;
                 y[k] = point.y;
                 z[k] = point.z;
-                weight[k] = gauss.weights[column] * gauss.weights[row] *
-                            (map.jacobian + s * map.jacobian_u + t * map.jacobian_v);
+                weight[k] = gauss.weights[column] * gauss.weights[row] * map.jacobian_at(s, t);
             }
         }
     }
-};
-
-/// A plane that counts from one of its points, so that distance from the origin costs no digits.
-struct Plane {
-    Vec3 at;
-    Vec3 normal;
 };
 
 /// Heights of points above a plane.
@@ -125,12 +80,8 @@ double product_rule(const Rule& a, const Plane& plane_a, const Rule& b, const Pl
 template <std::size_t N>
 double product_rule(std::span<const Vec3> a, const Plane& plane_a, std::span<const Vec3> b,
                     const Plane& plane_b) {
-    const auto quadrilateral = [](std::span<const Vec3> polygon, const Vec3& normal) {
-        return AreaRule<N>(
-            BilinearMap(polygon[0], polygon[1], polygon[2], polygon[polygon.size() - 1], normal));
-    };
-    return product_rule<N * N>(quadrilateral(a, plane_a.normal), plane_a, quadrilateral(b, plane_b.normal),
-                               plane_b);
+    return product_rule<N * N>(AreaRule<N>(BilinearMap(a, plane_a.normal)), plane_a,
+                               AreaRule<N>(BilinearMap(b, plane_b.normal)), plane_b);
 }
 
 /// Distances of bounding spheres, in diameters of the larger one, from which product rules of n x n points
@@ -162,7 +113,7 @@ double point_factor(const Vec3& at, const Vec3& normal, std::span<const Vec3> po
     if (glm::dot(area_vector(polygon), at - polygon[0]) <= 0.0) {
         return 0.0;
     }
-    const Polygon front = clip(polygon, at, normal);
+    const ConvexPolygon front = clip(polygon, {at, normal});
     double sum = 0.0;
     for (std::size_t k = 0; k < front.count; ++k) {
         const Vec3 a = front.points[k] - at;
@@ -204,8 +155,7 @@ ExchangeAreas::ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule)
             patch.corner_y[k] = corner.y;
             patch.corner_z[k] = corner.z;
         }
-        const auto& p = corners.points;
-        const AreaRule<2> points(BilinearMap(p[0], p[1], p[2], p[corners.count - 1], patch.normal));
+        const AreaRule<2> points(BilinearMap(corners.polygon(), patch.normal));
         patch.x = points.x;
         patch.y = points.y;
         patch.z = points.z;
@@ -253,7 +203,7 @@ double ExchangeAreas::near_area(const Patch& a, const Patch& b, bool clipped, do
     const double size = std::max(a.radius, b.radius) * std::max(1.0, distance);
     const double unit = std::ldexp(1.0, std::ilogb(size));
     const auto local = [&](const Patch& patch) {
-        Polygon polygon;
+        ConvexPolygon polygon;
         for (std::size_t k = 0; k < patch.corners; ++k) {
             polygon.add((Vec3(patch.corner_x[k], patch.corner_y[k], patch.corner_z[k]) - middle) / unit);
         }
@@ -261,11 +211,11 @@ double ExchangeAreas::near_area(const Patch& a, const Patch& b, bool clipped, do
     };
     const Plane plane_a{(a.centre - middle) / unit, a.normal};
     const Plane plane_b{(b.centre - middle) / unit, b.normal};
-    Polygon polygon_a = local(a);
-    Polygon polygon_b = local(b);
+    ConvexPolygon polygon_a = local(a);
+    ConvexPolygon polygon_b = local(b);
     if (clipped) {
-        polygon_a = clip(polygon_a.span(), plane_b.at, plane_b.normal);
-        polygon_b = clip(polygon_b.span(), plane_a.at, plane_a.normal);
+        polygon_a = clip(polygon_a.span(), plane_b);
+        polygon_b = clip(polygon_b.span(), plane_a);
         if (polygon_a.count < 3 || polygon_b.count < 3) {
             return 0.0;
         }
@@ -277,25 +227,11 @@ double ExchangeAreas::near_area(const Patch& a, const Patch& b, bool clipped, do
         if (distance < reach.distance) {
             continue;
         }
-        // A clipped polygon has up to five corners: triangles about the first one.
-        const auto pieces = [clipped](const Polygon& polygon) {
-            return clipped && polygon.count > 4 ? polygon.count - 2 : 1;
-        };
         double sum = 0.0;
-        for (std::size_t k = 0; k < pieces(polygon_a); ++k) {
-            for (std::size_t l = 0; l < pieces(polygon_b); ++l) {
-                const auto piece = [&](const Polygon& polygon, std::size_t index) {
-                    Polygon part;
-                    if (pieces(polygon) == 1) {
-                        return polygon;
-                    }
-                    part.add(polygon.points[0]);
-                    part.add(polygon.points[index + 1]);
-                    part.add(polygon.points[index + 2]);
-                    return part;
-                };
-                sum += product_rule(reach.points, piece(polygon_a, k).span(), plane_a,
-                                    piece(polygon_b, l).span(), plane_b);
+        for (std::size_t k = 0; k < polygon_a.pieces(); ++k) {
+            for (std::size_t l = 0; l < polygon_b.pieces(); ++l) {
+                sum += product_rule(reach.points, polygon_a.piece(k).span(), plane_a,
+                                    polygon_b.piece(l).span(), plane_b);
             }
         }
         return std::max(0.0, sum) * unit * unit;

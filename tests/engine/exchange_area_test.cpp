@@ -307,6 +307,33 @@ TEST_CASE("ExchangeAreas: turned plates a hair apart exchange what their quarter
     }
 }
 
+TEST_CASE("ExchangeAreas: unoccluded exact cases are met, whatever their scale", "[engine]") {
+    for (const ExactCase& exact : exact_cases()) {
+        if (exact.name == "concentric_spheres" || exact.name == "occluded_corner") {
+            continue;
+        }
+        CAPTURE(exact.name);
+        const PatchMesh mesh(read_case(exact.file));
+        for (const ExchangeRule rule : both) {
+            const ExchangeAreas areas(mesh, rule);
+            for (const ExactCase::Pair& pair : exact.pairs) {
+                double from_area = 0.0;
+                double sum = 0.0;
+                for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+                    if (mesh.groups()[mesh.group(i)] != pair.from) {
+                        continue;
+                    }
+                    from_area += mesh.areas()[i];
+                    for (std::uint32_t j = 0; j < mesh.size(); ++j) {
+                        sum += mesh.groups()[mesh.group(j)] == pair.to ? areas(i, j) : 0.0;
+                    }
+                }
+                CHECK(sum / from_area == Approx(pair.factor).margin(accuracy(rule, 1e-7, 1e-11)));
+            }
+        }
+    }
+}
+
 TEST_CASE("ExchangeAreas: both orders of a pair give the same bits", "[engine]") {
     const PatchMesh mesh(rotated(room_with_blocks(3)));
     for (const ExchangeRule rule : both) {
