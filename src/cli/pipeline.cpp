@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <numeric>
@@ -185,24 +186,37 @@ std::uint64_t memory_limit(const RowOptions& options) {
     return available / 10 * 8;
 }
 
+namespace {
+
+/// The largest square up to `most` of which `hemicubes` allow every patch that many; at least `least`.
+std::uint32_t eye_points_for(std::uint32_t hemicubes, std::uint32_t patches, std::uint32_t least,
+                             std::uint32_t most) {
+    const double side = std::floor(std::sqrt(static_cast<double>(hemicubes) / std::max(patches, 1u)));
+    const auto k = static_cast<std::uint32_t>(std::clamp(side, 1.0, 8.0));
+    return std::clamp(k * k, least, most);
+}
+
+} // namespace
+
 RowPlan plan_rows(const RowOptions& options, std::uint32_t patches) {
     RowPlan plan;
     HemicubeSettings& hemicube = plan.hemicube;
     plan.hybrid = options.preset != "plain";
+    // Visibility is as good as the eye points where patches are few and large, and as the texels a patch gets
+    // where they are many and small.
     if (options.preset == "fast") {
+        hemicube.resolution = 64;
         hemicube.near_eye_points = 4;
-        hemicube.resolution = 64;
     } else if (options.preset == "default") {
-        hemicube.eye_points = 4;
+        hemicube.eye_points = eye_points_for(6000, patches, 1, 16);
+        hemicube.resolution = hemicube.eye_points == 1 ? 128 : 64;
         hemicube.near_eye_points = 16;
-        hemicube.resolution = 64;
     } else if (options.preset == "exact") {
-        hemicube.eye_points = 16;
+        hemicube.eye_points = eye_points_for(20000, patches, 4, 64);
+        hemicube.resolution = 128;
         hemicube.near_eye_points = 64;
-        hemicube.resolution = 64;
         plan.rule = ExchangeRule::exact;
     }
-    (void)patches;
     hemicube.resolution = options.resolution.value_or(hemicube.resolution);
     if (options.eye_points) { // every patch as many as were asked for
         hemicube.eye_points = *options.eye_points;

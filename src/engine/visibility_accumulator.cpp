@@ -37,9 +37,22 @@ std::pair<std::uint32_t, double> cell_of(double at, std::uint32_t cells) {
 } // namespace
 
 VisibilityAccumulator::VisibilityAccumulator(const DrawList& list, std::uint32_t patches)
-    : list_(list), patches_(patches), maps_(list.polygons.size()), visible_(list.item_of_id.size()),
-      hidden_(list.item_of_id.size()), side_seen_(list.polygons.size()), share_(patches), evidence_(patches),
-      columns_(patches), values_(patches), evidences_(patches) {
+    : list_(list), patches_(patches), item_of_id_(list.item_of_id), maps_(list.polygons.size()),
+      visible_(list.item_of_id.size()), hidden_(list.item_of_id.size()), side_seen_(list.polygons.size()),
+      share_(patches), evidence_(patches), columns_(patches), values_(patches), evidences_(patches) {
+    std::vector<std::uint32_t> first_id(patches, 0);
+    for (std::uint32_t id = item_first_patch; id < item_of_id_.size(); ++id) {
+        if (item_of_id_[id] < item_first_patch) {
+            continue;
+        }
+        std::uint32_t& first = first_id[item_of_id_[id] - item_first_patch];
+        if (first == 0) {
+            first = id;
+        } else {
+            doubles_.push_back({id, first});
+            item_of_id_[id] = item_nothing;
+        }
+    }
     for (std::size_t p = 0; p < list.polygons.size(); ++p) {
         const DrawPolygon& polygon = list.polygons[p];
         double largest = 0.0;
@@ -220,7 +233,7 @@ void VisibilityAccumulator::add_hidden(const std::uint32_t* ids, const DeltaForm
 }
 
 void VisibilityAccumulator::set(std::uint32_t id, Tally visible, Tally hidden) {
-    const std::uint32_t item = list_.item_of_id[id];
+    const std::uint32_t item = item_of_id_[id];
     const std::uint32_t count = texels(visible) + texels(hidden);
     if (item < item_first_patch || count == 0) {
         return;
@@ -239,6 +252,14 @@ void VisibilityAccumulator::pool(const Side& side) {
     const DrawPolygon& polygon = list_.polygons[side.polygon];
     const std::uint32_t first = side.back ? polygon.back_id : polygon.front_id;
     const std::uint32_t count = polygon.grid.u * polygon.grid.v << polygon.split;
+    const auto doubles_from = [this](std::uint32_t id) {
+        return std::lower_bound(doubles_.begin(), doubles_.end(), id,
+                                [](const Double& entry, std::uint32_t value) { return entry.id < value; });
+    };
+    std::for_each(doubles_from(first), doubles_from(first + count), [this](const Double& entry) {
+        visible_[entry.first] += std::exchange(visible_[entry.id], Tally{0});
+        hidden_[entry.first] += std::exchange(hidden_[entry.id], Tally{0});
+    });
     Tally visible = 0;
     Tally hidden = 0;
     for (std::uint32_t id = first; id < first + count; ++id) {
@@ -249,8 +270,8 @@ void VisibilityAccumulator::pool(const Side& side) {
         pool_cells(polygon, first);
     } else if (texels(visible) > 0) {
         for (std::uint32_t id = first; id < first + count; ++id) {
-            if (list_.item_of_id[id] >= item_first_patch) {
-                const std::uint32_t patch = list_.item_of_id[id] - item_first_patch;
+            if (item_of_id_[id] >= item_first_patch) {
+                const std::uint32_t patch = item_of_id_[id] - item_first_patch;
                 share_[patch] = 1.0f;
                 evidence_[patch] = visibility_clear;
             }

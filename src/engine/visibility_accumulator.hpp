@@ -57,8 +57,16 @@ private:
 
     const DrawList& list_;
     std::uint32_t patches_;
-    std::vector<GridMap> maps_;  ///< per polygon
-    std::vector<Tally> visible_; ///< per draw id
+    /// draw id -> item, nothing for ids that stand for the same patch as a lower one: on the rim of a cut
+    /// triangle rounding reaches cells outside it.
+    std::vector<std::uint32_t> item_of_id_;
+    struct Double {
+        std::uint32_t id;
+        std::uint32_t first;
+    };
+    std::vector<Double> doubles_; ///< those ids and the lower ones, ascending
+    std::vector<GridMap> maps_;   ///< per polygon
+    std::vector<Tally> visible_;  ///< per draw id
     std::vector<Tally> hidden_;
     std::vector<std::uint8_t> side_seen_; ///< bit 0: front, bit 1: back, per polygon
     std::vector<Side> sides_;
