@@ -182,6 +182,11 @@ void add_repair(CLI::App& app, std::optional<Repair>& repair) {
                });
 }
 
+void add_estimate(CLI::App& app, RowOptions& rows) {
+    Options(app, "Form factors")
+        .flag("--no-estimate", rows.estimate, "leave out the estimate of errors, a tenth of the work", false);
+}
+
 void add_max_memory(CLI::App& app, RowOptions& rows) {
     Options(app, "Computing")
         .value("--max-memory", "SIZE", "such as 512M or 2G (80 % of what is free)",
@@ -259,6 +264,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
     add_repair(app, a.rows.repair);
+    add_estimate(app, a.rows);
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
     add_solver(app, a.solver);
@@ -282,6 +288,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
     add_repair(app, a.rows.repair);
+    add_estimate(app, a.rows);
     add_max_memory(app, a.rows);
     Options output(app, "Output");
     auto* file = output.path("-o,--output", "FILE", a.output,

@@ -50,6 +50,7 @@ struct RowOptions {
     std::optional<std::uint64_t> max_memory; ///< bytes
     double max_row_error = 1e-4;
     std::optional<Repair> repair; ///< none: what suits the rows
+    bool estimate = true;         ///< of errors, from a sample of better rows
 };
 
 struct PictureOptions {

@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "cli/error_report.hpp"
 #include "cli/outputs.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/repair_rows.hpp"
@@ -24,6 +25,7 @@ struct Seconds {
     double load = 0.0;
     double factors = 0.0;
     double repair = 0.0;
+    double estimate = 0.0; ///< of errors
     double total = 0.0;
 };
 
@@ -84,6 +86,10 @@ Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal) 
     subject.rows = compute_rows(*subject.loaded, patches, arguments.rows, terminal);
     subject.seconds.load = subject.loaded->seconds;
     subject.seconds.factors = watch.seconds();
+    if (!arguments.row) {
+        add_reference(subject.rows, *subject.loaded, arguments.rows, terminal);
+        subject.seconds.estimate = subject.rows.reference_seconds;
+    }
     if (arguments.patches) {
         io::write_patches_csv(*arguments.patches, mesh);
     }
@@ -180,10 +186,12 @@ Json groups_json(const Subject& subject, const GroupFactors& groups) {
             {"blocked", groups.blocked},
             {"row_sum", row_sum_json(row_sums(file.factors))},
             {"repair", repair_json(subject.repair)},
+            {"error_estimate", error_json(file.error)},
             {"seconds",
              {{"load", subject.seconds.load},
               {"factors", subject.seconds.factors},
               {"repair", subject.seconds.repair},
+              {"estimate", subject.seconds.estimate},
               {"total", subject.seconds.total}}}};
 }
 
@@ -265,9 +273,12 @@ std::string summary(const Subject& subject, const RowSums& sums, const Enclosure
                                           plural(mesh.groups().size(), "group", "groups")));
     text += rows_summary(subject.rows, sums, enclosure);
     text += repair_summary(subject.repair);
-    text += summary_line("seconds", fmt::format("load {:.3f}, factors {:.3f}, repair {:.3f}, total {:.3f}",
-                                                subject.seconds.load, subject.seconds.factors,
-                                                subject.seconds.repair, subject.seconds.total));
+    text += error_summary(subject.rows.file.error);
+    text += summary_line("seconds",
+                         fmt::format("load {:.3f}, factors {:.3f}, repair {:.3f}, estimate {:.3f}, "
+                                     "total {:.3f}",
+                                     subject.seconds.load, subject.seconds.factors, subject.seconds.repair,
+                                     subject.seconds.estimate, subject.seconds.total));
     if (arguments.output && !is_standard_output(*arguments.output)) {
         const bool repaired = subject.repair.report.repair != Repair::none;
         const char* const which = !repaired                           ? ""
@@ -290,10 +301,12 @@ Json summary_json(const Subject& subject, const RowSums& sums) {
             {"environment_max", sums.environment_max},
             {"blocked_max", sums.blocked_max},
             {"repair", repair_json(subject.repair)},
+            {"error_estimate", error_json(subject.rows.file.error)},
             {"seconds",
              {{"load", subject.seconds.load},
               {"factors", subject.seconds.factors},
               {"repair", subject.seconds.repair},
+              {"estimate", subject.seconds.estimate},
               {"total", subject.seconds.total}}}};
 }
 
@@ -311,11 +324,15 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     }
     const bool writes = arguments.output && !table_goes_to_file(arguments);
     if (writes && holds_raw_rows(*arguments.output)) {
+        estimate_rows(file);
         write_factors(*arguments.output, file);
     }
     settle_contacts(file);
     subject.repair = repair_rows(file, arguments.rows.repair);
     subject.seconds.repair = subject.repair.seconds;
+    const Stopwatch estimate_watch;
+    estimate_rows(file);
+    subject.seconds.estimate += estimate_watch.seconds();
     if (writes && !holds_raw_rows(*arguments.output)) {
         write_factors(*arguments.output, file);
     }

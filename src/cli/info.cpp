@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "cli/error_report.hpp"
 #include "cli/outputs.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/report.hpp"
@@ -217,11 +218,14 @@ void show_result(const InfoArguments& arguments) {
         object["renderer"] = result.renderer;
         object["solver"] = {
             {"name", result.solver}, {"sweeps", result.sweeps}, {"residual", result.residual}};
+        object["chosen_for"] = result.chosen_for;
+        object["error_estimate"] = error_json(result.factor_error, result.radiosity_error);
         print_json(object);
     } else {
         print(contents_text(contents) + summary_line("renderer", result.renderer) +
               summary_line("solver", fmt::format("{}, {}, residual {:.3g}", result.solver,
                                                  plural(result.sweeps, "sweep", "sweeps"), result.residual)) +
+              chosen_summary(result.chosen_for) + error_summary(result.factor_error, result.radiosity_error) +
               tables_text(contents));
     }
 }
@@ -253,6 +257,8 @@ void show_factors(const InfoArguments& arguments) {
                                          {"enclosure", file.enclosure},
                                          {"geometry_hash", fmt::format("{:016x}", file.geometry_hash)},
                                          {"row_sum", row_sum_json(sums)},
+                                         {"chosen_for", file.chosen_for},
+                                         {"error_estimate", error_json(file.error)},
                                          {"groups", groups}}));
         return;
     }
@@ -267,6 +273,7 @@ void show_factors(const InfoArguments& arguments) {
     text += summary_line("enclosure", file.enclosure);
     text += summary_line("geometry", fmt::format("{:016x}", file.geometry_hash));
     text += summary_line("row sums", row_sum_text(sums));
+    text += chosen_summary(file.chosen_for) + error_summary(file.error);
     Table groups({"group", "patches", "area"});
     for (std::size_t g = 0; g < areas.size(); ++g) {
         groups.add({file.groups[g], count_text(patches[g]), number_text(areas[g])});

@@ -73,6 +73,11 @@ std::vector<double> patch_exitance(const Scene& scene, const PatchMesh& mesh) {
                             &Material::exitance);
 }
 
+std::vector<double> patch_reflectance(const Scene& scene, const PatchMesh& mesh) {
+    return spread_materials(scene, mesh, static_cast<std::uint32_t>(scene.channels.size()),
+                            &Material::reflectance);
+}
+
 Solution solve_scene(const LoadedScene& loaded, const FormFactorMatrix& factors,
                      const SolverSettings& settings, bool with_irradiance, const Terminal& terminal) {
     const Stopwatch watch;
@@ -146,6 +151,9 @@ io::ResultFile make_result(const LoadedScene& loaded, const SceneOptions& option
     result.sweeps = solution.sweeps;
     result.residual = solution.residual;
     result.renderer = rows.file.renderer;
+    result.chosen_for = rows.file.chosen_for;
+    result.factor_error = rows.file.error;
+    result.radiosity_error = solution.error;
     return result;
 }
 

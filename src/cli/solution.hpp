@@ -3,9 +3,11 @@
 #include "cli/pipeline.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/io/result_file.hpp"
+#include "hemi/matrix/error_estimate.hpp"
 #include "hemi/solver/solver.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,7 @@ struct Solution {
     double residual = 0.0;
     double dominance = 0.0;
     double seconds = 0.0;
+    std::optional<RadiosityError> error; ///< estimated, see estimate_solution
 };
 
 /// Patches whose rows the radiosity depends on: those that reflect in some channel.
@@ -41,7 +44,8 @@ struct Solution {
 [[nodiscard]] io::ResultFile make_result(const LoadedScene& loaded, const SceneOptions& options,
                                          const Rows& rows, const Solution& solution);
 
-/// Exitance of every patch, N·channels.
+/// Exitance, reflectance of every patch, N·channels.
 [[nodiscard]] std::vector<double> patch_exitance(const Scene& scene, const PatchMesh& mesh);
+[[nodiscard]] std::vector<double> patch_reflectance(const Scene& scene, const PatchMesh& mesh);
 
 } // namespace hemi::cli

@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "cli/error_report.hpp"
 #include "cli/outputs.hpp"
 #include "cli/picture_output.hpp"
 #include "cli/pipeline.hpp"
@@ -27,6 +28,7 @@ struct Seconds {
     double factors = 0.0;
     double repair = 0.0;
     double solve = 0.0;
+    double estimate = 0.0; ///< of errors
     double render = 0.0;
     double total = 0.0;
 };
@@ -62,7 +64,9 @@ Rows find_rows(const SolveArguments& arguments, const LoadedScene& loaded, const
     const bool all = arguments.factors || arguments.result || arguments.radiosity;
     const auto patches = all ? all_patches(loaded.mesh.size()) : reflecting_patches(loaded);
     Rows rows = compute_rows(loaded, patches, arguments.rows, terminal);
+    add_reference(rows, loaded, arguments.rows, terminal);
     if (arguments.factors) {
+        estimate_rows(rows.file);
         io::write_hff(*arguments.factors, rows.file);
         terminal.detail(fmt::format("form factors written to {}", arguments.factors->string()));
     }
@@ -106,10 +110,11 @@ std::string summary(const LoadedScene& loaded, const Rows& rows, const RowSums& 
                                                          : plural(solution.sweeps, "sweep", "sweeps"),
                                                solution.residual));
     text += summary_line("", solution.why);
+    text += error_summary(rows.file.error, solution.error);
     text += summary_line("seconds", fmt::format("load {:.3f}, factors {:.3f}, repair {:.3f}, solve {:.3f}, "
-                                                "render {:.3f}, total {:.3f}",
+                                                "estimate {:.3f}, render {:.3f}, total {:.3f}",
                                                 seconds.load, seconds.factors, seconds.repair, seconds.solve,
-                                                seconds.render, seconds.total));
+                                                seconds.estimate, seconds.render, seconds.total));
     if (!picture.empty()) {
         text += summary_line("picture", picture);
     }
@@ -181,11 +186,13 @@ Json to_json(const LoadedScene& loaded, const Rows& rows, const RowSums& sums, c
             {"reciprocity",
              factors.all_known() ? reciprocity_json(repair.report.reciprocity_after) : Json(nullptr)},
             {"repair", repair_json(repair)},
+            {"error_estimate", error_json(rows.file.error, solution.error)},
             {"seconds",
              {{"load", seconds.load},
               {"factors", seconds.factors},
               {"repair", seconds.repair},
               {"solve", seconds.solve},
+              {"estimate", seconds.estimate},
               {"render", seconds.render},
               {"total", seconds.total}}}};
 }
@@ -232,15 +239,22 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     }
     const EnclosureFinding enclosure =
         find_leaks(factors, enclosure_name(loaded.scene.enclosure), arguments.rows.max_row_error);
-    seconds.factors = factors_watch.seconds();
+    seconds.estimate = rows.reference_seconds;
+    seconds.factors = factors_watch.seconds() - seconds.estimate;
     const RowRepair repair = repair_rows(rows.file, arguments.rows.repair);
     seconds.repair = repair.seconds;
+    const Stopwatch estimate_watch;
+    estimate_rows(rows.file);
+    const double rows_estimated = estimate_watch.seconds();
     const RowSums sums = row_sums(factors);
     report_covered(sums, terminal);
 
     const bool with_irradiance = arguments.result || arguments.radiosity;
-    const Solution solution = solve_scene(loaded, factors, arguments.solver, with_irradiance, terminal);
+    Solution solution = solve_scene(loaded, factors, arguments.solver, with_irradiance, terminal);
     seconds.solve = solution.seconds;
+    const Stopwatch solution_watch;
+    solution.error = estimate_solution(loaded, rows.file, solution);
+    seconds.estimate += rows_estimated + solution_watch.seconds();
     write_files(arguments, loaded, rows, solution);
 
     std::string picture;

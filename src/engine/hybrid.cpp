@@ -332,23 +332,34 @@ private:
         if (k != nobody) {
             here = block.begin[i - block.first_row] + count_seen(std::span(codes_[k]).first(from));
         }
+        if (k == nobody) { // only the rows that were asked for have this column
+            for (auto other = std::lower_bound(patches_.begin(), patches_.end(), from);
+                 other != patches_.end() && *other < upto; ++other) {
+                put_below(i, *other, codes_[row_of_[*other]][i], blocks, next);
+            }
+            return;
+        }
         for (std::uint32_t j = from; j < upto; ++j) {
-            const std::uint32_t other_k = row_of_[j];
-            const PairCode code = k != nobody         ? codes_[k][j]
-                                  : other_k != nobody ? codes_[other_k][i]
-                                                      : pair_hidden;
+            const PairCode code = codes_[k][j];
             if (code == pair_hidden) {
                 continue;
             }
             const double area = areas_(i, j) * visibility_of(code);
             const std::uint8_t visibility = stored_visibility(code);
-            if (k != nobody) {
-                put(block, here++, j, area / mesh_.areas()[i], visibility);
-            }
-            if (other_k != nobody) {
+            put(block, here++, j, area / mesh_.areas()[i], visibility);
+            if (row_of_[j] != nobody) {
                 put(blocks[j / FormFactorMatrix::block_rows], next[j]++, i, area / mesh_.areas()[j],
                     visibility);
             }
+        }
+    }
+
+    /// Entry (j, i), i < j, of a row j whose partner i has none.
+    void put_below(std::uint32_t i, std::uint32_t j, PairCode code, std::vector<RowBlock>& blocks,
+                   std::vector<std::uint64_t>& next) const {
+        if (code != pair_hidden) {
+            put(blocks[j / FormFactorMatrix::block_rows], next[j]++, i,
+                areas_(i, j) * visibility_of(code) / mesh_.areas()[j], stored_visibility(code));
         }
     }
 

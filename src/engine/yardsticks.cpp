@@ -225,7 +225,7 @@ public:
 
 private:
     [[nodiscard]] Row row(std::uint32_t patch) const override {
-        const EyeFrame frame(mesh().normal(patch), patch, settings_.seed);
+        const EyeFrame frame(mesh().normal(patch), patch, 0, settings_.seed);
         const PatchCorners corners = mesh().corners(patch);
         const BilinearMap map(corners.polygon(), frame.z);
         // Every patch has shifts of its own.
@@ -267,7 +267,7 @@ public:
 
 private:
     [[nodiscard]] Row row(std::uint32_t patch) const override {
-        const EyeFrame frame(mesh().normal(patch), patch, settings_.seed);
+        const EyeFrame frame(mesh().normal(patch), patch, 0, settings_.seed);
         const Vec3& eye = mesh().centres()[patch];
         RayCount count(mesh().size());
         for (std::uint32_t row = 0; row < settings_.resolution; ++row) {

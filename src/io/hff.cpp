@@ -15,20 +15,42 @@ namespace hemi::io {
 
 namespace {
 
-constexpr ChunkFormat hff_format{"HEMIFF\r\n", 2, "form factors (.hff)"};
+constexpr ChunkFormat hff_format{"HEMIFF\r\n", 3, "form factors (.hff)"};
+
+/// First rows of the blocks that have a known row.
+std::vector<std::uint32_t> known_blocks(const FormFactorMatrix& factors) {
+    std::vector<std::uint32_t> first_rows;
+    for (const RowBlock& block : factors.blocks()) {
+        if (std::find(block.known.begin(), block.known.end(), 1) != block.known.end()) {
+            first_rows.push_back(block.first_row);
+        }
+    }
+    return first_rows;
+}
 
 Json header(const FactorFile& file) {
-    return {{"size", file.factors.size()},
-            {"block_rows", FormFactorMatrix::block_rows},
-            {"groups", file.groups},
-            {"geometry", fmt::format("{:016x}", file.geometry_hash)},
-            {"preset", file.preset},
-            {"method", file.method},
-            {"resolution", file.resolution},
-            {"eye_points", file.eye_points},
-            {"seed", file.seed},
-            {"renderer", file.renderer},
-            {"enclosure", file.enclosure}};
+    Json head{{"size", file.factors.size()},
+              {"block_rows", FormFactorMatrix::block_rows},
+              {"groups", file.groups},
+              {"geometry", fmt::format("{:016x}", file.geometry_hash)},
+              {"preset", file.preset},
+              {"method", file.method},
+              {"resolution", file.resolution},
+              {"eye_points", file.eye_points},
+              {"seed", file.seed},
+              {"renderer", file.renderer},
+              {"enclosure", file.enclosure},
+              {"reference_blocks", known_blocks(file.reference)},
+              {"chosen_for", file.chosen_for}};
+    if (file.error) {
+        const FactorError& error = *file.error;
+        head["error"] = {{"sampled", error.sampled},
+                         {"rms", error.rms},
+                         {"max", error.max},
+                         {"row_rms", error.row_rms},
+                         {"row_max", error.row_max}};
+    }
+    return head;
 }
 
 void check(const FactorFile& file) {
@@ -41,16 +63,22 @@ void check(const FactorFile& file) {
                     [&](std::uint32_t group) { return group >= file.groups.size(); })) {
         throw InvalidArgument("a patch belongs to a group that has no name");
     }
+    const bool has_reference = !known_blocks(file.reference).empty();
+    if ((has_reference && file.reference.size() != size) || (file.error && file.error->rows.size() != size)) {
+        throw InvalidArgument(fmt::format("{} rows of reference and {} errors of rows for {} patches",
+                                          file.reference.size(), file.error ? file.error->rows.size() : 0,
+                                          size));
+    }
 }
 
-void write_block(ChunkWriter& writer, const RowBlock& block) {
+void write_block(ChunkWriter& writer, std::string_view tag, const RowBlock& block) {
     const std::uint32_t rows = block.rows();
     const std::uint64_t entries = block.columns.size();
     const std::uint64_t visibilities = block.visibility.size();
-    writer.chunk("ROWS", {bytes_of(block.first_row), bytes_of(rows), bytes_of(entries),
-                          bytes_of(visibilities), bytes_of(block.begin), bytes_of(block.environment),
-                          bytes_of(block.blocked), bytes_of(block.columns), bytes_of(block.values),
-                          bytes_of(block.visibility), bytes_of(block.known)});
+    writer.chunk(tag, {bytes_of(block.first_row), bytes_of(rows), bytes_of(entries), bytes_of(visibilities),
+                       bytes_of(block.begin), bytes_of(block.environment), bytes_of(block.blocked),
+                       bytes_of(block.columns), bytes_of(block.values), bytes_of(block.visibility),
+                       bytes_of(block.known)});
 }
 
 std::uint32_t integer32(const JsonNode& node) {
@@ -67,8 +95,27 @@ std::uint64_t read_hash(const JsonNode& node) {
     return hash;
 }
 
+double magnitude(const JsonNode& node) {
+    const double value = node.number();
+    if (!(value >= 0.0) || !std::isfinite(value)) {
+        node.expect("a finite number that is not negative");
+    }
+    return value;
+}
+
+FactorError read_error(const JsonNode& node) {
+    FactorError error;
+    error.sampled = integer32(node.member("sampled"));
+    error.rms = magnitude(node.member("rms"));
+    error.max = magnitude(node.member("max"));
+    error.row_rms = magnitude(node.member("row_rms"));
+    error.row_max = magnitude(node.member("row_max"));
+    return error;
+}
+
 /// Everything but the rows. The matrix is made only after the file proved long enough for that many.
-void read_header(ChunkReader& reader, FactorFile& file) {
+/// @return first rows of the blocks of the reference
+std::vector<std::uint32_t> read_header(ChunkReader& reader, FactorFile& file) {
     const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
     const JsonNode head(document, reader.file());
     if (integer32(head.member("block_rows")) != FormFactorMatrix::block_rows) {
@@ -87,6 +134,20 @@ void read_header(ChunkReader& reader, FactorFile& file) {
     if (file.enclosure != "auto" && file.enclosure != "closed" && file.enclosure != "open") {
         head.member("enclosure").expect("\"auto\", \"closed\" or \"open\"");
     }
+    file.chosen_for = head.member("chosen_for").any_text();
+    if (head.has("error")) {
+        file.error = read_error(head.member("error"));
+    }
+    std::vector<std::uint32_t> reference_blocks;
+    const JsonNode blocks = head.member("reference_blocks");
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        reference_blocks.push_back(integer32(blocks.element(k)));
+        const std::uint32_t first_row = reference_blocks.back();
+        if (first_row >= size || first_row % FormFactorMatrix::block_rows != 0 ||
+            (k > 0 && first_row <= reference_blocks[k - 1])) {
+            blocks.element(k).expect("the first row of a block, in ascending order");
+        }
+    }
 
     Payload areas = reader.chunk("AREA");
     file.areas = areas.take_array<double>(size);
@@ -97,6 +158,8 @@ void read_header(ChunkReader& reader, FactorFile& file) {
         }
     }
     file.factors = FormFactorMatrix(size);
+    file.reference = FormFactorMatrix(reference_blocks.empty() ? 0 : size);
+    return reference_blocks;
 }
 
 void read_groups(ChunkReader& reader, FactorFile& file) {
@@ -123,8 +186,9 @@ void read_contacts(ChunkReader& reader, FactorFile& file) {
     }
 }
 
-void read_block(ChunkReader& reader, FormFactorMatrix& factors, std::uint32_t first_row) {
-    Payload payload = reader.chunk("ROWS");
+void read_block(ChunkReader& reader, std::string_view tag, FormFactorMatrix& factors,
+                std::uint32_t first_row) {
+    Payload payload = reader.chunk(tag);
     RowBlock block;
     block.first_row = payload.take<std::uint32_t>();
     const auto rows = payload.take<std::uint32_t>();
@@ -151,6 +215,17 @@ void read_block(ChunkReader& reader, FormFactorMatrix& factors, std::uint32_t fi
     }
 }
 
+void read_row_errors(ChunkReader& reader, FactorFile& file) {
+    Payload payload = reader.chunk("RERR");
+    file.error->rows = payload.take_array<double>(file.factors.size());
+    payload.expect_end();
+    for (const double error : file.error->rows) {
+        if (!(error >= 0.0) || !std::isfinite(error)) {
+            payload.fail(fmt::format("the error of a row is {}; must be finite and not negative", error));
+        }
+    }
+}
+
 } // namespace
 
 void write_hff(const std::filesystem::path& path, const FactorFile& file) {
@@ -162,7 +237,13 @@ void write_hff(const std::filesystem::path& path, const FactorFile& file) {
     const auto contacts = static_cast<std::uint32_t>(file.contacts.size());
     writer.chunk("CONT", {bytes_of(contacts), bytes_of(file.contacts)});
     for (const RowBlock& block : file.factors.blocks()) {
-        write_block(writer, block);
+        write_block(writer, "ROWS", block);
+    }
+    for (const std::uint32_t first_row : known_blocks(file.reference)) {
+        write_block(writer, "REFR", file.reference.blocks()[first_row / FormFactorMatrix::block_rows]);
+    }
+    if (file.error) {
+        writer.chunk("RERR", {bytes_of(file.error->rows)});
     }
     writer.finish();
 }
@@ -170,12 +251,18 @@ void write_hff(const std::filesystem::path& path, const FactorFile& file) {
 FactorFile read_hff(const std::filesystem::path& path) {
     ChunkReader reader(path, hff_format);
     FactorFile file;
-    read_header(reader, file);
+    const auto reference_blocks = read_header(reader, file);
     read_groups(reader, file);
     read_contacts(reader, file);
     for (std::uint32_t row = 0; row < file.factors.size();) {
-        read_block(reader, file.factors, row);
+        read_block(reader, "ROWS", file.factors, row);
         row += std::min(FormFactorMatrix::block_rows, file.factors.size() - row);
+    }
+    for (const std::uint32_t first_row : reference_blocks) {
+        read_block(reader, "REFR", file.reference, first_row);
+    }
+    if (file.error) {
+        read_row_errors(reader, file);
     }
     reader.finish();
     return file;

@@ -13,7 +13,7 @@ namespace hemi::io {
 
 namespace {
 
-constexpr ChunkFormat hres_format{"HEMIRS\r\n", 1, "a solution (.hres)"};
+constexpr ChunkFormat hres_format{"HEMIRS\r\n", 2, "a solution (.hres)"};
 constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
 
 /// A surface as it lies in the file. The grid is the one that was used, wherever it came from: the patches of
@@ -52,7 +52,14 @@ Json header(const ResultFile& result, const PatchMesh& mesh) {
               {"solver", result.solver},
               {"sweeps", result.sweeps},
               {"residual", result.residual},
-              {"renderer", result.renderer}};
+              {"renderer", result.renderer},
+              {"chosen_for", result.chosen_for}};
+    if (result.factor_error && result.radiosity_error) {
+        const FactorError& error = *result.factor_error;
+        head["error"] = {{"sampled", error.sampled}, {"rms", error.rms},
+                         {"max", error.max},         {"row_rms", error.row_rms},
+                         {"row_max", error.row_max}, {"radiosity_rms", result.radiosity_error->rms}};
+    }
     if (scene.camera) {
         const Camera& camera = *scene.camera;
         head["camera"] = {{"eye", point(camera.eye)},
@@ -129,6 +136,17 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     result.sweeps = static_cast<std::uint32_t>(head.member("sweeps").integer(most));
     result.residual = head.member("residual").number();
     result.renderer = head.member("renderer").any_text();
+    result.chosen_for = head.member("chosen_for").any_text();
+    if (head.has("error")) {
+        const JsonNode error = head.member("error");
+        result.factor_error = FactorError{static_cast<std::uint32_t>(error.member("sampled").integer(most)),
+                                          error.member("rms").number(),
+                                          error.member("max").number(),
+                                          error.member("row_rms").number(),
+                                          error.member("row_max").number(),
+                                          {}};
+        result.radiosity_error = RadiosityError{error.member("radiosity_rms").number(), {}};
+    }
     return {head.member("surfaces").integer(most), head.member("patches").integer(most)};
 }
 
@@ -189,6 +207,11 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     check_array(result.environment, patches, "environment share");
     check_array(result.blocked, patches, "blocked share");
     check_array({result.residual}, 1, "residual");
+    const bool estimated = result.factor_error && result.radiosity_error;
+    if (estimated) {
+        check_array(result.factor_error->rows, patches, "error of a row");
+        check_array(result.radiosity_error->patches, values, "error of the radiosity");
+    }
 
     ChunkWriter writer(path, hres_format);
     writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh)))});
@@ -198,6 +221,10 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     writer.chunk("RSUM", {bytes_of(result.row_sum)});
     writer.chunk("ENVI", {bytes_of(result.environment)});
     writer.chunk("BLOC", {bytes_of(result.blocked)});
+    if (estimated) {
+        writer.chunk("RERR", {bytes_of(result.factor_error->rows)});
+        writer.chunk("BERR", {bytes_of(result.radiosity_error->patches)});
+    }
     writer.finish();
 }
 
@@ -218,6 +245,10 @@ ResultFile read_hres(const std::filesystem::path& path) {
     result.row_sum = read_array(reader, "RSUM", sizes.patches);
     result.environment = read_array(reader, "ENVI", sizes.patches);
     result.blocked = read_array(reader, "BLOC", sizes.patches);
+    if (result.factor_error) {
+        result.factor_error->rows = read_array(reader, "RERR", sizes.patches);
+        result.radiosity_error->patches = read_array(reader, "BERR", values);
+    }
     reader.finish();
     return result;
 }

@@ -31,6 +31,19 @@ io::FactorFile sample(std::uint32_t size, bool with_visibility = true) {
     return file;
 }
 
+/// With the last block of other rows as reference, and an estimate.
+io::FactorFile judged_sample(std::uint32_t size) {
+    io::FactorFile file = sample(size);
+    file.reference = FormFactorMatrix(size);
+    if (size > 0) {
+        const FormFactorMatrix better = random_matrix(size, true, true);
+        file.reference.set_block(better.blocks().back());
+    }
+    file.error = FactorError{7, 1e-5, 1.0 / 3.0, 2e-4, 0.5, std::vector<double>(size, 0.1)};
+    file.chosen_for = "--error-target 1e-3";
+    return file;
+}
+
 void require_equal(const io::FactorFile& a, const io::FactorFile& b) {
     require_same_entries(a.factors, b.factors);
     for (std::size_t k = 0; k < a.factors.blocks().size(); ++k) {
@@ -50,6 +63,20 @@ void require_equal(const io::FactorFile& a, const io::FactorFile& b) {
     REQUIRE(a.seed == b.seed);
     REQUIRE(a.renderer == b.renderer);
     REQUIRE(a.enclosure == b.enclosure);
+    REQUIRE(a.chosen_for == b.chosen_for);
+    REQUIRE(a.reference.entries() == b.reference.entries());
+    if (a.reference.entries() > 0) {
+        require_same_entries(a.reference, b.reference);
+    }
+    REQUIRE(a.error.has_value() == b.error.has_value());
+    if (a.error) {
+        REQUIRE(a.error->sampled == b.error->sampled);
+        REQUIRE(a.error->rms == b.error->rms);
+        REQUIRE(a.error->max == b.error->max);
+        REQUIRE(a.error->row_rms == b.error->row_rms);
+        REQUIRE(a.error->row_max == b.error->row_max);
+        REQUIRE(a.error->rows == b.error->rows);
+    }
 }
 
 } // namespace
@@ -68,6 +95,21 @@ TEST_CASE("HFF: what is written is read back bit for bit", "[io]") {
     REQUIRE(folder.files() == 1);
 }
 
+TEST_CASE("HFF: the reference and the estimate that it gave are kept", "[io]") {
+    const Folder folder;
+    for (const std::uint32_t size : {0u, 1u, 64u, 65u, 200u}) {
+        const io::FactorFile file = judged_sample(size);
+        io::write_hff(folder / "a.hff", file);
+        require_equal(file, io::read_hff(folder / "a.hff"));
+    }
+    io::FactorFile file = judged_sample(70);
+    file.error->rows.pop_back();
+    REQUIRE_THROWS_AS(io::write_hff(folder / "b.hff", file), InvalidArgument);
+    file = judged_sample(70);
+    file.reference = judged_sample(71).reference;
+    REQUIRE_THROWS_AS(io::write_hff(folder / "b.hff", file), InvalidArgument);
+}
+
 TEST_CASE("HFF: equal content gives equal bytes", "[io]") {
     const Folder folder;
     io::write_hff(folder / "a.hff", sample(100));
@@ -77,7 +119,7 @@ TEST_CASE("HFF: equal content gives equal bytes", "[io]") {
 
 TEST_CASE("HFF: a file cut short anywhere is refused", "[io]") {
     const Folder folder;
-    io::write_hff(folder / "a.hff", sample(70));
+    io::write_hff(folder / "a.hff", judged_sample(70));
     const std::string bytes = io::read_file(folder / "a.hff");
     for (std::size_t length = 0; length < bytes.size(); length += length < 600 ? 1 : 37) {
         const auto path = folder.write("cut.hff", bytes.substr(0, length));
@@ -102,8 +144,7 @@ TEST_CASE("HFF: any flipped bit is noticed", "[io]") {
 
 TEST_CASE("HFF: lies with a right checksum are noticed, and cost no memory", "[io]") {
     const Folder folder;
-    io::FactorFile file = sample(70);
-    io::write_hff(folder / "a.hff", file);
+    io::write_hff(folder / "a.hff", judged_sample(70));
     const std::string bytes = io::read_file(folder / "a.hff");
     struct Bad {
         int chunk;
@@ -134,6 +175,9 @@ TEST_CASE("HFF: lies with a right checksum are noticed, and cost no memory", "[i
         {4, environment, raw(-0.5), "environment share -0.5"},
         {4, environment, raw(std::nan("")), "environment share nan"},
         {4, environment + 64 * 16, raw(70u), "column"},
+        {6, 0, raw(0u), "chunk REFR: starts at row 0, where row 64 must come"},
+        {7, 0, raw(-1.0), "chunk RERR: the error of a row is -1"},
+        {7, 8, raw(std::nan("")), "chunk RERR: the error of a row is nan"},
     };
     for (const Bad& bad : table) {
         INFO(bad.part);
@@ -150,7 +194,7 @@ TEST_CASE("HFF: other files, other versions and directories are told apart", "[i
     require_parts(refusal(""), {"a.hff: 0 bytes; too short"});
     require_parts(refusal("v 0 0 0\nv 1 0 0\nv 1 1 0\n"), {"does not hold form factors (.hff)", "v 0 0 0"});
     require_parts(refusal("HEMIFF\n" + std::string(20, '\0')), {"does not hold form factors"});
-    require_parts(refusal("HEMIFF\r\n\1" + std::string(20, '\0')), {"version 1", "reads version 2"});
+    require_parts(refusal("HEMIFF\r\n\1" + std::string(20, '\0')), {"version 1", "reads version 3"});
     require_parts(message_of<InputError>([&] { (void)io::read_hff(folder / ""); }), {"cannot be read"});
     require_parts(message_of<InputError>([&] { (void)io::read_hff(folder / "no.hff"); }), {"No such file"});
 }

@@ -42,6 +42,9 @@ io::ResultFile sample() {
     result.sweeps = 17;
     result.residual = 1.23456789e-7;
     result.renderer = "Some Renderer";
+    result.chosen_for = "--error-target 1e-3";
+    result.factor_error = FactorError{5, 1e-5, 0.25, 2e-4, 0.5, std::vector<double>(patches, 1e-3)};
+    result.radiosity_error = RadiosityError{1.0 / 3.0, std::vector<double>(patches * 2, 0.125)};
     return result;
 }
 
@@ -72,6 +75,16 @@ TEST_CASE("HRES: what is written is read back bit for bit", "[io]") {
     }
     REQUIRE(a.radiosity == b.radiosity);
     REQUIRE(a.irradiance == b.irradiance);
+    REQUIRE(a.chosen_for == b.chosen_for);
+    REQUIRE(b.factor_error.has_value());
+    REQUIRE(a.factor_error->sampled == b.factor_error->sampled);
+    REQUIRE(a.factor_error->rms == b.factor_error->rms);
+    REQUIRE(a.factor_error->max == b.factor_error->max);
+    REQUIRE(a.factor_error->row_rms == b.factor_error->row_rms);
+    REQUIRE(a.factor_error->row_max == b.factor_error->row_max);
+    REQUIRE(a.factor_error->rows == b.factor_error->rows);
+    REQUIRE(a.radiosity_error->rms == b.radiosity_error->rms);
+    REQUIRE(a.radiosity_error->patches == b.radiosity_error->patches);
     REQUIRE(a.row_sum == b.row_sum);
     REQUIRE(a.environment == b.environment);
     REQUIRE(a.blocked == b.blocked);

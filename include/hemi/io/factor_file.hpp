@@ -1,10 +1,12 @@
 #pragma once
 
+#include "hemi/matrix/error_estimate.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,11 +27,17 @@ struct FactorFile {
     std::uint64_t seed = 0;
     std::string renderer;           ///< what computed the rows
     std::string enclosure = "auto"; ///< auto, closed or open, as the scene said
+    /// Better rows of a few patches, by which the rows are judged, whatever is done to them; no row is known
+    /// where none were computed. @see compute_reference
+    FormFactorMatrix reference{0};
+    std::optional<FactorError> error; ///< of the rows as they are here
+    std::string chosen_for;           ///< why the settings are what they are, where the program chose them
 };
 
 /// Writes `.hff`: a chunk file (see chunk_file.hpp) whose rows are independent, checksummed blocks with
 /// their own 64-bit offsets, row balance and, where it is known, visibility. Raw rows, complete under the
 /// final name or not there at all.
+/// @throws InvalidArgument if areas, groups, reference or error do not fit the rows; IoError
 void write_hff(const std::filesystem::path& path, const FactorFile& file);
 /// @throws InputError for anything that is not a sound `.hff`: every length, offset, index and checksum is
 /// tested.

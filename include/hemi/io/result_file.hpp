@@ -1,9 +1,11 @@
 #pragma once
 
+#include "hemi/matrix/error_estimate.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +27,10 @@ struct ResultFile {
     std::uint32_t sweeps = 0;
     double residual = 0.0;
     std::string renderer;
+    std::string chosen_for; ///< why the settings are what they are, where the program chose them
+    /// What the factors and the radiosity are off by, with arrays of N and of N·channels.
+    std::optional<FactorError> factor_error;
+    std::optional<RadiosityError> radiosity_error; ///< only with factor_error
 };
 
 /// @throws InvalidArgument for arrays of other lengths and values that are not finite; IoError

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "hemi/core/progress.hpp"
+#include "hemi/engine/engine.hpp"
+#include "hemi/engine/row_provider.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// Up to `count` of `patches`, ascending, spread over all of them at irregular distances.
+[[nodiscard]] std::vector<std::uint32_t> reference_patches(std::span<const std::uint32_t> patches,
+                                                           std::uint32_t count);
+
+/// Visibility by other and better eyes than those of `settings`: four times as many, at least 16, turned
+/// otherwise. Rotations alone do not see what one eye point a patch gets wrong.
+[[nodiscard]] HemicubeSettings reference_settings(const HemicubeSettings& settings);
+
+/// How many rows of reference cost about `share` of all `rows` of `settings`, within 12 to 32 (or `rows`).
+[[nodiscard]] std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows, double share);
+
+/// Rows that others are judged by: exact exchange areas times visibility, seen from i alone. The other rows
+/// stay unknown.
+/// @param visibility  gives rows of RowQuantity::visibility; @see reference_settings
+[[nodiscard]] FormFactorMatrix compute_reference(RowProvider& visibility, const PatchMesh& mesh,
+                                                 std::span<const std::uint32_t> patches,
+                                                 const Progress& progress = {});
+
+} // namespace hemi

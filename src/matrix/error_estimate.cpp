@@ -1,0 +1,318 @@
+#include "hemi/matrix/error_estimate.hpp"
+
+#include "core/parallel_for.hpp"
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace hemi {
+
+namespace {
+
+/// What the variance of a factor may go like.
+constexpr std::size_t shapes = 3;
+using Shapes = std::array<double, shapes>;
+
+double visibility_of(const RowView& row, std::size_t entry) {
+    return row.visibility.empty() || row.visibility[entry] == visibility_clear
+               ? 1.0
+               : static_cast<double>(row.visibility[entry]) / visibility_clear;
+}
+
+/// What the variance of one factor may go like: F, F², and F0² V (1 - V) or F⁴ (of near patches, by how far
+/// the places are from each other that stand for them).
+Shapes shapes_of(const RowView& row, std::size_t entry) {
+    const double factor = static_cast<double>(row.values[entry]);
+    const double visibility = visibility_of(row, entry);
+    const double square = factor * factor;
+    return {factor, square,
+            row.visibility.empty() ? square * square : square * (1.0 - visibility) / visibility};
+}
+
+/// Of a row: sums over its factors, each times weight_j (none: 1).
+Shapes sum_shapes(const RowView& row, std::span<const double> weights) {
+    Shapes sums{};
+    for (std::size_t k = 0; k < row.columns.size(); ++k) {
+        const Shapes of_factor = shapes_of(row, k);
+        const double weight = weights.empty() ? 1.0 : weights[row.columns[k]];
+        for (std::size_t s = 0; s < shapes; ++s) {
+            sums[s] += of_factor[s] * weight;
+        }
+    }
+    return sums;
+}
+
+/// The largest of a row.
+Shapes largest_shapes(const RowView& row) {
+    Shapes largest{};
+    for (std::size_t k = 0; k < row.columns.size(); ++k) {
+        const Shapes of_factor = shapes_of(row, k);
+        for (std::size_t s = 0; s < shapes; ++s) {
+            largest[s] = std::max(largest[s], of_factor[s]);
+        }
+    }
+    return largest;
+}
+
+/// Calls take(j, F(i, j) - F*(i, j), F*(i, j)) for all columns, or those of `columns`, where either is
+/// stored.
+template <class Take>
+void compare(const RowView& row, const RowView& reference, std::span<const std::uint32_t> columns,
+             const Take& take) {
+    std::size_t a = 0;
+    std::size_t b = 0;
+    auto wanted = columns.begin();
+    while (a < row.columns.size() || b < reference.columns.size()) {
+        const std::uint32_t j = b == reference.columns.size() ||
+                                        (a < row.columns.size() && row.columns[a] <= reference.columns[b])
+                                    ? row.columns[a]
+                                    : reference.columns[b];
+        const bool found = a < row.columns.size() && row.columns[a] == j;
+        const bool expected = b < reference.columns.size() && reference.columns[b] == j;
+        const double is = found ? static_cast<double>(row.values[a++]) : 0.0;
+        const double should = expected ? static_cast<double>(reference.values[b++]) : 0.0;
+        if (!columns.empty()) {
+            wanted = std::lower_bound(wanted, columns.end(), j);
+            if (wanted == columns.end() || *wanted != j) {
+                continue;
+            }
+        }
+        take(j, is - should, should);
+    }
+}
+
+/// Rows that are in both.
+std::vector<std::uint32_t> sampled_rows(const FormFactorMatrix& factors, const FormFactorMatrix& reference) {
+    if (factors.size() != reference.size()) {
+        throw InvalidArgument(
+            fmt::format("{} rows and a reference of {}; must be as many", factors.size(), reference.size()));
+    }
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        if (reference.known(i) && factors.known(i)) {
+            rows.push_back(i);
+        }
+    }
+    if (rows.empty()) {
+        throw InvalidArgument("no row of the reference is known");
+    }
+    return rows;
+}
+
+/// Variances of all rows, each factor's times weight_j, as the shapes make them of the squared errors in the
+/// sampled rows.
+struct Variances {
+    std::vector<double> mean;    ///< of what the shapes say: right in the sum
+    std::vector<double> largest; ///< of what they say: on the safe side in every row
+    double common = 0.0;         ///< deviation that all rows have in common
+};
+/// @param measured  sum of squared errors of each row of `sampled`
+/// @param weights   of the columns; may be empty
+Variances spread(const FormFactorMatrix& factors, std::span<const std::uint32_t> sampled,
+                 std::span<const double> measured, std::span<const double> weights) {
+    std::vector<Shapes> of_row(factors.size());
+    parallel_for(factors.size(), FormFactorMatrix::block_rows, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            of_row[i] = sum_shapes(factors.row(static_cast<std::uint32_t>(i)), weights);
+        }
+    });
+    Shapes in_sample{};
+    double variance = 0.0;
+    for (std::size_t k = 0; k < sampled.size(); ++k) {
+        const Shapes unweighted =
+            weights.empty() ? of_row[sampled[k]] : sum_shapes(factors.row(sampled[k]), {});
+        variance += measured[k];
+        for (std::size_t s = 0; s < shapes; ++s) {
+            in_sample[s] += unweighted[s];
+        }
+    }
+    const auto used = static_cast<double>(
+        std::count_if(in_sample.begin(), in_sample.end(), [](double sum) { return sum > 0.0; }));
+    const double doubt = 1.0 + 8.0 / static_cast<double>(sampled.size()); // a small sample is trusted less
+    Variances variances{std::vector<double>(factors.size()), std::vector<double>(factors.size()), 0.0};
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        for (std::size_t s = 0; s < shapes; ++s) {
+            const double said = in_sample[s] > 0.0 ? variance * of_row[i][s] / in_sample[s] : 0.0;
+            variances.mean[i] += said / std::max(1.0, used);
+            variances.largest[i] = std::max(variances.largest[i], said * doubt);
+        }
+    }
+    return variances;
+}
+
+/// The largest error of any factor: a row's largest goes like its largest factor, or partly hidden factor.
+/// @param largest  of the rows `sampled`
+double largest_factor_error(const FormFactorMatrix& factors, std::span<const std::uint32_t> sampled,
+                            std::span<const double> largest) {
+    const std::size_t shape = factors.has_visibility() ? 2 : 1;
+    double strongest = 0.0;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        strongest = std::max(strongest, largest_shapes(factors.row(i))[shape]);
+    }
+    constexpr double unseen = 1.5; // the worst of all is not in the sample
+    double estimate = 0.0;
+    for (std::size_t k = 0; k < sampled.size(); ++k) {
+        const double here = largest_shapes(factors.row(sampled[k]))[shape];
+        estimate = std::max(estimate, here > 0.0 ? largest[k] * std::sqrt(strongest / here) : largest[k]);
+    }
+    return unseen * estimate;
+}
+
+/// How much of a row's squared error lies in the columns that are compared: their share of all.
+double share_of(const FormFactorMatrix& factors, std::span<const std::uint32_t> columns) {
+    return columns.empty() || factors.size() == 0
+               ? 1.0
+               : static_cast<double>(columns.size()) / static_cast<double>(factors.size());
+}
+
+/// Of the irradiance sum_j F(i, j) b_j. Rows sum to what they should nearly always, so that only what differs
+/// from the mean of b counts; the sample says how much more it errs than if factors erred independently.
+Variances irradiance_variances(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
+                               std::span<const std::uint32_t> columns, std::span<const std::uint32_t> sampled,
+                               std::span<const double> areas, std::span<const double> b) {
+    double all = 0.0;
+    double even = 0.0;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        all += areas[i];
+        even += areas[i] * b[i];
+    }
+    even /= all;
+    std::vector<double> weights(b.size());
+    std::transform(b.begin(), b.end(), weights.begin(),
+                   [even](double value) { return (value - even) * (value - even); });
+    const double share = share_of(factors, columns);
+    std::vector<double> squares(sampled.size());
+    double area = 0.0;
+    double mean = 0.0;
+    double measured = 0.0;
+    for (std::size_t k = 0; k < sampled.size(); ++k) {
+        double error = 0.0;
+        compare(factors.row(sampled[k]), reference.row(sampled[k]), columns,
+                [&](std::uint32_t j, double difference, double) {
+                    squares[k] += difference * difference;
+                    error += difference * b[j];
+                });
+        squares[k] /= share;
+        area += areas[sampled[k]];
+        mean += areas[sampled[k]] * error / share;
+        measured += error * error / share;
+    }
+    Variances variances = spread(factors, sampled, squares, weights);
+    double modelled = 0.0;
+    for (const std::uint32_t i : sampled) {
+        modelled += variances.mean[i];
+    }
+    const double factor = modelled > 0.0 ? std::max(1.0, measured / modelled) : 0.0;
+    double square = 0.0;
+    double known = 0.0;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        variances.mean[i] *= factor;
+        variances.largest[i] *= factor;
+        square += variances.mean[i];
+        known += factors.known(i) ? 1.0 : 0.0;
+    }
+    variances.common =
+        std::abs(mean) / area + std::sqrt(square / known / static_cast<double>(sampled.size()));
+    return variances;
+}
+
+/// What all patches get more, of each other's light, where all get 1 too much from outside.
+double amplification(const FormFactorMatrix& factors, std::span<const double> areas,
+                     std::span<const double> reflectance) {
+    double lost = 0.0;
+    double reflected = 0.0;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        const double sum = factors.known(i) ? factors.row(i).sum() : 0.0;
+        lost += areas[i] * (1.0 - reflectance[i] * sum);
+        reflected += areas[i] * reflectance[i];
+    }
+    return lost > 0.0 ? reflected / lost : 0.0;
+}
+
+} // namespace
+
+FactorError estimate_factor_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
+                                  std::span<const std::uint32_t> columns) {
+    const auto sampled = sampled_rows(factors, reference);
+    const double share = share_of(factors, columns);
+    std::vector<double> squares(sampled.size());
+    std::vector<double> largest(sampled.size());
+    std::uint64_t pairs = 0;
+    for (std::size_t k = 0; k < sampled.size(); ++k) {
+        compare(factors.row(sampled[k]), reference.row(sampled[k]), columns,
+                [&](std::uint32_t, double error, double should) {
+                    squares[k] += error * error;
+                    largest[k] = std::max(largest[k], std::abs(error));
+                    pairs += should > 0.0 ? 1 : 0;
+                });
+        squares[k] /= share;
+    }
+    const Variances variances = spread(factors, sampled, squares, {});
+    FactorError estimate;
+    estimate.sampled = static_cast<std::uint32_t>(sampled.size());
+    double sum = 0.0;
+    std::uint32_t known = 0;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        sum += variances.mean[i];
+        known += factors.known(i) ? 1 : 0;
+        estimate.rows.push_back(std::sqrt(variances.largest[i]));
+        estimate.row_max = std::max(estimate.row_max, estimate.rows.back());
+    }
+    const double pairs_a_row = static_cast<double>(pairs) / share / static_cast<double>(sampled.size());
+    estimate.row_rms = std::sqrt(sum / std::max(1u, known));
+    estimate.rms = estimate.row_rms / std::sqrt(std::max(1.0, pairs_a_row));
+    estimate.max = largest_factor_error(factors, sampled, largest);
+    return estimate;
+}
+
+RadiosityError estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
+                                        std::span<const double> areas, std::uint32_t channels,
+                                        std::span<const double> reflectance,
+                                        std::span<const double> radiosity,
+                                        std::span<const std::uint32_t> columns) {
+    const std::uint32_t size = factors.size();
+    const std::size_t values = std::size_t{size} * channels;
+    if (areas.size() != size || reflectance.size() != values || radiosity.size() != values) {
+        throw InvalidArgument(fmt::format("{} areas, {} reflectances and {} radiosities for {} patches of {} "
+                                          "channels",
+                                          areas.size(), reflectance.size(), radiosity.size(), size,
+                                          channels));
+    }
+    const auto all_sampled = sampled_rows(factors, reference);
+    RadiosityError estimate;
+    estimate.patches.resize(values);
+    std::vector<double> rho(size);
+    std::vector<double> b(size);
+    for (std::uint32_t c = 0; c < channels; ++c) {
+        for (std::uint32_t i = 0; i < size; ++i) {
+            rho[i] = reflectance[std::size_t{i} * channels + c];
+            b[i] = radiosity[std::size_t{i} * channels + c];
+        }
+        // Rows of what reflects nothing may see other light, and do not matter.
+        std::vector<std::uint32_t> sampled;
+        std::copy_if(all_sampled.begin(), all_sampled.end(), std::back_inserter(sampled),
+                     [&](std::uint32_t i) { return rho[i] > 0.0; });
+        if (sampled.empty()) {
+            continue;
+        }
+        const Variances variances = irradiance_variances(factors, reference, columns, sampled, areas, b);
+        const double common = variances.common * amplification(factors, areas, rho);
+        double errors = 0.0;
+        double all = 0.0;
+        for (std::uint32_t i = 0; i < size; ++i) {
+            estimate.patches[std::size_t{i} * channels + c] =
+                rho[i] * std::sqrt(variances.largest[i] + common * common);
+            errors += areas[i] * rho[i] * rho[i] * (variances.mean[i] + common * common);
+            all += rho[i] > 0.0 ? areas[i] * b[i] * b[i] : 0.0;
+        }
+        estimate.rms = std::max(estimate.rms, all > 0.0 ? std::sqrt(errors / all) : 0.0);
+    }
+    return estimate;
+}
+
+} // namespace hemi

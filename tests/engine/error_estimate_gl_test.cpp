@@ -1,0 +1,262 @@
+#include "support/occluded_reference.hpp"
+#include "support/scenes.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/engine/hybrid.hpp"
+#include "hemi/engine/reference_rows.hpp"
+#include "hemi/matrix/error_estimate.hpp"
+#include "hemi/matrix/repair.hpp"
+#include "hemi/solver/solver.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+using namespace hemi;
+using namespace hemi::test;
+
+namespace {
+
+/// All rows from what is known of them.
+FormFactorMatrix matrix_of(const std::vector<std::vector<double>>& rows) {
+    FormFactorMatrix matrix(static_cast<std::uint32_t>(rows.size()));
+    for (RowBlock& block : matrix.take_blocks()) {
+        for (std::uint32_t local = 0; local < block.rows(); ++local) {
+            const auto& row = rows[block.first_row + local];
+            for (std::uint32_t j = 0; j < row.size(); ++j) {
+                if (row[j] > 0.0) {
+                    block.columns.push_back(j);
+                    block.values.push_back(static_cast<float>(row[j]));
+                }
+            }
+            block.begin[local + 1] = block.columns.size();
+            block.known[local] = 1;
+        }
+        matrix.set_block(std::move(block));
+    }
+    return matrix;
+}
+
+/// A scene whose factors are known, element by element, and what its patches radiate.
+struct KnownScene {
+    KnownScene(const Scene& scene, const std::vector<std::string>& bodies, std::size_t points,
+               double reflectance)
+        : mesh(scene), reflectances(mesh.size(), reflectance), exitance(mesh.size(), 0.0) {
+        const OccludedReference reference(mesh, bodies, points);
+        std::vector<std::vector<double>> rows;
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            rows.push_back(reference.row(i));
+            exitance[i] = mesh.group(i) == 0 ? 1.0 : 0.0; // one wall is a lamp
+            reflectances[i] = mesh.group(i) == 0 ? 0.0 : reflectance;
+        }
+        factors = matrix_of(rows);
+        radiosity = solve(factors);
+    }
+
+    [[nodiscard]] std::vector<double> solve(const FormFactorMatrix& f) const {
+        SolverSettings settings;
+        settings.tolerance = 1e-9;
+        return solve_radiosity({&f, 1, reflectances, exitance, {}}, settings).radiosity;
+    }
+
+    PatchMesh mesh;
+    FormFactorMatrix factors{0};
+    std::vector<double> reflectances, exitance, radiosity;
+};
+
+struct Method {
+    const char* name;
+    HemicubeSettings hemicube;
+    bool hybrid;
+    Repair repair;
+};
+
+HemicubeSettings hemicubes(std::uint32_t eyes, std::uint32_t near, std::uint32_t resolution) {
+    HemicubeSettings settings;
+    settings.eye_points = eyes;
+    settings.near_eye_points = near;
+    settings.resolution = resolution;
+    return settings;
+}
+
+/// Over how many cases an estimate held, and how far it was off.
+class Tally {
+public:
+    void add(double truth, double estimate) { ratios_.push_back(estimate > 0.0 ? truth / estimate : 1e9); }
+    [[nodiscard]] double held() const {
+        return static_cast<double>(
+                   std::count_if(ratios_.begin(), ratios_.end(), [](double r) { return r < 2.0; })) /
+               static_cast<double>(ratios_.size());
+    }
+    [[nodiscard]] double median() const {
+        auto sorted = ratios_;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted[sorted.size() / 2];
+    }
+    [[nodiscard]] double largest() const { return *std::max_element(ratios_.begin(), ratios_.end()); }
+
+private:
+    std::vector<double> ratios_;
+};
+
+struct Tallies {
+    Tally rms, max, row_rms, rows, radiosity, patches;
+};
+
+/// One method on one scene: computes, estimates, and compares the estimate with the truth.
+void judge(const KnownScene& scene, const Method& method, std::uint64_t seed, Tallies& tallies) {
+    HemicubeSettings settings = method.hemicube;
+    settings.seed = seed;
+    settings.quantity = method.hybrid ? RowQuantity::visibility : RowQuantity::form_factors;
+    std::vector<std::uint32_t> patches(scene.mesh.size());
+    std::iota(patches.begin(), patches.end(), 0u);
+    const auto engine = make_hemicube_engine(scene.mesh, settings, {"osmesa", 1, ""});
+    FormFactorMatrix factors = method.hybrid ? compute_hybrid(*engine, scene.mesh, patches,
+                                                              ExchangeRule::standard, Enclosure::automatic)
+                                             : compute_matrix(*engine, patches);
+    (void)repair(factors, scene.mesh.areas(), method.repair);
+    const auto better = make_hemicube_engine(scene.mesh, reference_settings(settings), {"osmesa", 1, ""});
+    const auto reference = compute_reference(
+        *better, scene.mesh, reference_patches(patches, reference_count(settings, patches.size(), 0.1)));
+    const FactorError error = estimate_factor_error(factors, reference);
+
+    double rows = 0.0;
+    double largest = 0.0;
+    std::uint64_t pairs = 0;
+    for (const std::uint32_t i : patches) {
+        std::vector<double> difference(scene.mesh.size(), 0.0);
+        const RowView truth = scene.factors.row(i);
+        const RowView found = factors.row(i);
+        for (std::size_t k = 0; k < truth.columns.size(); ++k) {
+            difference[truth.columns[k]] -= double{truth.values[k]};
+        }
+        for (std::size_t k = 0; k < found.columns.size(); ++k) {
+            difference[found.columns[k]] += double{found.values[k]};
+        }
+        double square = 0.0;
+        for (const double d : difference) {
+            square += d * d;
+            largest = std::max(largest, std::abs(d));
+        }
+        pairs += truth.columns.size();
+        rows += square;
+        tallies.rows.add(std::sqrt(square), error.rows[i]);
+    }
+    tallies.row_rms.add(std::sqrt(rows / scene.mesh.size()), error.row_rms);
+    tallies.rms.add(std::sqrt(rows / static_cast<double>(pairs)), error.rms);
+    tallies.max.add(largest, error.max);
+
+    const auto radiosity = scene.solve(factors);
+    const RadiosityError shown =
+        estimate_radiosity_error(factors, reference, scene.mesh.areas(), 1, scene.reflectances, radiosity);
+    double errors = 0.0;
+    double all = 0.0;
+    for (const std::uint32_t i : patches) {
+        const double d = radiosity[i] - scene.radiosity[i];
+        const double area = scene.mesh.areas()[i];
+        errors += area * d * d;
+        if (scene.reflectances[i] > 0.0) {
+            all += area * scene.radiosity[i] * scene.radiosity[i];
+            tallies.patches.add(std::abs(d), shown.patches[i]);
+        }
+    }
+    tallies.radiosity.add(std::sqrt(errors / all), shown.rms);
+}
+
+void check(const Tallies& tallies) {
+    const std::pair<const char*, const Tally*> all[]{{"rms", &tallies.rms},
+                                                     {"max", &tallies.max},
+                                                     {"row rms", &tallies.row_rms},
+                                                     {"rows", &tallies.rows},
+                                                     {"radiosity", &tallies.radiosity},
+                                                     {"patches", &tallies.patches}};
+    for (const auto& [name, tally] : all) {
+        INFO(name << ": held in " << tally->held() << ", median " << tally->median() << ", largest "
+                  << tally->largest());
+        // The error of a single patch's radiosity is one draw from what is estimated.
+        CHECK(tally->held() >= (tally == &tallies.patches ? 0.9 : 0.95));
+        CHECK(tally->median() > 0.1);
+    }
+}
+
+const std::vector<Method> methods{
+    {"plain 64", hemicubes(1, 1, 64), false, Repair::none},
+    {"plain 128", hemicubes(1, 1, 128), false, Repair::none},
+    {"plain 4x64", hemicubes(4, 1, 64), false, Repair::none},
+    {"plain closed", hemicubes(1, 1, 64), false, Repair::closure},
+    {"fast", hemicubes(1, 4, 64), true, Repair::none},
+    {"fast closed", hemicubes(1, 4, 64), true, Repair::closure},
+    {"default", hemicubes(4, 16, 64), true, Repair::none},
+    {"default closed", hemicubes(4, 16, 64), true, Repair::closure},
+};
+
+void judge_all(const KnownScene& scene, const std::vector<std::size_t>& chosen, std::uint64_t seeds) {
+    Tallies tallies;
+    for (const std::size_t m : chosen) {
+        for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+            judge(scene, methods[m], seed, tallies);
+        }
+    }
+    check(tallies);
+}
+
+} // namespace
+
+TEST_CASE("error_estimate: holds in a room with two boxes", "[engine][gl]") {
+    for (const double reflectance : {0.5, 0.9}) {
+        const KnownScene scene(room_with_turned_boxes(6, 2, 2), {"first", "second"}, 10, reflectance);
+        judge_all(scene, {0, 1, 2, 3, 4, 5, 6, 7}, 3);
+    }
+}
+
+TEST_CASE("error_estimate: holds in a cube", "[engine][gl]") {
+    Scene cube = empty_scene();
+    add_room(cube, Vec3(0.0), Vec3(1.0), 8);
+    judge_all(KnownScene(cube, {}, 1, 0.5), {0, 1, 2, 3, 4, 5, 6, 7}, 3);
+}
+
+TEST_CASE("error_estimate: holds between two plates", "[engine][gl]") {
+    Scene plates = empty_scene();
+    add_polygon(plates, "lower", {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, {8, 8});
+    add_polygon(plates, "upper", {Vec3(0, 0, 0.3), Vec3(0, 1, 0.3), Vec3(1, 1, 0.3), Vec3(1, 0, 0.3)},
+                {8, 8});
+    const KnownScene scene(plates, {}, 1, 0.5);
+    judge_all(scene, {0, 1, 2, 4, 6}, 3);
+}
+
+TEST_CASE("estimate_factor_error: nothing to say where nothing was compared", "[matrix]") {
+    const FormFactorMatrix none(3);
+    CHECK_THROWS_AS(estimate_factor_error(none, none), InvalidArgument);
+    CHECK_THROWS_AS(estimate_factor_error(none, FormFactorMatrix(4)), InvalidArgument);
+    const FormFactorMatrix rows = matrix_of({{0.0, 0.5, 0.25}, {0.5, 0.0, 0.25}, {0.25, 0.25, 0.0}});
+    const FactorError same = estimate_factor_error(rows, rows);
+    CHECK(same.sampled == 3);
+    CHECK(same.rms == 0.0);
+    CHECK(same.max == 0.0);
+    CHECK(same.rows == std::vector<double>(3, 0.0));
+    const FormFactorMatrix other = matrix_of({{0.0, 0.5, 0.25}, {0.5, 0.0, 0.25}, {0.25, 0.5, 0.0}});
+    const FactorError off = estimate_factor_error(other, rows);
+    CHECK(off.rms == Approx(0.25 / std::sqrt(6.0)));
+    CHECK(off.row_rms == Approx(0.25 / std::sqrt(3.0)));
+    CHECK(off.max >= 0.25);
+    const std::vector<double> short_areas(2, 1.0);
+    CHECK_THROWS_AS(estimate_radiosity_error(rows, rows, short_areas, 1, short_areas, short_areas),
+                    InvalidArgument);
+}
+
+TEST_CASE("reference_patches: spread over all patches, each once", "[engine]") {
+    std::vector<std::uint32_t> patches(100);
+    std::iota(patches.begin(), patches.end(), 5u);
+    for (const std::uint32_t count : {0u, 1u, 7u, 99u, 100u, 1000u}) {
+        const auto chosen = reference_patches(patches, count);
+        CHECK(chosen.size() == std::min(count, 100u));
+        CHECK(std::is_sorted(chosen.begin(), chosen.end()));
+        CHECK(std::adjacent_find(chosen.begin(), chosen.end()) == chosen.end());
+        CHECK((chosen.empty() || (chosen.front() >= 5 && chosen.back() < 105)));
+    }
+    CHECK(reference_patches(patches, 1000) == patches);
+    CHECK(reference_count(hemicubes(1, 1, 128), 5, 0.1) == 5);
+    CHECK(reference_count(hemicubes(1, 1, 128), 100'000, 0.1) == 32);
+}
