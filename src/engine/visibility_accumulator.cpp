@@ -239,10 +239,6 @@ void VisibilityAccumulator::set(std::uint32_t id, Tally visible, Tally hidden) {
         return;
     }
     const std::uint32_t patch = item - item_first_patch;
-    if (evidence_[patch] != 0) {
-        return; // an id beyond a cut triangle's hypotenuse, which stands for a patch that has its own before
-                // it
-    }
     const bool clear = texels(hidden) == 0 && count >= clear_texels;
     // Texels at the horizon may weigh nothing; then their number must do.
     const double covered = weight(visible) + weight(hidden);
