@@ -34,7 +34,7 @@ enum class ExchangeRule {
 /// Gauss rules whose order follows from the distance of the two edges. Parallel edges and edges that touch
 /// are done in closed form. No length is compared with a constant: results do not depend on scale, and
 /// depend on the distance from the origin only as far as the corners were rounded there.
-/// Thread-safe. Memory: about 450 bytes a patch.
+/// Thread-safe. Memory: about 300 bytes a patch.
 /// Source: E. M. Sparrow, "A New and Simpler Formulation for Radiative Angle Factors", J. Heat Transfer 85,
 /// 1963; P. Schröder, P. Hanrahan, "On the Form Factor between Two Polygons", SIGGRAPH 1993.
 class ExchangeAreas {
