@@ -71,7 +71,8 @@ void judge(Measurement& measurement, const LoadedScene& loaded, const FormFactor
         measurement.radiosity =
             estimate_radiosity_error(rows, reference.rows, loaded.mesh.areas(),
                                      static_cast<std::uint32_t>(loaded.scene.channels.size()),
-                                     patch_reflectance(loaded.scene, loaded.mesh), radiosity)
+                                     patch_reflectance(loaded.scene, loaded.mesh),
+                                     patch_exitance(loaded.scene, loaded.mesh), radiosity)
                 .rms;
     }
 }

@@ -177,7 +177,8 @@ private:
             entry.measurement->radiosity =
                 estimate_radiosity_error(rows.factors, reference_.rows, loaded_.mesh.areas(),
                                          static_cast<std::uint32_t>(loaded_.scene.channels.size()),
-                                         patch_reflectance(loaded_.scene, loaded_.mesh), radiosity_)
+                                         patch_reflectance(loaded_.scene, loaded_.mesh),
+                                         patch_exitance(loaded_.scene, loaded_.mesh), radiosity_)
                     .rms;
         }
     }
@@ -238,7 +239,7 @@ std::string report(const Trade& trade, const LoadedScene& loaded) {
     text += "\n" + table.text() + "\n";
     text +=
         "* nothing is both faster and better. rms, max: of a factor; row: root of a row's sum of squares;\n"
-        "radiosity: relative. Seconds are for all rows";
+        "radiosity: of what is reflected, relative. Seconds are for all rows";
     text += sampled ? fmt::format("; where only a sample of {} was computed, in proportion, and a hybrid's\n"
                                   "errors are then upper ones: its pairs were seen from one end, and not "
                                   "closed.\n",

@@ -101,8 +101,8 @@ private:
     double from_, upto_, low_ = 0.0, high_ = 1.0;
 };
 
-constexpr std::array<const char*, 6> colours{"#b5442c", "#1f6f8b", "#7a7a2a",
-                                             "#7b4a94", "#3d7a46", "#555555"};
+constexpr std::array<const char*, 8> colours{"#b5442c", "#1f6f8b", "#7a7a2a", "#7b4a94",
+                                             "#3d7a46", "#555555", "#b0407f", "#a06a10"};
 
 class Plot {
 public:
@@ -188,10 +188,10 @@ private:
             svg_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", x + 5.0,
                                 y - 4.0, marker, colour_of(family));
             write(x + 15.0, y, "start", "#222222", family);
-            x += 15.0 + text_width(family) + 22.0;
+            x += 15.0 + text_width(family) + 12.0;
         }
         line(x, y - 4.0, x + 22.0, y - 4.0, "#bbbbbb", 5.0);
-        write(x + 28.0, y, "start", "#222222", "nothing is both faster and better");
+        write(x + 28.0, y, "start", "#222222", "the best for their time");
     }
 
     void front() {

@@ -279,16 +279,17 @@ FactorError estimate_factor_error(const FormFactorMatrix& factors, const FormFac
 
 RadiosityError estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
                                         std::span<const double> areas, std::uint32_t channels,
-                                        std::span<const double> reflectance,
+                                        std::span<const double> reflectance, std::span<const double> exitance,
                                         std::span<const double> radiosity,
                                         std::span<const std::uint32_t> columns) {
     const std::uint32_t size = factors.size();
     const std::size_t values = std::size_t{size} * channels;
-    if (areas.size() != size || reflectance.size() != values || radiosity.size() != values) {
-        throw InvalidArgument(fmt::format("{} areas, {} reflectances and {} radiosities for {} patches of {} "
-                                          "channels",
-                                          areas.size(), reflectance.size(), radiosity.size(), size,
-                                          channels));
+    if (areas.size() != size || reflectance.size() != values || exitance.size() != values ||
+        radiosity.size() != values) {
+        throw InvalidArgument(fmt::format("{} areas, {} reflectances, {} exitances and {} radiosities for {} "
+                                          "patches of {} channels",
+                                          areas.size(), reflectance.size(), exitance.size(), radiosity.size(),
+                                          size, channels));
     }
     const auto all_sampled = sampled_rows(factors, reference);
     RadiosityError estimate;
@@ -310,17 +311,27 @@ RadiosityError estimate_radiosity_error(const FormFactorMatrix& factors, const F
         const Variances variances = irradiance_variances(factors, reference, columns, sampled, areas, b);
         const double common = variances.common * amplification(factors, areas, rho);
         double errors = 0.0;
-        double all = 0.0;
+        double reflected = 0.0;
+        double known_area = 0.0;
+        double area = 0.0;
         for (std::uint32_t i = 0; i < size; ++i) {
-            if (!factors.known(i) || !(rho[i] > 0.0)) {
+            if (!(rho[i] > 0.0)) {
                 continue;
             }
+            const double part = b[i] - exitance[std::size_t{i} * channels + c];
+            reflected += areas[i] * part * part;
+            area += areas[i];
+            if (!factors.known(i)) {
+                continue;
+            }
+            known_area += areas[i];
             estimate.patches[std::size_t{i} * channels + c] =
                 rho[i] * std::sqrt(variances.largest[i] + common * common);
             errors += areas[i] * rho[i] * rho[i] * (variances.mean[i] + common * common);
-            all += areas[i] * b[i] * b[i];
         }
-        estimate.rms = std::max(estimate.rms, all > 0.0 ? std::sqrt(errors / all) : 0.0);
+        if (reflected > 0.0 && known_area > 0.0) {
+            estimate.rms = std::max(estimate.rms, std::sqrt(errors * area / known_area / reflected));
+        }
     }
     return estimate;
 }
