@@ -154,7 +154,7 @@ void add_drawing(CLI::App& app, RowOptions& rows) {
 void add_rows(CLI::App& app, RowOptions& rows) {
     Options options(app, "Form factors");
     options.value("--preset", "NAME",
-                  "plain: the textbook hemicube; fast, default, exact: exact factors times visibility",
+                  "fast, default or exact: exact factors times visibility; plain: the textbook hemicube",
                   [&rows](const std::string& text) {
                       (void)parse_choice("--preset", text, Words{"plain", "fast", "default", "exact"});
                       rows.preset = text;

@@ -40,7 +40,7 @@ struct SceneOptions {
 
 struct RowOptions {
     std::string device = "auto";
-    std::string preset = "plain";
+    std::string preset = "default";
     std::string method = "hemicube";
     std::optional<std::uint32_t> eye_points;
     std::optional<std::uint32_t> resolution;

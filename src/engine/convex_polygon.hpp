@@ -14,7 +14,8 @@ struct Plane {
     Vec3 normal;
 };
 
-/// A convex polygon of up to six corners: a patch after up to two cuts.
+/// A convex polygon: a patch, or what a plane leaves of it. Six corners are the most that four can become
+/// where rounding decides on which side they are.
 struct ConvexPolygon {
     std::array<Vec3, 6> points;
     std::size_t count = 0;
@@ -42,7 +43,7 @@ struct ConvexPolygon {
     }
 };
 
-/// The part of a polygon of up to five corners in front of a plane; fewer than three corners: nothing.
+/// The part of a polygon of three or four corners in front of a plane; fewer than three corners: nothing.
 [[nodiscard]] inline ConvexPolygon clip(std::span<const Vec3> polygon, const Plane& plane) {
     ConvexPolygon front;
     for (std::size_t k = 0; k < polygon.size(); ++k) {
