@@ -105,13 +105,16 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
         ->group("Scene");
 }
 
-void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows) {
+void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows, bool checks = true) {
     Options options(app, "Scene");
     options.value("--enclosure", "KIND", "auto, closed or open; overrides the scene",
                   [&scene](const std::string& text) {
                       scene.enclosure = static_cast<Enclosure>(
                           parse_choice("--enclosure", text, Words{"auto", "closed", "open"}));
                   });
+    if (!checks) {
+        return;
+    }
     options.value(
         "--max-row-error", "T", "share of a row that may leak or be blocked (1e-4)",
         [&rows](const std::string& text) { rows.max_row_error = parse_positive("--max-row-error", text); });
@@ -132,6 +135,20 @@ void add_device(CLI::App& app, std::string& device) {
                    }
                    device = text;
                });
+}
+
+/// How hemicubes are drawn, whatever their settings.
+void add_drawing(CLI::App& app, RowOptions& rows) {
+    Options options(app, "Form factors");
+    options.value("--seed", "N", "of the rotation of every hemicube (0)", [&rows](const std::string& text) {
+        rows.seed = parse_whole("--seed", text, 0, any_whole);
+    });
+    options.flag("--no-merge", rows.merge, "draw every face by itself, even in lattices of coplanar faces",
+                 false);
+    add_device(app, rows.device);
+    Options(app, "Computing")
+        .value("--jobs", "N", "worker processes on software OpenGL (one per core)",
+               [&rows](const std::string& text) { rows.jobs = to_index("--jobs", text, 1, 1024); });
 }
 
 void add_rows(CLI::App& app, RowOptions& rows) {
@@ -161,15 +178,7 @@ void add_rows(CLI::App& app, RowOptions& rows) {
                                                             text, *rows.resolution + 1));
                       }
                   });
-    options.value("--seed", "N", "of the rotation of every hemicube (0)", [&rows](const std::string& text) {
-        rows.seed = parse_whole("--seed", text, 0, any_whole);
-    });
-    options.flag("--no-merge", rows.merge, "draw every face by itself, even in lattices of coplanar faces",
-                 false);
-    add_device(app, rows.device);
-    Options(app, "Computing")
-        .value("--jobs", "N", "worker processes on software OpenGL (one per core)",
-               [&rows](const std::string& text) { rows.jobs = to_index("--jobs", text, 1, 1024); });
+    add_drawing(app, rows);
 }
 
 void add_repair(CLI::App& app, std::optional<Repair>& repair) {
@@ -324,6 +333,26 @@ void add_check(CLI::App& app, CheckArguments& a) {
         "  hemi check room.hff --max-row-error 1e-3 --json");
 }
 
+void add_trade(CLI::App& app, TradeArguments& a) {
+    add_scene(app, a.scene);
+    add_enclosure(app, a.scene, a.rows, false);
+    add_drawing(app, a.rows);
+    add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
+    Options(app, "Output")
+        .path("-o,--output", "PLOT.svg", a.output, "error against seconds as a drawing; - for stdout");
+    Options(app, "Computing")
+        .value("--budget", "TIME", "about how long it may take in all, such as 30s or 5m (60s)",
+               [&a](const std::string& text) { a.budget = parse_duration("--budget", text); });
+    add_common(app, a.common);
+    app.footer(
+        "Tries methods, presets, eye points and resolutions on this scene, and compares them with the\n"
+        "best rows that the budget affords. The budget is overdrawn by one measurement at most.\n\n"
+        "Examples:\n"
+        "  hemi trade scenes/cube.json -o cube.svg\n"
+        "  hemi trade room.obj --patch-size 0.1 --budget 5m --json");
+}
+
 void add_render(CLI::App& app, RenderArguments& a) {
     add_positional(app, "RESULT", a.input, "stored solution: .hres");
     Options output(app, "Output");
@@ -406,7 +435,7 @@ Words option_names(const CLI::App& app) {
 }
 
 [[noreturn]] void refuse_command(const CLI::App& app, const std::string& word) {
-    if (word == "trade" || word == "bake") {
+    if (word == "bake") {
         throw InvalidArgument(fmt::format("this build does not have `hemi {}` yet", word));
     }
     Words names;
@@ -482,6 +511,7 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
     add_command(app, "solve", "Form factors, radiosity and a picture of a scene", add_solve, chosen);
     add_command(app, "factors", "Form factors only", add_factors, chosen);
     add_command(app, "check", "Which rows are wrong, and why", add_check, chosen);
+    add_command(app, "trade", "Speed against accuracy, measured on a scene", add_trade, chosen);
     add_command(app, "render", "Picture of a stored solution", add_render, chosen);
     add_command(app, "view", "Window with an orbiting camera", add_view, chosen);
     add_command(app, "convert", "Form factors from one file format to another", add_convert, chosen);

@@ -92,6 +92,14 @@ struct CheckArguments {
     RowOptions rows;
 };
 
+struct TradeArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    std::optional<std::filesystem::path> output;
+    double budget = 60.0; ///< seconds
+};
+
 struct RenderArguments {
     CommonOptions common;
     std::filesystem::path input;
@@ -126,8 +134,9 @@ struct DevicesArguments {
     CommonOptions common;
 };
 
-using Arguments = std::variant<SolveArguments, FactorsArguments, CheckArguments, RenderArguments,
-                               ViewArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+using Arguments =
+    std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments, RenderArguments,
+                 ViewArguments, ConvertArguments, InfoArguments, DevicesArguments>;
 
 /// Text that was asked for instead of work: help or the version.
 struct Answer {

@@ -10,6 +10,7 @@ namespace hemi::cli {
 [[nodiscard]] ExitStatus run(const SolveArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const CheckArguments& arguments, const Terminal& terminal);
+[[nodiscard]] ExitStatus run(const TradeArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const RenderArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ViewArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal);

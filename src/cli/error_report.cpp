@@ -47,7 +47,8 @@ std::optional<RadiosityError> estimate_solution(const LoadedScene& loaded, const
         return {};
     }
     return estimate_radiosity_error(file.factors, file.reference, loaded.mesh.areas(), solution.channels,
-                                    patch_reflectance(loaded.scene, loaded.mesh), solution.radiosity);
+                                    patch_reflectance(loaded.scene, loaded.mesh), solution.exitance,
+                                    solution.radiosity);
 }
 
 std::string chosen_summary(const std::string& chosen_for) {
@@ -66,7 +67,7 @@ std::string error_summary(const std::optional<FactorError>& factors,
                                    factors->row_rms, factors->row_max);
     text += summary_line("", rows);
     if (radiosity) {
-        text += summary_line("", fmt::format("the radiosity by {:.2g} of itself (rms)", radiosity->rms));
+        text += summary_line("", fmt::format("what is reflected by {:.2g} of itself (rms)", radiosity->rms));
     }
     return text;
 }

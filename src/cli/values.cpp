@@ -114,6 +114,20 @@ std::uint64_t parse_whole(std::string_view option, const std::string& text, std:
     return value;
 }
 
+double parse_duration(std::string_view option, const std::string& text) {
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
+    const auto value = to_number(std::string_view(text).substr(0, digits));
+    const std::string unit = text.substr(digits);
+    const double seconds = unit.empty() || unit == "s"    ? 1.0
+                           : unit == "m" || unit == "min" ? 60.0
+                           : unit == "h"                  ? 3600.0
+                                                          : 0.0;
+    if (!value || !(*value * seconds > 0.0)) {
+        refuse(option, text, "a time such as 60s, 5m or 1h");
+    }
+    return *value * seconds;
+}
+
 std::uint64_t parse_memory(std::string_view option, const std::string& text) {
     const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
     const auto value = to_number(std::string_view(text).substr(0, digits));

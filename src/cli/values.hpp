@@ -21,6 +21,8 @@ namespace hemi::cli {
 /// A whole number from `lower` to `upper`.
 [[nodiscard]] std::uint64_t parse_whole(std::string_view option, const std::string& text, std::uint64_t lower,
                                         std::uint64_t upper);
+/// A time in seconds: a number, with s, m (or min) or h behind it, or bare. Above 0.
+[[nodiscard]] double parse_duration(std::string_view option, const std::string& text);
 /// Memory: a number and K, M, G or T (powers of 1024, as KiB …), KB, MB … (powers of 1000), or bytes.
 [[nodiscard]] std::uint64_t parse_memory(std::string_view option, const std::string& text);
 /// WIDTHxHEIGHT in pixels, each 1 to 16384.

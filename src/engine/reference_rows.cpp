@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint32_t fewest_rows = 12;
 constexpr std::uint32_t most_rows = 32;
 constexpr std::uint32_t most_eye_points = 64;
+constexpr std::uint32_t other_eye_points = 49;
 
 } // namespace
 
@@ -30,8 +31,10 @@ std::vector<std::uint32_t> reference_patches(std::span<const std::uint32_t> patc
 HemicubeSettings reference_settings(const HemicubeSettings& settings) {
     HemicubeSettings better = settings;
     better.quantity = RowQuantity::visibility;
-    better.eye_points = std::clamp<std::uint32_t>(4 * settings.eye_points, 16, most_eye_points);
-    better.near_eye_points = most_eye_points;
+    const bool has_most = std::max(settings.eye_points, settings.near_eye_points) == most_eye_points;
+    const std::uint32_t most = has_most ? other_eye_points : most_eye_points; // never the same places
+    better.eye_points = std::clamp<std::uint32_t>(4 * settings.eye_points, 16, most);
+    better.near_eye_points = most;
     better.resolution = std::max<std::uint32_t>(64, settings.eye_points > 1 ? settings.resolution : 64);
     better.seed = ~settings.seed;
     return better;

@@ -19,9 +19,9 @@ constexpr std::size_t shapes = 3;
 using Shapes = std::array<double, shapes>;
 
 double visibility_of(const RowView& row, std::size_t entry) {
-    return row.visibility.empty() || row.visibility[entry] == visibility_clear
+    return row.visibility.empty()
                ? 1.0
-               : static_cast<double>(row.visibility[entry]) / visibility_clear;
+               : std::max(0.5, static_cast<double>(row.visibility[entry])) / visibility_clear;
 }
 
 /// What the variance of one factor may go like: F, F², and F0² V (1 - V) or F⁴ (of near patches, by how far
@@ -145,20 +145,24 @@ Variances spread(const FormFactorMatrix& factors, std::span<const std::uint32_t>
     return variances;
 }
 
-/// The largest error of any factor: a row's largest goes like its largest factor, or partly hidden factor.
+/// The largest error of any factor: a row's goes like its largest factor, or partly hidden factor, where that
+/// is not too far from the largest of all; beyond, noise does most, and goes like the root.
 /// @param largest  of the rows `sampled`
 double largest_factor_error(const FormFactorMatrix& factors, std::span<const std::uint32_t> sampled,
                             std::span<const double> largest) {
+    constexpr double unseen = 1.5; // the worst of all is not in the sample
+    constexpr double far = 10.0;
     const std::size_t shape = factors.has_visibility() ? 2 : 1;
+    const auto strength = [&](std::uint32_t i) { return std::sqrt(largest_shapes(factors.row(i))[shape]); };
     double strongest = 0.0;
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        strongest = std::max(strongest, largest_shapes(factors.row(i))[shape]);
+        strongest = std::max(strongest, strength(i));
     }
-    constexpr double unseen = 1.5; // the worst of all is not in the sample
     double estimate = 0.0;
     for (std::size_t k = 0; k < sampled.size(); ++k) {
-        const double here = largest_shapes(factors.row(sampled[k]))[shape];
-        estimate = std::max(estimate, here > 0.0 ? largest[k] * std::sqrt(strongest / here) : largest[k]);
+        const double here = strength(sampled[k]);
+        const double reach = here > 0.0 ? strongest / here : 1.0;
+        estimate = std::max(estimate, largest[k] * (reach < far ? reach : std::sqrt(reach)));
     }
     return unseen * estimate;
 }
@@ -227,7 +231,10 @@ double amplification(const FormFactorMatrix& factors, std::span<const double> ar
     double lost = 0.0;
     double reflected = 0.0;
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        const double sum = factors.known(i) ? factors.row(i).sum() : 0.0;
+        if (!factors.known(i)) {
+            continue;
+        }
+        const double sum = factors.row(i).sum();
         lost += areas[i] * (1.0 - reflectance[i] * sum);
         reflected += areas[i] * reflectance[i];
     }
@@ -272,16 +279,17 @@ FactorError estimate_factor_error(const FormFactorMatrix& factors, const FormFac
 
 RadiosityError estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
                                         std::span<const double> areas, std::uint32_t channels,
-                                        std::span<const double> reflectance,
+                                        std::span<const double> reflectance, std::span<const double> exitance,
                                         std::span<const double> radiosity,
                                         std::span<const std::uint32_t> columns) {
     const std::uint32_t size = factors.size();
     const std::size_t values = std::size_t{size} * channels;
-    if (areas.size() != size || reflectance.size() != values || radiosity.size() != values) {
-        throw InvalidArgument(fmt::format("{} areas, {} reflectances and {} radiosities for {} patches of {} "
-                                          "channels",
-                                          areas.size(), reflectance.size(), radiosity.size(), size,
-                                          channels));
+    if (areas.size() != size || reflectance.size() != values || exitance.size() != values ||
+        radiosity.size() != values) {
+        throw InvalidArgument(fmt::format("{} areas, {} reflectances, {} exitances and {} radiosities for {} "
+                                          "patches of {} channels",
+                                          areas.size(), reflectance.size(), exitance.size(), radiosity.size(),
+                                          size, channels));
     }
     const auto all_sampled = sampled_rows(factors, reference);
     RadiosityError estimate;
@@ -303,14 +311,27 @@ RadiosityError estimate_radiosity_error(const FormFactorMatrix& factors, const F
         const Variances variances = irradiance_variances(factors, reference, columns, sampled, areas, b);
         const double common = variances.common * amplification(factors, areas, rho);
         double errors = 0.0;
-        double all = 0.0;
+        double reflected = 0.0;
+        double known_area = 0.0;
+        double area = 0.0;
         for (std::uint32_t i = 0; i < size; ++i) {
+            if (!(rho[i] > 0.0)) {
+                continue;
+            }
+            const double part = b[i] - exitance[std::size_t{i} * channels + c];
+            reflected += areas[i] * part * part;
+            area += areas[i];
+            if (!factors.known(i)) {
+                continue;
+            }
+            known_area += areas[i];
             estimate.patches[std::size_t{i} * channels + c] =
                 rho[i] * std::sqrt(variances.largest[i] + common * common);
             errors += areas[i] * rho[i] * rho[i] * (variances.mean[i] + common * common);
-            all += rho[i] > 0.0 ? areas[i] * b[i] * b[i] : 0.0;
         }
-        estimate.rms = std::max(estimate.rms, all > 0.0 ? std::sqrt(errors / all) : 0.0);
+        if (reflected > 0.0 && known_area > 0.0) {
+            estimate.rms = std::max(estimate.rms, std::sqrt(errors * area / known_area / reflected));
+        }
     }
     return estimate;
 }

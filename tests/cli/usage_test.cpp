@@ -41,7 +41,6 @@ TEST_CASE("Command line: help and version answer on stdout at every level", "[cl
     }
     CHECK(run_hemi({"help"}).out == help.out);
     CHECK(run_hemi({"help", "solve"}).out == run_hemi({"solve", "--help"}).out);
-    CHECK_FALSE(help.out_has("trade"));
     CHECK_FALSE(help.out_has("bake"));
 }
 
@@ -57,7 +56,6 @@ TEST_CASE("Command line: a mistyped word gets the nearest right one", "[cli]") {
 }
 
 TEST_CASE("Command line: what does not exist yet is said to be so", "[cli]") {
-    refuses({"trade", "x.json"}, "this build does not have `hemi trade` yet");
     refuses({"bake", "x.json"}, "this build does not have `hemi bake` yet");
     refuses({"solve", "x.json", "--preset", "fast"}, "does not exist yet; plain is the only one");
     refuses({"solve", "x.json", "--preset", "exact"}, "does not exist yet");

@@ -149,8 +149,8 @@ void judge(const KnownScene& scene, const Method& method, std::uint64_t seed, Ta
     tallies.max.add(largest, error.max);
 
     const auto radiosity = scene.solve(factors);
-    const RadiosityError shown =
-        estimate_radiosity_error(factors, reference, scene.mesh.areas(), 1, scene.reflectances, radiosity);
+    const RadiosityError shown = estimate_radiosity_error(factors, reference, scene.mesh.areas(), 1,
+                                                          scene.reflectances, scene.exitance, radiosity);
     double errors = 0.0;
     double all = 0.0;
     for (const std::uint32_t i : patches) {
@@ -158,7 +158,8 @@ void judge(const KnownScene& scene, const Method& method, std::uint64_t seed, Ta
         const double area = scene.mesh.areas()[i];
         errors += area * d * d;
         if (scene.reflectances[i] > 0.0) {
-            all += area * scene.radiosity[i] * scene.radiosity[i];
+            const double reflected = scene.radiosity[i] - scene.exitance[i];
+            all += area * reflected * reflected;
             tallies.patches.add(std::abs(d), shown.patches[i]);
         }
     }
@@ -242,8 +243,9 @@ TEST_CASE("estimate_factor_error: nothing to say where nothing was compared", "[
     CHECK(off.row_rms == Approx(0.25 / std::sqrt(3.0)));
     CHECK(off.max >= 0.25);
     const std::vector<double> short_areas(2, 1.0);
-    CHECK_THROWS_AS(estimate_radiosity_error(rows, rows, short_areas, 1, short_areas, short_areas),
-                    InvalidArgument);
+    CHECK_THROWS_AS(
+        estimate_radiosity_error(rows, rows, short_areas, 1, short_areas, short_areas, short_areas),
+        InvalidArgument);
 }
 
 TEST_CASE("reference_patches: spread over all patches, each once", "[engine]") {

@@ -15,8 +15,9 @@ namespace hemi {
 [[nodiscard]] std::vector<std::uint32_t> reference_patches(std::span<const std::uint32_t> patches,
                                                            std::uint32_t count);
 
-/// Visibility by other and better eyes than those of `settings`: four times as many, at least 16, turned
-/// otherwise. Rotations alone do not see what one eye point a patch gets wrong.
+/// Visibility by other and better eyes than those of `settings`: four times as many, from 16 to 64, turned
+/// otherwise; where those have 64 themselves, 49 in other places. Rotations alone do not see what one eye
+/// point a patch gets wrong.
 [[nodiscard]] HemicubeSettings reference_settings(const HemicubeSettings& settings);
 
 /// How many rows of reference cost about `share` of all `rows` of `settings`, within 12 to 32 (or `rows`).

@@ -37,7 +37,9 @@ struct FactorError {
 
 /// Estimated error of a radiosity, from the errors of the factors alone: not from patches of finite size.
 struct RadiosityError {
-    double rms = 0.0;            ///< relative, area-weighted, over patches that reflect; the worst channel
+    /// Relative to what is reflected, B - E: both rms, area-weighted, over patches that reflect; the worst
+    /// channel.
+    double rms = 0.0;
     std::vector<double> patches; ///< absolute, of channel c of patch i at [i·channels + c]
 };
 
@@ -47,13 +49,12 @@ struct RadiosityError {
 /// estimate_factor_error, each factor's times B_j², and scaled to what the sample's irradiances are off by.
 /// To that comes what all rows have in common, the sample's mean and that mean's own error, which the scene
 /// amplifies as it does light: by sum A rho / sum A (1 - rho sum_j F).
-/// @param areas  N areas; @param reflectance, radiosity  N·channels
+/// @param areas  N areas; @param reflectance, exitance, radiosity  N·channels
 /// @throws InvalidArgument as estimate_factor_error, and for spans that do not fit.
-[[nodiscard]] RadiosityError estimate_radiosity_error(const FormFactorMatrix& factors,
-                                                      const FormFactorMatrix& reference,
-                                                      std::span<const double> areas, std::uint32_t channels,
-                                                      std::span<const double> reflectance,
-                                                      std::span<const double> radiosity,
-                                                      std::span<const std::uint32_t> columns = {});
+[[nodiscard]] RadiosityError
+estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
+                         std::span<const double> areas, std::uint32_t channels,
+                         std::span<const double> reflectance, std::span<const double> exitance,
+                         std::span<const double> radiosity, std::span<const std::uint32_t> columns = {});
 
 } // namespace hemi

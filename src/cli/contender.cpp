@@ -1,0 +1,200 @@
+#include "cli/contender.hpp"
+
+#include "cli/repair_rows.hpp"
+#include "cli/signals.hpp"
+#include "cli/solution.hpp"
+#include "hemi/core/interrupt.hpp"
+#include "hemi/engine/reference_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hemi::cli {
+
+namespace {
+
+/// Time for all rows from that for some of them.
+class Clock {
+public:
+    Clock(std::size_t taken, std::uint32_t patches, std::size_t count)
+        : taken_(static_cast<double>(taken)), patches_(patches), count_(static_cast<double>(count)) {}
+
+    void rows_done() { rows_ = watch_.seconds(); }
+    /// Rows of a matrix; without what came before the first.
+    [[nodiscard]] double for_rows(double start) const {
+        return start + (watch_.seconds() - start) * count_ / taken_;
+    }
+    /// The hybrid looks from every patch, and then takes each pair once.
+    [[nodiscard]] double for_pairs() const {
+        const double all = count_ * (patches_ - 0.5 * count_);
+        const double some = taken_ * (patches_ - 0.5 * taken_);
+        return rows_ * count_ / taken_ + (watch_.seconds() - rows_) * all / some;
+    }
+
+private:
+    Stopwatch watch_;
+    double rows_ = 0.0;
+    double taken_, patches_, count_;
+};
+
+FormFactorMatrix rows_of(const LoadedScene& loaded, const Contender& contender,
+                         std::span<const std::uint32_t> patches, std::size_t count, double& seconds) {
+    std::unique_ptr<RowProvider> provider;
+    const RowPlan plan = plan_rows(contender.options, loaded.mesh.size());
+    provider = contender.yardstick ? make_yardstick(loaded.mesh, *contender.yardstick)
+                                   : make_engine(loaded.mesh, plan.hemicube, contender.options);
+    // The first row also pays for contexts and workers, which do not grow with the number of rows.
+    const Stopwatch start_watch;
+    provider->rows(patches.first(1), [](std::uint32_t, const RowView&) {});
+    const double start = start_watch.seconds();
+    Clock clock(patches.size(), loaded.mesh.size(), count);
+    const auto rows_done = [&clock](std::size_t, std::size_t) {
+        clock.rows_done();
+        return !interrupted();
+    };
+    if (!contender.yardstick && plan.hybrid) {
+        FormFactorMatrix rows =
+            compute_hybrid(*provider, loaded.mesh, patches, plan.rule, loaded.scene.enclosure, rows_done);
+        seconds = start + clock.for_pairs();
+        return rows;
+    }
+    FormFactorMatrix rows = compute_matrix(*provider, patches, rows_done);
+    seconds = start + clock.for_rows(0.0);
+    return rows;
+}
+
+void judge(Measurement& measurement, const LoadedScene& loaded, const FormFactorMatrix& rows,
+           const Reference& reference, std::span<const double> radiosity) {
+    measurement.error = estimate_factor_error(rows, reference.rows);
+    if (!radiosity.empty()) {
+        measurement.radiosity =
+            estimate_radiosity_error(rows, reference.rows, loaded.mesh.areas(),
+                                     static_cast<std::uint32_t>(loaded.scene.channels.size()),
+                                     patch_reflectance(loaded.scene, loaded.mesh),
+                                     patch_exitance(loaded.scene, loaded.mesh), radiosity)
+                .rms;
+    }
+}
+
+} // namespace
+
+Contender hemicube_contender(const RowOptions& base, const std::string& preset, std::uint32_t patches,
+                             std::uint32_t eye_points, std::uint32_t resolution) {
+    Contender contender;
+    contender.options = base;
+    contender.options.preset = preset;
+    contender.options.method = "hemicube";
+    contender.options.eye_points.reset();
+    contender.options.resolution.reset();
+    contender.command = "--preset " + preset;
+    if (eye_points > 0) {
+        contender.options.eye_points = eye_points;
+        contender.command += fmt::format(" --eye-points {}", eye_points);
+    }
+    if (resolution > 0) {
+        contender.options.resolution = resolution;
+        contender.command += fmt::format(" --resolution {}", resolution);
+    }
+    const HemicubeSettings hemicube = plan_rows(contender.options, patches).hemicube;
+    const std::string eyes_and_texels = fmt::format("{}x{}", hemicube.eye_points, hemicube.resolution);
+    contender.family = preset != "plain" ? "hybrid" : hemicube.eye_points == 1 ? "plain" : "plain, more eyes";
+    contender.settings = preset == "plain" || eye_points + resolution > 0
+                             ? eyes_and_texels
+                             : fmt::format("{} ({})", preset, eyes_and_texels);
+    return contender;
+}
+
+Contender yardstick_contender(const RowOptions& base, Yardstick method, std::uint32_t rays) {
+    Contender contender;
+    contender.options = base;
+    contender.yardstick = YardstickSettings{};
+    contender.yardstick->method = method;
+    contender.yardstick->seed = base.seed.value_or(0);
+    switch (method) {
+    case Yardstick::direct:
+        contender.family = "direct";
+        break;
+    case Yardstick::contour:
+        contender.family = "contour";
+        break;
+    case Yardstick::montecarlo:
+        contender.family = "Monte Carlo";
+        contender.yardstick->rays = rays;
+        contender.settings = fmt::format("{} rays", rays);
+        break;
+    case Yardstick::hemisphere:
+        contender.family = "hemisphere";
+        break;
+    }
+    return contender;
+}
+
+Reference find_reference(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
+                         const RowOptions& base, double seconds) {
+    constexpr std::uint32_t fewest = 8;
+    constexpr std::uint32_t most = 32;
+    const Stopwatch watch;
+    RowOptions best = base;
+    best.preset = "exact";
+    best.eye_points.reset();
+    best.resolution.reset();
+    Reference reference;
+    reference.settings = reference_settings(plan_rows(best, loaded.mesh.size()).hemicube);
+    reference.settings.resolution = std::max(reference.settings.resolution, 128u);
+    const auto engine = make_engine(loaded.mesh, reference.settings, base);
+    const auto first = reference_patches(patches, 1);
+    (void)compute_reference(*engine, loaded.mesh, first); // pays for the start
+    const Stopwatch one;
+    (void)compute_reference(*engine, loaded.mesh, first);
+    const auto count =
+        static_cast<std::uint32_t>(std::clamp<double>(seconds / std::max(one.seconds(), 1e-4), fewest, most));
+    reference.patches = reference_patches(patches, count);
+    reference.rows = compute_reference(*engine, loaded.mesh, reference.patches);
+    reference.renderer = engine->renderer();
+    reference.seconds = watch.seconds();
+    stop_if_interrupted();
+    return reference;
+}
+
+Measurement try_on_sample(const LoadedScene& loaded, const Contender& contender, const Reference& reference,
+                          std::size_t count, std::span<const double> radiosity) {
+    Measurement measurement;
+    const FormFactorMatrix rows = rows_of(loaded, contender, reference.patches, count, measurement.seconds);
+    judge(measurement, loaded, rows, reference, radiosity);
+    stop_if_interrupted();
+    return measurement;
+}
+
+Measurement try_on_all(const LoadedScene& loaded, const Contender& contender, const Reference& reference,
+                       std::span<const double> radiosity, io::FactorFile* rows) {
+    const auto patches = all_patches(loaded.mesh.size());
+    const Stopwatch watch;
+    Measurement measurement;
+    measurement.all_rows = true;
+    io::FactorFile file;
+    if (contender.yardstick) {
+        file.factors = compute_matrix(*make_yardstick(loaded.mesh, *contender.yardstick), patches,
+                                      [](std::size_t, std::size_t) { return !interrupted(); });
+    } else {
+        const Terminal silent(true);
+        file = compute_rows(loaded, patches, contender.options, silent).file;
+        settle_contacts(file);
+        (void)repair_rows(file, contender.options.repair);
+    }
+    measurement.seconds = watch.seconds();
+    judge(measurement, loaded, file.factors, reference, radiosity);
+    if (rows != nullptr) {
+        *rows = std::move(file);
+    }
+    return measurement;
+}
+
+std::uint64_t table_of_pairs(const Contender& contender, std::uint32_t patches, std::size_t rows) {
+    constexpr std::uint64_t bytes_a_pair = 4; // while both tables are there
+    return contender.yardstick || !plan_rows(contender.options, patches).hybrid
+               ? 0
+               : bytes_a_pair * patches * static_cast<std::uint64_t>(rows);
+}
+
+} // namespace hemi::cli
