@@ -141,6 +141,7 @@ Reference find_reference(const LoadedScene& loaded, std::span<const std::uint32_
     best.resolution.reset();
     Reference reference;
     reference.settings = reference_settings(plan_rows(best, loaded.mesh.size()).hemicube);
+    reference.settings.eye_points = reference.settings.near_eye_points; // as many as there can be
     reference.settings.resolution = std::max(reference.settings.resolution, 128u);
     const auto engine = make_engine(loaded.mesh, reference.settings, base);
     const auto first = reference_patches(patches, 1);
