@@ -127,6 +127,14 @@ std::string to_text(const Findings& findings, const RowRepair& repair, const Pat
                         ? "they meet back faces: something cuts through them or stands open nearby"
                         : "they meet back faces: see what is turned round",
                     names, true);
+    text += section("straddled", findings.straddled,
+                    "something stands on part of them; smaller patches, or a border along its outline, tell "
+                    "that part from the rest. The share under it",
+                    names, true);
+    text += section("near", findings.near,
+                    "a surface hovers close above them; --preset default takes up to 16 sample points there, "
+                    "exact up to 64, and smaller patches help. Its distance in patch sizes",
+                    names, true);
     if (findings.all_known) {
         text += turned_text(findings, names);
         text += section("unseen", findings.unseen, "no patch sees them", names, false);
@@ -182,6 +190,8 @@ Json to_json(const Findings& findings, const RowRepair& repair, const io::Factor
             {"leaks", section_json(findings.leaks, names, true)},
             {"covered", section_json(findings.covered, names, false)},
             {"blocked", section_json(findings.blocked, names, true)},
+            {"straddled", section_json(findings.straddled, names, true)},
+            {"near", section_json(findings.near, names, true)},
             {"turned", turned},
             {"unseen", findings.all_known ? section_json(findings.unseen, names, false) : Json(nullptr)},
             {"max_row_error", max_row_error},

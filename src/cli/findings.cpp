@@ -1,6 +1,7 @@
 #include "cli/findings.hpp"
 
 #include "cli/report.hpp"
+#include "hemi/scene/near_surface.hpp"
 
 #include <fmt/format.h>
 
@@ -125,6 +126,26 @@ void look_at_columns(Findings& findings, const io::FactorFile& file, const Patch
     }
 }
 
+/// Tells patches that something stands on from those that meet back faces for no such reason.
+void look_at_near_surfaces(Findings& findings, const PatchMesh& mesh) {
+    for (const NearSurface& near : find_near_surfaces(mesh)) {
+        const auto blocked =
+            std::find_if(findings.blocked.begin(), findings.blocked.end(),
+                         [&near](const PatchFinding& finding) { return finding.patch == near.patch; });
+        if (blocked != findings.blocked.end()) {
+            findings.straddled.push_back(*blocked);
+            findings.blocked.erase(blocked);
+        } else if (!std::any_of(
+                       findings.covered.begin(), findings.covered.end(),
+                       [&near](const PatchFinding& finding) { return finding.patch == near.patch; })) {
+            findings.near.push_back({near.patch, near.gap});
+        }
+    }
+    sort_worst_first(findings.straddled);
+    std::stable_sort(findings.near.begin(), findings.near.end(),
+                     [](const PatchFinding& a, const PatchFinding& b) { return a.share < b.share; });
+}
+
 void judge(Findings& findings, double max_row_error) {
     const auto fail = [&findings](std::size_t count, std::string_view one, std::string_view many) {
         if (count > 0) {
@@ -154,6 +175,9 @@ Findings find_defects(const io::FactorFile& file, const PatchMesh* mesh, double 
     look_at_rows(findings, file.factors, max_row_error);
     if (findings.all_known) {
         look_at_columns(findings, file, mesh);
+    }
+    if (mesh != nullptr) {
+        look_at_near_surfaces(findings, *mesh);
     }
     judge(findings, max_row_error);
     return findings;

@@ -39,11 +39,13 @@ struct Findings {
     bool declared = false; ///< the enclosure was declared, closed or open
     EnclosureVerdict enclosure = EnclosureVerdict::open;
     double largest_factor = 0.0;
-    std::uint64_t outside_bounds = 0;  ///< entries above 1, or rows whose sum is
-    std::vector<PatchFinding> leaks;   ///< closed: e_i above the limit; nearly closed: e_i > 0; worst first
-    std::vector<PatchFinding> covered; ///< b_i > covered_above: the centre lies under or inside something
-    std::vector<PatchFinding> blocked; ///< uncovered, b_i above the limit, worst first
-    std::vector<PatchFinding> unseen;  ///< no patch sees them, though they are not covered
+    std::uint64_t outside_bounds = 0;    ///< entries above 1, or rows whose sum is
+    std::vector<PatchFinding> leaks;     ///< closed: e_i above the limit; nearly closed: e_i > 0; worst first
+    std::vector<PatchFinding> covered;   ///< b_i > covered_above: the centre lies under or inside something
+    std::vector<PatchFinding> blocked;   ///< uncovered, b_i above the limit, worst first
+    std::vector<PatchFinding> straddled; ///< uncovered, b_i above the limit, and a surface stands on them
+    std::vector<PatchFinding> near;      ///< a surface hovers close above: share is the gap in patch sizes
+    std::vector<PatchFinding> unseen;    ///< no patch sees them, though they are not covered
     std::vector<TurnedGroup> turned;
     std::vector<std::string> failures; ///< what is out of tolerance; empty: nothing
 };

@@ -191,8 +191,15 @@ inline Outcome run_hemi(const Words& arguments, const Words& environment) {
     return Run(arguments, environment).wait();
 }
 
+
 inline Words quick(Words words) {
-    words.insert(words.end(), {"--device", "osmesa", "--jobs", "1", "--resolution", "64"});
+    const bool chosen = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+        return word == "--preset" || word == "--method" || word == "--error-target";
+    });
+    if (!chosen) {
+        words.insert(words.end(), {"--preset", "plain", "--resolution", "64"});
+    }
+    words.insert(words.end(), {"--device", "osmesa", "--jobs", "1"});
     return words;
 }
 
