@@ -197,9 +197,17 @@ void add_repair(CLI::App& app, std::optional<Repair>& repair) {
                });
 }
 
+/// Estimates of errors, and settings chosen by them. After add_rows.
 void add_estimate(CLI::App& app, RowOptions& rows) {
-    Options(app, "Form factors")
-        .flag("--no-estimate", rows.estimate, "leave out the estimate of errors, a tenth of the work", false);
+    Options options(app, "Form factors");
+    options.flag("--no-estimate", rows.estimate, "leave out the estimate of errors, a tenth of the work",
+                 false);
+    auto* target = options.value(
+        "--error-target", "T", "find the cheapest settings by which the estimated error is T at most",
+        [&rows](const std::string& text) { rows.error_target = parse_positive("--error-target", text); });
+    for (const char* name : {"--preset", "--method", "--eye-points", "--resolution", "--no-estimate"}) {
+        target->excludes(app.get_option(name));
+    }
 }
 
 void add_max_memory(CLI::App& app, RowOptions& rows) {
@@ -314,6 +322,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     output.flag("--by-group", a.by_group, "sum over named groups: a table, or with -o FILE.csv the file");
     row->excludes(file);
     row->excludes(app.get_option("--by-group"));
+    row->excludes(app.get_option("--error-target"));
     auto* point = output.value(
         "--from-point", "X,Y,Z,NX,NY,NZ",
         "factors from a surface element at a point with a normal to every patch, analytic, largest first",
@@ -511,6 +520,7 @@ void check_method(const RowOptions& rows, const std::vector<std::string>& given)
         {"--eye-points", {"hemicube"}},
         {"--no-merge", {"hemicube"}},
         {"--jobs", {"hemicube"}},
+        {"--error-target", {"hemicube"}},
     };
     for (const std::string& option : given) {
         const auto found = methods_of.find(option);

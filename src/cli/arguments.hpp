@@ -50,8 +50,9 @@ struct RowOptions {
     std::uint32_t jobs = 0;                  ///< 0: one per core
     std::optional<std::uint64_t> max_memory; ///< bytes
     double max_row_error = 1e-4;
-    std::optional<Repair> repair; ///< none: what suits the rows
-    bool estimate = true;         ///< of errors, from a sample of better rows
+    std::optional<Repair> repair;       ///< none: what suits the rows
+    bool estimate = true;               ///< of errors, from a sample of better rows
+    std::optional<double> error_target; ///< the program chooses the settings
 };
 
 struct PictureOptions {

@@ -14,53 +14,49 @@ namespace hemi::cli {
 
 namespace {
 
-/// Time for all rows from that for some of them.
-class Clock {
-public:
-    Clock(std::size_t taken, std::uint32_t patches, std::size_t count)
-        : taken_(static_cast<double>(taken)), patches_(patches), count_(static_cast<double>(count)) {}
-
-    void rows_done() { rows_ = watch_.seconds(); }
-    /// Rows of a matrix; without what came before the first.
-    [[nodiscard]] double for_rows(double start) const {
-        return start + (watch_.seconds() - start) * count_ / taken_;
+/// Seconds that one row takes of many: where the sample went by in a moment, of more rows, so that workers
+/// and batches are as busy as they will be.
+double seconds_a_row(RowProvider& provider, std::size_t sampled, double seconds) {
+    constexpr double long_enough = 0.4;
+    const auto all = all_patches(provider.size());
+    const double one = seconds / static_cast<double>(sampled);
+    const auto more = static_cast<std::uint32_t>(std::min<double>(long_enough / std::max(one, 1e-6), 1024.0));
+    if (more <= sampled || all.size() <= sampled) {
+        return one;
     }
-    /// The hybrid looks from every patch, and then takes each pair once.
-    [[nodiscard]] double for_pairs() const {
-        const double all = count_ * (patches_ - 0.5 * count_);
-        const double some = taken_ * (patches_ - 0.5 * taken_);
-        return rows_ * count_ / taken_ + (watch_.seconds() - rows_) * all / some;
-    }
+    const auto patches = reference_patches(all, more);
+    const Stopwatch watch;
+    provider.rows(patches, [](std::uint32_t, const RowView&) {});
+    return watch.seconds() / static_cast<double>(patches.size());
+}
 
-private:
-    Stopwatch watch_;
-    double rows_ = 0.0;
-    double taken_, patches_, count_;
-};
-
+/// @param count    of rows that `seconds` are to be for
 FormFactorMatrix rows_of(const LoadedScene& loaded, const Contender& contender,
                          std::span<const std::uint32_t> patches, std::size_t count, double& seconds) {
-    std::unique_ptr<RowProvider> provider;
     const RowPlan plan = plan_rows(contender.options, loaded.mesh.size());
-    provider = contender.yardstick ? make_yardstick(loaded.mesh, *contender.yardstick)
-                                   : make_engine(loaded.mesh, plan.hemicube, contender.options);
+    const auto provider = contender.yardstick ? make_yardstick(loaded.mesh, *contender.yardstick)
+                                              : make_engine(loaded.mesh, plan.hemicube, contender.options);
     // The first row also pays for contexts and workers, which do not grow with the number of rows.
     const Stopwatch start_watch;
     provider->rows(patches.first(1), [](std::uint32_t, const RowView&) {});
     const double start = start_watch.seconds();
-    Clock clock(patches.size(), loaded.mesh.size(), count);
-    const auto rows_done = [&clock](std::size_t, std::size_t) {
-        clock.rows_done();
+    const Stopwatch watch;
+    double rows_taken = 0.0;
+    const auto rows_done = [&](std::size_t, std::size_t) {
+        rows_taken = watch.seconds();
         return !interrupted();
     };
-    if (!contender.yardstick && plan.hybrid) {
-        FormFactorMatrix rows =
-            compute_hybrid(*provider, loaded.mesh, patches, plan.rule, loaded.scene.enclosure, rows_done);
-        seconds = start + clock.for_pairs();
-        return rows;
-    }
-    FormFactorMatrix rows = compute_matrix(*provider, patches, rows_done);
-    seconds = start + clock.for_rows(0.0);
+    const bool hybrid = !contender.yardstick && plan.hybrid;
+    FormFactorMatrix rows =
+        hybrid ? compute_hybrid(*provider, loaded.mesh, patches, plan.rule, loaded.scene.enclosure, rows_done)
+               : compute_matrix(*provider, patches, rows_done);
+    const double pairs_taken = hybrid ? watch.seconds() - rows_taken : 0.0;
+    // The hybrid takes each pair once.
+    const double size = loaded.mesh.size();
+    const auto some = static_cast<double>(patches.size());
+    const auto all = static_cast<double>(count);
+    const double pairs = all * (size - 0.5 * all) / (some * (size - 0.5 * some));
+    seconds = start + all * seconds_a_row(*provider, patches.size(), rows_taken) + pairs * pairs_taken;
     return rows;
 }
 
@@ -141,6 +137,7 @@ Reference find_reference(const LoadedScene& loaded, std::span<const std::uint32_
     best.resolution.reset();
     Reference reference;
     reference.settings = reference_settings(plan_rows(best, loaded.mesh.size()).hemicube);
+    reference.settings.eye_points = reference.settings.near_eye_points; // as many as there can be
     reference.settings.resolution = std::max(reference.settings.resolution, 128u);
     const auto engine = make_engine(loaded.mesh, reference.settings, base);
     const auto first = reference_patches(patches, 1);

@@ -21,7 +21,7 @@ void add_reference(Rows& rows, const LoadedScene& loaded, const RowOptions& opti
             known.push_back(i);
         }
     }
-    if (known.empty() || !options.estimate) {
+    if (known.empty() || !options.estimate || rows.file.reference.entries() > 0) {
         return;
     }
     const Stopwatch watch;

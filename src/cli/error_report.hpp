@@ -12,7 +12,7 @@
 namespace hemi::cli {
 
 /// Computes better rows of a few patches, about a tenth of the work that `rows` were, for the estimates.
-/// Does nothing where no row was computed, or `--no-estimate` was given.
+/// Does nothing where no row was computed, there is a reference, or `--no-estimate` was given.
 void add_reference(Rows& rows, const LoadedScene& loaded, const RowOptions& options,
                    const Terminal& terminal);
 

@@ -14,6 +14,9 @@ ExitStatus exit_status_for(const std::exception& error) noexcept {
     if (dynamic_cast<const NoDevice*>(&error) != nullptr) {
         return ExitStatus::no_device;
     }
+    if (dynamic_cast<const ToleranceMissed*>(&error) != nullptr) {
+        return ExitStatus::out_of_tolerance;
+    }
     if (dynamic_cast<const Cancelled*>(&error) != nullptr) {
         return ExitStatus::interrupted;
     }

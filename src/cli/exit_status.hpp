@@ -1,5 +1,7 @@
 #pragma once
 
+#include "hemi/core/error.hpp"
+
 #include <exception>
 
 namespace hemi::cli {
@@ -13,6 +15,12 @@ enum class ExitStatus : int {
     no_device = 4,
     out_of_tolerance = 5,
     interrupted = 130,
+};
+
+/// What was asked for cannot be computed as closely as was asked.
+class ToleranceMissed : public Error {
+public:
+    using Error::Error;
 };
 
 /// Exit status for an exception that reached main().

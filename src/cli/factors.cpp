@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/error_report.hpp"
+#include "cli/error_target.hpp"
 #include "cli/outputs.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/repair_rows.hpp"
@@ -29,6 +30,7 @@ struct Seconds {
     double factors = 0.0;
     double repair = 0.0;
     double estimate = 0.0; ///< of errors
+    double search = 0.0;   ///< for settings that meet --error-target
     double total = 0.0;
 };
 
@@ -71,6 +73,33 @@ Outputs check_outputs(const FactorsArguments& arguments) {
     return outputs;
 }
 
+/// Rows by the cheapest settings that are good enough, as far as a few of them show; those of the next where
+/// all together are not.
+void compute_to_target(const FactorsArguments& arguments, Subject& subject, const Terminal& terminal) {
+    const LoadedScene& loaded = *subject.loaded;
+    const auto patches = all_patches(loaded.mesh.size());
+    const Stopwatch search_watch;
+    TargetSearch search(loaded, patches, arguments.rows, *arguments.rows.error_target, terminal);
+    double searched = 0.0;
+    for (;;) {
+        const Stopwatch watch;
+        const RowOptions options = search.next();
+        searched += watch.seconds();
+        subject.rows = compute_rows(loaded, patches, options, terminal);
+        subject.rows.file.reference = search.reference().rows;
+        subject.rows.file.chosen_for = search.told();
+        io::FactorFile repaired = subject.rows.file;
+        settle_contacts(repaired);
+        (void)repair_rows(repaired, arguments.rows.repair);
+        estimate_rows(repaired);
+        if (search.met(repaired.error ? repaired.error->row_rms : 0.0)) {
+            break;
+        }
+    }
+    subject.seconds.search = search.reference().seconds + searched;
+    subject.seconds.factors = search_watch.seconds() - subject.seconds.search;
+}
+
 Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal) {
     Subject subject;
     subject.loaded = load_scene(arguments.scene, terminal);
@@ -83,13 +112,17 @@ Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal) 
         throw InvalidArgument(fmt::format("--row {}: the scene has {}, counted from 0", *arguments.row,
                                           plural(mesh.size(), "patch", "patches")));
     }
+    subject.seconds.load = subject.loaded->seconds;
     const Stopwatch watch;
     const auto patches =
         arguments.row ? std::vector<std::uint32_t>{*arguments.row} : all_patches(mesh.size());
-    subject.rows = compute_rows(*subject.loaded, patches, arguments.rows, terminal);
-    subject.seconds.load = subject.loaded->seconds;
-    subject.seconds.factors = watch.seconds();
-    if (!arguments.row) {
+    if (arguments.rows.error_target) {
+        compute_to_target(arguments, subject, terminal);
+    } else {
+        subject.rows = compute_rows(*subject.loaded, patches, arguments.rows, terminal);
+        subject.seconds.factors = watch.seconds();
+    }
+    if (!arguments.row && !arguments.rows.error_target) {
         add_reference(subject.rows, *subject.loaded, arguments.rows, terminal);
         subject.seconds.estimate = subject.rows.reference_seconds;
     }
@@ -241,6 +274,7 @@ Json groups_json(const Subject& subject, const GroupFactors& groups) {
               {"factors", subject.seconds.factors},
               {"repair", subject.seconds.repair},
               {"estimate", subject.seconds.estimate},
+              {"search", subject.seconds.search},
               {"total", subject.seconds.total}}}};
 }
 
@@ -322,7 +356,7 @@ std::string summary(const Subject& subject, const RowSums& sums, const Enclosure
                                           plural(mesh.groups().size(), "group", "groups")));
     text += rows_summary(subject.rows, sums, enclosure);
     text += repair_summary(subject.repair);
-    text += error_summary(subject.rows.file.error);
+    text += chosen_summary(subject.rows.file.chosen_for) + error_summary(subject.rows.file.error);
     text += summary_line("seconds",
                          fmt::format("load {:.3f}, factors {:.3f}, repair {:.3f}, estimate {:.3f}, "
                                      "total {:.3f}",
@@ -350,12 +384,15 @@ Json summary_json(const Subject& subject, const RowSums& sums) {
             {"environment_max", sums.environment_max},
             {"blocked_max", sums.blocked_max},
             {"repair", repair_json(subject.repair)},
+            {"chosen_for",
+             subject.rows.file.chosen_for.empty() ? Json(nullptr) : Json(subject.rows.file.chosen_for)},
             {"error_estimate", error_json(subject.rows.file.error)},
             {"seconds",
              {{"load", subject.seconds.load},
               {"factors", subject.seconds.factors},
               {"repair", subject.seconds.repair},
               {"estimate", subject.seconds.estimate},
+              {"search", subject.seconds.search},
               {"total", subject.seconds.total}}}};
 }
 

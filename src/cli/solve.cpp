@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/error_report.hpp"
+#include "cli/error_target.hpp"
 #include "cli/outputs.hpp"
 #include "cli/picture_output.hpp"
 #include "cli/pipeline.hpp"
@@ -29,6 +30,7 @@ struct Seconds {
     double repair = 0.0;
     double solve = 0.0;
     double estimate = 0.0; ///< of errors
+    double search = 0.0;   ///< for settings that meet --error-target
     double render = 0.0;
     double total = 0.0;
 };
@@ -54,24 +56,93 @@ Outputs check_outputs(const SolveArguments& arguments) {
     return outputs;
 }
 
-Rows find_rows(const SolveArguments& arguments, const LoadedScene& loaded, const Terminal& terminal) {
-    if (arguments.factors && fs::is_regular_file(*arguments.factors)) {
-        Rows rows = reuse_rows(*arguments.factors, loaded, arguments.rows, arguments.common);
-        settle_contacts(rows.file);
-        terminal.detail(fmt::format("form factors from {}: no rows to compute", arguments.factors->string()));
-        return rows;
-    }
-    const bool all = arguments.factors || arguments.result || arguments.radiosity;
-    const auto patches = all ? all_patches(loaded.mesh.size()) : reflecting_patches(loaded);
-    Rows rows = compute_rows(loaded, patches, arguments.rows, terminal);
-    add_reference(rows, loaded, arguments.rows, terminal);
-    if (arguments.factors) {
+/// Rows and what was made of them.
+struct Solved {
+    Rows rows;
+    RowRepair repair;
+    EnclosureFinding enclosure;
+    Solution solution;
+};
+
+void store_rows(const SolveArguments& arguments, Rows& rows, const Terminal& terminal) {
+    if (arguments.factors && !rows.reused) {
         estimate_rows(rows.file);
         io::write_hff(*arguments.factors, rows.file);
         terminal.detail(fmt::format("form factors written to {}", arguments.factors->string()));
     }
-    settle_contacts(rows.file);
+}
+
+std::vector<std::uint32_t> needed_patches(const SolveArguments& arguments, const LoadedScene& loaded) {
+    const bool all = arguments.factors || arguments.result || arguments.radiosity;
+    return all ? all_patches(loaded.mesh.size()) : reflecting_patches(loaded);
+}
+
+Rows find_rows(const SolveArguments& arguments, const LoadedScene& loaded, const Terminal& terminal) {
+    if (arguments.factors && fs::is_regular_file(*arguments.factors)) {
+        Rows rows = reuse_rows(*arguments.factors, loaded, arguments.rows, arguments.common);
+        terminal.detail(fmt::format("form factors from {}: no rows to compute", arguments.factors->string()));
+        if ((arguments.result || arguments.radiosity) && !rows.file.factors.all_known()) {
+            throw InputError(fmt::format("{}: rows are missing that --result and --radiosity need",
+                                         arguments.factors->string()));
+        }
+        return rows;
+    }
+    Rows rows = compute_rows(loaded, needed_patches(arguments, loaded), arguments.rows, terminal);
+    add_reference(rows, loaded, arguments.rows, terminal);
+    store_rows(arguments, rows, terminal);
     return rows;
+}
+
+/// From raw rows to the radiosity and what it is off by.
+Solved solve_rows(const SolveArguments& arguments, const LoadedScene& loaded, Rows rows, Seconds& seconds,
+                  const Terminal& terminal) {
+    Solved solved;
+    solved.rows = std::move(rows);
+    io::FactorFile& file = solved.rows.file;
+    settle_contacts(file);
+    solved.enclosure =
+        find_leaks(file.factors, enclosure_name(loaded.scene.enclosure), arguments.rows.max_row_error);
+    solved.repair = repair_rows(file, arguments.rows.repair);
+    seconds.repair = solved.repair.seconds;
+    const Stopwatch rows_watch;
+    estimate_rows(file);
+    seconds.estimate += rows_watch.seconds();
+    const bool with_irradiance = arguments.result || arguments.radiosity;
+    solved.solution = solve_scene(loaded, file.factors, arguments.solver, with_irradiance, terminal);
+    seconds.solve = solved.solution.seconds;
+    const Stopwatch solution_watch;
+    solved.solution.error = estimate_solution(loaded, file, solved.solution);
+    seconds.estimate += solution_watch.seconds();
+    return solved;
+}
+
+/// The cheapest settings first, and from what comes of them to those that are good enough.
+Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loaded, Seconds& seconds,
+                       const Terminal& terminal) {
+    const auto patches = needed_patches(arguments, loaded);
+    if (patches.empty()) {
+        throw InvalidArgument("--error-target: nothing in the scene reflects, so that nothing can be wrong");
+    }
+    const Stopwatch search_watch;
+    TargetSearch search(loaded, patches, arguments.rows, *arguments.rows.error_target, terminal);
+    RowOptions options = search.first();
+    seconds.search = search_watch.seconds();
+    for (;;) {
+        const Stopwatch watch;
+        Rows rows = compute_rows(loaded, patches, options, terminal);
+        rows.file.reference = search.reference().rows;
+        rows.file.chosen_for = search.told();
+        seconds.factors = watch.seconds();
+        Rows raw = rows;
+        Solved solved = solve_rows(arguments, loaded, std::move(rows), seconds, terminal);
+        if (search.met(solved.solution.error ? solved.solution.error->rms : 0.0)) {
+            store_rows(arguments, raw, terminal);
+            return solved;
+        }
+        const Stopwatch next_watch;
+        options = search.next(solved.solution.radiosity);
+        seconds.search += next_watch.seconds();
+    }
 }
 
 void report_savings(const LoadedScene& loaded, const Rows& rows, const Solution& solution,
@@ -110,7 +181,7 @@ std::string summary(const LoadedScene& loaded, const Rows& rows, const RowSums& 
                                                          : plural(solution.sweeps, "sweep", "sweeps"),
                                                solution.residual));
     text += summary_line("", solution.why);
-    text += error_summary(rows.file.error, solution.error);
+    text += chosen_summary(rows.file.chosen_for) + error_summary(rows.file.error, solution.error);
     text += summary_line("seconds", fmt::format("load {:.3f}, factors {:.3f}, repair {:.3f}, solve {:.3f}, "
                                                 "estimate {:.3f}, render {:.3f}, total {:.3f}",
                                                 seconds.load, seconds.factors, seconds.repair, seconds.solve,
@@ -186,6 +257,7 @@ Json to_json(const LoadedScene& loaded, const Rows& rows, const RowSums& sums, c
             {"reciprocity",
              factors.all_known() ? reciprocity_json(repair.report.reciprocity_after) : Json(nullptr)},
             {"repair", repair_json(repair)},
+            {"chosen_for", rows.file.chosen_for.empty() ? Json(nullptr) : Json(rows.file.chosen_for)},
             {"error_estimate", error_json(rows.file.error, solution.error)},
             {"seconds",
              {{"load", seconds.load},
@@ -193,6 +265,7 @@ Json to_json(const LoadedScene& loaded, const Rows& rows, const RowSums& sums, c
               {"repair", seconds.repair},
               {"solve", seconds.solve},
               {"estimate", seconds.estimate},
+              {"search", seconds.search},
               {"render", seconds.render},
               {"total", seconds.total}}}};
 }
@@ -216,6 +289,11 @@ void write_files(const SolveArguments& arguments, const LoadedScene& loaded, con
 ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     const Stopwatch total;
     const Outputs outputs = check_outputs(arguments);
+    if (arguments.rows.error_target && arguments.factors && fs::is_regular_file(*arguments.factors)) {
+        throw InvalidArgument(fmt::format("--error-target chooses settings, but the rows of {} are there "
+                                          "already; leave one out",
+                                          arguments.factors->string()));
+    }
     if (!io::is_scene_file(arguments.scene.path)) {
         throw InvalidArgument(
             fmt::format("{}: solve needs a scene, .json or .obj", arguments.scene.path.string()));
@@ -228,33 +306,20 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     }
     seconds.load = loaded.seconds;
 
-    const Stopwatch factors_watch;
-    Rows rows = find_rows(arguments, loaded, terminal);
-    const FormFactorMatrix& factors = rows.file.factors;
-    if (arguments.result || arguments.radiosity) {
-        if (!factors.all_known()) {
-            throw InputError(fmt::format("{}: rows are missing that --result and --radiosity need",
-                                         arguments.factors->string()));
-        }
+    Solved solved;
+    if (arguments.rows.error_target) {
+        solved = solve_to_target(arguments, loaded, seconds, terminal);
+    } else {
+        const Stopwatch watch;
+        Rows found = find_rows(arguments, loaded, terminal);
+        seconds.estimate = found.reference_seconds;
+        seconds.factors = watch.seconds() - seconds.estimate;
+        solved = solve_rows(arguments, loaded, std::move(found), seconds, terminal);
     }
-    const EnclosureFinding enclosure =
-        find_leaks(factors, enclosure_name(loaded.scene.enclosure), arguments.rows.max_row_error);
-    seconds.estimate = rows.reference_seconds;
-    seconds.factors = factors_watch.seconds() - seconds.estimate;
-    const RowRepair repair = repair_rows(rows.file, arguments.rows.repair);
-    seconds.repair = repair.seconds;
-    const Stopwatch estimate_watch;
-    estimate_rows(rows.file);
-    const double rows_estimated = estimate_watch.seconds();
+    const auto& [rows, repair, enclosure, solution] = solved;
+    const FormFactorMatrix& factors = rows.file.factors;
     const RowSums sums = row_sums(factors);
     report_covered(sums, terminal);
-
-    const bool with_irradiance = arguments.result || arguments.radiosity;
-    Solution solution = solve_scene(loaded, factors, arguments.solver, with_irradiance, terminal);
-    seconds.solve = solution.seconds;
-    const Stopwatch solution_watch;
-    solution.error = estimate_solution(loaded, rows.file, solution);
-    seconds.estimate += rows_estimated + solution_watch.seconds();
     write_files(arguments, loaded, rows, solution);
 
     std::string picture;

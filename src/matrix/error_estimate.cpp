@@ -164,7 +164,7 @@ double largest_factor_error(const FormFactorMatrix& factors, std::span<const std
         const double reach = here > 0.0 ? strongest / here : 1.0;
         estimate = std::max(estimate, largest[k] * (reach < far ? reach : std::sqrt(reach)));
     }
-    return unseen * estimate;
+    return std::min(1.0, unseen * estimate);
 }
 
 /// How much of a row's squared error lies in the columns that are compared: their share of all.

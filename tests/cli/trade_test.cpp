@@ -1,0 +1,170 @@
+#include "cli/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace hemi::cli_test;
+
+namespace {
+
+Words on_osmesa(Words words) {
+    words.insert(words.end(), {"--device", "osmesa", "--jobs", "1"});
+    return words;
+}
+
+} // namespace
+
+TEST_CASE("solve, factors: an estimate of errors is told, stored and shown", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(4));
+    const Json plain =
+        run_hemi(quick({"factors", scene, "--preset", "plain", "--json", "-o", directory.path("a.hff")}))
+            .json()["error_estimate"];
+    CHECK(plain["rows_compared"] == 12);
+    CHECK(plain["row"]["rms"] > 1e-3);
+    CHECK(plain["row"]["rms"] < 0.1);
+    CHECK(plain["factor"]["rms"] < plain["row"]["rms"]);
+    CHECK(plain["factor"]["max"] > plain["factor"]["rms"]);
+    const Json stored = run_hemi({"info", directory.path("a.hff"), "--json"}).json()["error_estimate"];
+    CHECK(stored == plain);
+    CHECK(run_hemi({"info", directory.path("a.hff")}).out_has("estimated from 12 rows"));
+
+    const Json hybrid =
+        run_hemi(quick({"factors", scene, "--preset", "fast", "--json"})).json()["error_estimate"];
+    CHECK(hybrid["row"]["rms"] < 1e-6);
+
+    // Rows of a file are judged by the reference that came with them.
+    const Outcome solved = run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "--json",
+                                     "--result", directory.path("a.hres")});
+    REQUIRE(solved.status == 0);
+    const Json error = solved.json()["error_estimate"];
+    CHECK(error["row"] == plain["row"]);
+    CHECK(error["radiosity"]["rms"] > 1e-4);
+    CHECK(error["radiosity"]["rms"] < 0.1);
+    const Json shown = run_hemi({"info", directory.path("a.hres"), "--json"}).json()["error_estimate"];
+    CHECK(shown == error);
+
+    const Outcome without = run_hemi(quick({"solve", scene, "--no-estimate", "--json"}));
+    CHECK(without.status == 0);
+    CHECK(without.json()["error_estimate"].is_null());
+    CHECK(run_hemi(quick({"check", scene, "--no-estimate"})).status == 2);
+}
+
+TEST_CASE("--error-target: the cheapest settings that do are found, said and stored", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(4));
+    const std::string file = directory.path("a.hff");
+    const Outcome loose = run_hemi(on_osmesa({"factors", scene, "--error-target", "0.1", "--json"}));
+    REQUIRE(loose.status == 0);
+    CHECK(loose.json()["chosen_for"] ==
+          "--preset plain --eye-points 1 --resolution 64 for --error-target 0.1");
+    const Outcome close =
+        run_hemi(on_osmesa({"factors", scene, "--error-target", "1e-5", "--json", "-o", file}));
+    REQUIRE(close.status == 0);
+    CHECK(close.json()["chosen_for"] == "--preset fast for --error-target 1e-05");
+    CHECK(close.json()["error_estimate"]["row"]["rms"] <= 1e-5);
+    const Json info = run_hemi({"info", file, "--json"}).json();
+    CHECK(info["preset"] == "fast");
+    CHECK(info["chosen_for"] == close.json()["chosen_for"]);
+
+    const Outcome solved = run_hemi(on_osmesa(
+        {"solve", scene, "--error-target", "1e-5", "--json", "--result", directory.path("a.hres")}));
+    REQUIRE(solved.status == 0);
+    CHECK(solved.json()["chosen_for"] == "--preset fast for --error-target 1e-05");
+    CHECK(solved.json()["error_estimate"]["radiosity"]["rms"] <= 1e-5);
+    CHECK(run_hemi({"info", directory.path("a.hres")}).out_has("for --error-target 1e-05"));
+    CHECK(run_hemi(on_osmesa({"solve", scene, "--error-target", "1e-5"})).out_has("chosen"));
+}
+
+TEST_CASE("--error-target: what cannot be met is status 5, what contradicts it is usage", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(2));
+    for (const char* command : {"factors", "solve"}) {
+        const Outcome missed = run_hemi(on_osmesa({command, scene, "--error-target", "1e-15"}));
+        CHECK(missed.status == 5);
+        CHECK(missed.err_has("--error-target 1e-15 cannot be met: the best there is"));
+        CHECK(missed.out.empty());
+        const Outcome poor =
+            run_hemi(on_osmesa({command, scene, "--error-target", "1e-4", "--max-memory", "1K"}));
+        CHECK(poor.status == 5);
+        CHECK(poor.err_has("needs more than the 1.0 KiB"));
+    }
+    for (const Words& more : {Words{"--preset", "fast"}, Words{"--eye-points", "4"},
+                              Words{"--resolution", "64"}, Words{"--no-estimate"}}) {
+        Words words{"solve", scene, "--error-target", "1e-3"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome refused = run_hemi(words);
+        CHECK(refused.status == 2);
+        CHECK(refused.err_has(more.front()));
+    }
+    CHECK(run_hemi({"solve", scene, "--error-target", "0"}).status == 2);
+    CHECK(run_hemi({"factors", scene, "--error-target", "1e-3", "--row", "1"}).status == 2);
+    CHECK(run_hemi({"check", scene, "--error-target", "1e-3"}).status == 2);
+    REQUIRE(run_hemi(quick({"factors", scene, "-o", directory.path("a.hff")})).status == 0);
+    CHECK(run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "--error-target", "1e-3"}).status ==
+          2);
+}
+
+TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
+    const Directory directory;
+    Json box = cube(2);
+    box["name"] = "Box <1> & more";
+    const std::string scene = directory.write("cube.json", box);
+    const Outcome run =
+        run_hemi(on_osmesa({"trade", scene, "--budget", "8s", "--json", "-o", directory.path("plot.svg")}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json trade = run.json();
+    CHECK(trade["schema"] == "hemi/trade/1");
+    CHECK(trade["patches"] == 24);
+    CHECK(trade["budget"] == 8.0);
+    CHECK(trade["reference"]["rows"] > 0);
+    REQUIRE(trade["measurements"].size() > 4);
+    CHECK(trade["best"].is_string());
+    double last = 0.0;
+    std::size_t on_front = 0;
+    double least = 1e300;
+    for (const Json& m : trade["measurements"]) {
+        CHECK(m["seconds"] >= last);
+        last = m["seconds"];
+        CHECK((m["rows"] == "all" || m["rows"] == "sample"));
+        CHECK(m["rms"] >= 0.0);
+        CHECK(m["row"] >= m["rms"]);
+        CHECK(m["max"] >= m["rms"]);
+        if (m["front"] == true) {
+            ++on_front;
+            CHECK(m["row"] <= least);
+            least = m["row"];
+        }
+    }
+    CHECK(on_front > 0);
+    const std::string plot = directory.read("plot.svg");
+    CHECK(plot.starts_with("<svg "));
+    CHECK(plot.ends_with("</svg>\n"));
+    CHECK(plot.find("24 patches: Box &lt;1&gt; &amp; more") != std::string::npos);
+
+    const Outcome text = run_hemi(on_osmesa({"trade", scene, "--budget", "2s"}));
+    CHECK(text.status == 0);
+    CHECK(text.out_has("radiosity"));
+    CHECK(text.out_has("Take --preset"));
+}
+
+TEST_CASE("trade: what it cannot do is refused", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(1));
+    const auto refused = [](const Words& words, const std::string& part) {
+        const Outcome outcome = run_hemi(words);
+        INFO(outcome.err);
+        CHECK(outcome.status == 2);
+        CHECK(outcome.err_has(part));
+    };
+    refused({"trade", scene, "-o", directory.path("a.png")}, "must end in .svg");
+    refused({"trade", scene, "--budget", "soon"}, "a time such as 60s");
+    refused({"trade", scene, "--budget", "0"}, "a time such as 60s");
+    refused({"trade", scene, "--preset", "fast"}, "--preset does not apply to `hemi trade`");
+    refused({"trade", scene, "-o", "-", "--json"}, "cannot both go to standard output");
+    refused({"trade", directory.write("a.hff", "")}, "needs a scene");
+    CHECK(run_hemi({"trade", directory.path("missing.json")}).status == 3);
+}
