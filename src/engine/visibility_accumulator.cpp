@@ -1,5 +1,7 @@
 #include "engine/visibility_accumulator.hpp"
 
+#include "engine/texel_runs.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -100,16 +102,15 @@ void VisibilityAccumulator::add(const std::uint32_t* ids, const DeltaFormFactors
 
 void VisibilityAccumulator::add_visible(const std::uint32_t* ids, const DeltaFormFactors& weights) {
     const std::uint32_t resolution = weights.resolution();
+    Tally* const visible = visible_.data();
     for (std::uint32_t y = 0; y < weights.rows(); ++y) {
         const std::uint32_t* const row = ids + std::size_t{y} * resolution;
         const std::uint32_t* const prefix = weights.prefix_row(y).data();
         std::uint32_t begin = 0;
-        for (std::uint32_t x = 1; x <= resolution; ++x) {
-            if (x == resolution || row[x] != row[begin]) {
-                visible_[row[begin]] += Tally{prefix[x] - prefix[begin]} << 32 | (x - begin);
-                begin = x;
-            }
-        }
+        for_each_run_end(row, resolution, [&](std::uint32_t last) {
+            visible[row[last]] += Tally{prefix[last + 1] - prefix[begin]} << 32 | (last + 1 - begin);
+            begin = last + 1;
+        });
     }
 }
 
