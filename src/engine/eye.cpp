@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 namespace hemi {
 
@@ -84,13 +86,61 @@ std::vector<TrianglePoint> triangle_points(std::uint32_t k) {
     }
 }
 
-/// Appends the k x k points (or those of the triangle's rule) of a patch.
-void add_eye_points(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t k,
-                    std::vector<EyePoint>& points) {
+EyePoint eye_at_centre(const PatchMesh& mesh, std::uint32_t patch) {
     EyePoint eye;
     eye.position = mesh.centres()[patch];
     eye.normal = mesh.normal(patch);
     eye.surface = mesh.surface_of()[patch];
+    return eye;
+}
+
+/// Point (u, v) of a quadrilateral, bilinear, and how much area a step in u and v spans there.
+std::pair<Vec3, double> at_parameters(const PatchCorners& corners, double u, double v) {
+    const auto& p = corners.points;
+    const Vec3 along_u = (1.0 - v) * (p[1] - p[0]) + v * (p[2] - p[3]);
+    const Vec3 along_v = (1.0 - u) * (p[3] - p[0]) + u * (p[2] - p[1]);
+    return {p[0] + u * (p[1] - p[0]) + v * along_v, glm::length(glm::cross(along_u, along_v))};
+}
+
+/// Makes the shares of the points from `first` on sum to 1.
+void normalise_shares(std::vector<EyePoint>& points, std::size_t first) {
+    double sum = 0.0;
+    for (std::size_t at = first; at < points.size(); ++at) {
+        sum += points[at].share;
+    }
+    for (std::size_t at = first; at < points.size(); ++at) {
+        points[at].share /= sum;
+    }
+}
+
+/// Appends `count` points of a Fibonacci lattice. Where something near cuts the view off along a line,
+/// rows and columns of points would all cross it at once.
+void add_spread_points(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t count,
+                       std::vector<EyePoint>& points) {
+    const PatchCorners corners = mesh.corners(patch);
+    const auto& p = corners.points;
+    EyePoint eye = eye_at_centre(mesh, patch);
+    const std::size_t first = points.size();
+    for (; eye.index < count; ++eye.index) {
+        const double v = (eye.index + 0.5) / count;
+        const double turns = eye.index * (std::numbers::phi - 1.0) + 0.5;
+        const double u = turns - std::floor(turns);
+        if (corners.count == 3) {
+            const double root = std::sqrt(v);
+            eye.position = p[0] + root * ((1.0 - u) * (p[1] - p[0]) + u * (p[2] - p[0]));
+            eye.share = 1.0;
+        } else {
+            std::tie(eye.position, eye.share) = at_parameters(corners, u, v);
+        }
+        points.push_back(eye);
+    }
+    normalise_shares(points, first);
+}
+
+/// Appends the k x k points (or those of the triangle's rule) of a patch.
+void add_gauss_points(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t k,
+                      std::vector<EyePoint>& points) {
+    EyePoint eye = eye_at_centre(mesh, patch);
     if (k == 1) {
         points.push_back(eye);
         return;
@@ -108,21 +158,15 @@ void add_eye_points(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t k,
     }
     const std::size_t first = points.size();
     const std::vector<EdgePoint> on_edges = edge_points(k);
-    double area = 0.0;
     for (const EdgePoint& v : on_edges) {
         for (const EdgePoint& u : on_edges) {
-            const Vec3 along_u = (1.0 - v.at) * (p[1] - p[0]) + v.at * (p[2] - p[3]);
-            const Vec3 along_v = (1.0 - u.at) * (p[3] - p[0]) + u.at * (p[2] - p[1]);
-            eye.position = p[0] + u.at * (p[1] - p[0]) + v.at * along_v;
-            eye.share = u.weight * v.weight * glm::length(glm::cross(along_u, along_v));
-            area += eye.share;
+            std::tie(eye.position, eye.share) = at_parameters(corners, u.at, v.at);
+            eye.share *= u.weight * v.weight;
             points.push_back(eye);
             ++eye.index;
         }
     }
-    for (std::size_t at = first; at < points.size(); ++at) {
-        points[at].share /= area;
-    }
+    normalise_shares(points, first);
 }
 
 } // namespace
@@ -143,11 +187,11 @@ EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count, std::uint3
     const auto side = [](std::uint32_t square) {
         return static_cast<std::uint32_t>(std::lround(std::sqrt(square)));
     };
-    std::vector<std::uint32_t> wanted(mesh.size(), side(count));
-    if (near_count > count) {
+    std::vector<std::uint32_t> near_sides(mesh.size(), 0); // 0: nothing is near
+    if (near_count > 1) {
         for (const NearSurface& near : find_near_surfaces(mesh)) {
             const double k = std::ceil(0.5 / std::max(near.gap, 0.01));
-            wanted[near.patch] =
+            near_sides[near.patch] =
                 std::max(side(count), std::min(side(near_count), static_cast<std::uint32_t>(k)));
         }
     }
@@ -155,7 +199,11 @@ EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count, std::uint3
     eyes.points.reserve(std::size_t{mesh.size()} * count);
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
         eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
-        add_eye_points(mesh, patch, wanted[patch], eyes.points);
+        if (near_sides[patch] > 1) {
+            add_spread_points(mesh, patch, near_sides[patch] * near_sides[patch], eyes.points);
+        } else {
+            add_gauss_points(mesh, patch, side(count), eyes.points);
+        }
     }
     eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
     return eyes;

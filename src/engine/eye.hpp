@@ -33,8 +33,9 @@ struct EyePoints {
 /// weighted by the share of the area they stand for; on triangles the symmetric rule of fewest points that
 /// integrates polynomials of degree k (1, 3, 6 or 12 points, k = 1 to 4; above that as on quadrilaterals).
 /// @param count       a square: 1, 4, 9 … 64
-/// @param near_count  another: where a surface hovers close above a patch (find_near_surfaces), at a gap of
-///   g patch sizes, k is at least 1 / 2g, but k² at most this
+/// @param near_count  another: where a surface hovers close above a patch or stands on it
+///   (find_near_surfaces), at a gap of g patch sizes, k is at least 1 / 2g, but k² at most this; the points
+///   are then those of a Fibonacci lattice
 /// @throws InvalidArgument if one is another number.
 [[nodiscard]] EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count,
                                         std::uint32_t near_count = 1);
