@@ -52,7 +52,7 @@ TEST_CASE("solve, factors: an estimate of errors is told, stored and shown", "[c
     CHECK(run_hemi(quick({"check", scene, "--no-estimate"})).status == 2);
 }
 
-TEST_CASE("--error-target: the cheapest settings that do are found, said and stored", "[cli]") {
+TEST_CASE("error target: the cheapest settings that do are found, said and stored", "[cli]") {
     const Directory directory;
     const std::string scene = directory.write("cube.json", cube(4));
     const std::string file = directory.path("a.hff");
@@ -78,7 +78,7 @@ TEST_CASE("--error-target: the cheapest settings that do are found, said and sto
     CHECK(run_hemi(on_osmesa({"solve", scene, "--error-target", "1e-5"})).out_has("chosen"));
 }
 
-TEST_CASE("--error-target: what cannot be met is status 5, what contradicts it is usage", "[cli]") {
+TEST_CASE("error target: what cannot be met is status 5, what contradicts it is usage", "[cli]") {
     const Directory directory;
     const std::string scene = directory.write("cube.json", cube(2));
     for (const char* command : {"factors", "solve"}) {
