@@ -3,6 +3,7 @@
 #include "core/nearest_word.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/io/scene_reader.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -85,8 +86,9 @@ void add_common(CLI::App& app, CommonOptions& common, bool json = true) {
 void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SCENE",
                const std::string& stored = "") {
     add_positional(app, name, scene.path,
-                   stored.empty() ? "scene: .json or .obj"
-                                  : fmt::format("scene (.json, .obj) or stored file ({})", stored));
+                   stored.empty()
+                       ? fmt::format("scene: {}", io::scene_extensions())
+                       : fmt::format("scene ({}) or stored file ({})", io::scene_extensions(), stored));
     Options options(app, "Scene");
     auto* size = options.value("--patch-size", "S", "patch edges no longer than S scene units",
                                [&scene](const std::string& text) {
@@ -99,7 +101,8 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
                })
         ->excludes(size);
     options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
-    app.add_option("--two-sided", scene.two_sided, "OBJ: faces of GROUP radiate on both sides; repeatable")
+    app.add_option("--two-sided", scene.two_sided,
+                   "faces of GROUP radiate on both sides (not for .json); repeatable")
         ->allow_extra_args(false)
         ->option_text("GROUP")
         ->group("Scene");

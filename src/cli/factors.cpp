@@ -99,8 +99,8 @@ Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal) 
 Subject from_file(const FactorsArguments& arguments) {
     const std::filesystem::path& path = arguments.scene.path;
     if (extension_of(path) != ".hff") {
-        throw InvalidArgument(fmt::format(
-            "{}: must be a scene (.json, .obj) or form factors with names (.hff)", path.string()));
+        throw InvalidArgument(fmt::format("{}: must be a scene ({}) or form factors with names (.hff)",
+                                          path.string(), io::scene_extensions()));
     }
     refuse_all_but(arguments.common, std::vector<std::string>{"--row", "--by-group", "--output", "--repair"},
                    path);

@@ -217,8 +217,8 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     const Stopwatch total;
     const Outputs outputs = check_outputs(arguments);
     if (!io::is_scene_file(arguments.scene.path)) {
-        throw InvalidArgument(
-            fmt::format("{}: solve needs a scene, .json or .obj", arguments.scene.path.string()));
+        throw InvalidArgument(fmt::format("{}: solve needs a scene ({})", arguments.scene.path.string(),
+                                          io::scene_extensions()));
     }
     Seconds seconds;
     const LoadedScene loaded = load_scene(arguments.scene, terminal);

@@ -1,0 +1,56 @@
+#include "cli/program.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hemi::cli_test;
+
+namespace {
+
+/// The cube of View3D's manual.
+const std::string view3d_cube = "T A simple cube\nC encl=1 list=3\nF 3\n"
+                                "V 1 0. 0. 0.\nV 2 1. 0. 0.\nV 3 1. 1. 0.\nV 4 0. 1. 0.\n"
+                                "V 5 0. 0. 1.\nV 6 1. 0. 1.\nV 7 1. 1. 1.\nV 8 0. 1. 1.\n"
+                                "S 1 1 2 3 4 0 0 0.50 zeq0\nS 2 1 4 8 5 0 0 0.50 xeq0\n"
+                                "S 3 1 5 6 2 0 0 0.50 yeq0\nS 4 7 6 5 8 0 0 0.50 zeq1\n"
+                                "S 5 7 3 2 6 0 0 0.50 xeq1\nS 6 7 8 4 3 0 0 0.50 yeq1\nEnd of data\n";
+
+} // namespace
+
+TEST_CASE("View3D input: the manual's cube gives the manual's factors", "[cli]") {
+    const Directory directory;
+    const std::string path = directory.write("cube.vs3", view3d_cube);
+    const Outcome run =
+        run_hemi(quick({"factors", path, "--by-group", "--json", "--patches-per-face", "64"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json json = run.json();
+    CHECK(json["groups"] == Json({"zeq0", "xeq0", "yeq0", "zeq1", "xeq1", "yeq1"}));
+    CHECK(json["factors"][0][3].get<double>() == Approx(0.199825).margin(1e-4));
+    CHECK(json["factors"][0][1].get<double>() == Approx(0.200044).margin(1e-4));
+    CHECK(run_hemi({"info", path, "--json"}).json()["enclosure"] == "closed");
+}
+
+TEST_CASE("View3D input: what an obstruction hides arrives there, and the rest balances", "[cli]") {
+    const Directory directory;
+    const std::string path = directory.write(
+        "obstructed.vs3", "C encl=0\nF 3\nV 1 0 0 0\nV 2 1 0 0\nV 3 1 1 0\nV 4 0 1 0\nV 5 0 0 1\nV 6 1 0 1\n"
+                          "V 7 1 1 1\nV 8 0 1 1\nV 9 -9 -9 .5\nV 10 9 -9 .5\nV 11 9 9 .5\nV 12 -9 9 .5\n"
+                          "S 1 1 2 3 4 0 0 .5 low\nS 2 8 7 6 5 0 0 .5 high\nO 3 9 10 11 12\n");
+    const Json json = run_hemi(quick({"factors", path, "--by-group", "--json"})).json();
+    CHECK(json["groups"] == Json({"low", "high", "obstruction"}));
+    CHECK(json["factors"][0][1] == 0.0);
+    CHECK(json["factors"][0][2].get<double>() > 0.99);
+    CHECK(json["factors"][1][2].get<double>() > 0.99);
+    CHECK(json["blocked"] == Json({0.0, 0.0, 0.0}));
+}
+
+TEST_CASE("Bad input in an exchange format: exit status 3, with the file and the line", "[cli]") {
+    const Directory directory;
+    const std::string vs3 = directory.write("bad.vs3", "F 3\nV 1 0 0\n");
+    for (const char* command : {"info", "factors", "check", "solve"}) {
+        const Outcome run = run_hemi({command, vs3});
+        INFO(command << ": " << run.err);
+        CHECK(run.status == 3);
+        CHECK(run.err_has("bad.vs3:2: vertex 1: z \"\"; must be a number"));
+    }
+}
