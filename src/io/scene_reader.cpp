@@ -23,7 +23,11 @@ struct Reader {
     std::string_view extension;
     Scene (*read)(const std::filesystem::path&, const SceneReaderOptions&, Diagnostics&);
 };
-constexpr Reader readers[] = {{".json", read_json_scene}, {".obj", read_obj_scene}, {".vs3", read_vs3_scene}};
+constexpr Reader readers[] = {{".json", read_json_scene},
+                              {".obj", read_obj_scene},
+                              {".gltf", read_gltf_scene},
+                              {".glb", read_gltf_scene},
+                              {".vs3", read_vs3_scene}};
 
 const Reader* reader_of(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);

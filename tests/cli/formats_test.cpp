@@ -47,6 +47,11 @@ TEST_CASE("View3D input: what an obstruction hides arrives there, and the rest b
 TEST_CASE("Bad input in an exchange format: exit status 3, with the file and the line", "[cli]") {
     const Directory directory;
     const std::string vs3 = directory.write("bad.vs3", "F 3\nV 1 0 0\n");
+    const std::string glb =
+        directory.write("bad.glb", std::string("glTF\2\0\0\0\377\377\377\377", 12) + std::string(20, ' '));
+    const Outcome claim = run_hemi({"info", glb});
+    CHECK(claim.status == 3);
+    CHECK(claim.err_has("bad.glb: cut short: 32 bytes; its header says 4294967295"));
     for (const char* command : {"info", "factors", "check", "solve"}) {
         const Outcome run = run_hemi({command, vs3});
         INFO(command << ": " << run.err);
