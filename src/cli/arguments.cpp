@@ -295,7 +295,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     add_max_memory(app, a.rows);
     Options output(app, "Output");
     auto* file = output.path("-o,--output", "FILE", a.output,
-                             "form factors: .hff .mtx .csv .npz; - for .csv on stdout");
+                             "form factors: .hff .mtx .csv .npz, View3D's .txt .vf; - for .csv on stdout");
     output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
     auto* row = output.value("--row", "I", "print one row, largest first, with names",
                              [&a](const std::string& text) { a.row = to_index("--row", text, 0); });
@@ -360,8 +360,9 @@ void add_view(CLI::App& app, ViewArguments& a) {
 
 void add_convert(CLI::App& app, ConvertArguments& a) {
     add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz");
-    add_positional(app, "OUT", a.output,
-                   "form factors: .mtx .csv .npz (.hff from .hff); - for .csv on stdout");
+    add_positional(
+        app, "OUT", a.output,
+        "form factors: .mtx .csv .npz; from .hff also .hff and View3D's .txt .vf; - for .csv on stdout");
     add_repair(app, a.repair);
     add_common(app, a.common);
     app.footer("Examples:\n"

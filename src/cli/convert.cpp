@@ -28,7 +28,7 @@ io::FactorFile read_input(const std::filesystem::path& path) {
 
 ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
     Outputs outputs;
-    outputs.add("OUT", arguments.output, {".hff", ".mtx", ".csv", ".npz"}, true);
+    outputs.add("OUT", arguments.output, {".hff", ".mtx", ".csv", ".npz", ".txt", ".vf"}, true);
     if (outputs.uses_standard_output() && arguments.common.json) {
         throw InvalidArgument("--json and an output to - cannot both go to standard output");
     }
@@ -38,6 +38,12 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
         throw InvalidArgument(
             fmt::format("{}: a .hff holds areas, names, row balance and the geometry's hash, which "
                         "{} does not have; `hemi factors SCENE -o FILE.hff` makes one",
+                        arguments.output.string(), arguments.input.string()));
+    }
+    const bool to_view3d = is_view3d_factor_file(arguments.output);
+    if (to_view3d && !from_hff && is_bare_factor_file(arguments.input)) {
+        throw InvalidArgument(
+            fmt::format("{}: View3D's files hold areas, which {} does not have; a .hff does",
                         arguments.output.string(), arguments.input.string()));
     }
     if (arguments.repair && (to_hff || !from_hff)) {
@@ -57,9 +63,14 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
     }
     if (from_hff && !to_hff) {
         terminal.note(
-            fmt::format("not in {}: areas, group names, row balance (environment, blocked), settings and "
-                        "the geometry's hash",
-                        is_standard_output(arguments.output) ? "a .csv" : arguments.output.string()));
+            fmt::format("not in {}: {}group names, row balance (environment, blocked), settings and the "
+                        "geometry's hash",
+                        is_standard_output(arguments.output) ? "a .csv" : arguments.output.string(),
+                        to_view3d ? "" : "areas, "));
+        if (to_view3d) {
+            terminal.note("emissivities are not in a .hff and are written as 0.999; `hemi factors SCENE -o "
+                          "FILE` writes the scene's");
+        }
         if (!file.factors.all_known()) {
             terminal.warn("rows that were not computed become empty rows");
         }

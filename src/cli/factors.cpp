@@ -4,6 +4,7 @@
 #include "cli/pipeline.hpp"
 #include "cli/repair_rows.hpp"
 #include "cli/report.hpp"
+#include "cli/solution.hpp"
 #include "cli/stored_factors.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/output_file.hpp"
@@ -52,10 +53,24 @@ bool holds_raw_rows(const std::filesystem::path& path) {
     return extension_of(path) == ".hff";
 }
 
+/// 1 - reflectance of every patch, the mean of all channels.
+std::vector<double> emissivities(const Subject& subject) {
+    const LoadedScene& loaded = *subject.loaded;
+    const std::vector<double> reflectance = patch_reflectance(loaded.scene, loaded.mesh);
+    const std::size_t channels = loaded.scene.channels.size();
+    std::vector<double> result;
+    for (auto first = reflectance.begin(); first != reflectance.end();
+         first += static_cast<std::ptrdiff_t>(channels)) {
+        const double sum = std::accumulate(first, first + static_cast<std::ptrdiff_t>(channels), 0.0);
+        result.push_back(1.0 - sum / static_cast<double>(channels));
+    }
+    return result;
+}
+
 Outputs check_outputs(const FactorsArguments& arguments) {
     Outputs outputs;
     if (arguments.output) {
-        outputs.add("-o", *arguments.output, {".hff", ".mtx", ".csv", ".npz"}, true);
+        outputs.add("-o", *arguments.output, {".hff", ".mtx", ".csv", ".npz", ".txt", ".vf"}, true);
     }
     if (arguments.patches) {
         outputs.add("--patches", *arguments.patches, {".csv"}, true);
@@ -334,7 +349,7 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     estimate_rows(file);
     subject.seconds.estimate += estimate_watch.seconds();
     if (writes && !holds_raw_rows(*arguments.output)) {
-        write_factors(*arguments.output, file);
+        write_factors(*arguments.output, file, emissivities(subject));
     }
     if (arguments.row) {
         show_row(arguments, subject);

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
 using namespace hemi::cli_test;
 
 namespace {
@@ -58,4 +60,23 @@ TEST_CASE("Bad input in an exchange format: exit status 3, with the file and the
         CHECK(run.status == 3);
         CHECK(run.err_has("bad.vs3:2: vertex 1: z \"\"; must be a number"));
     }
+}
+
+TEST_CASE("View3D output: from a scene with its emissivities, from a .hff with a note", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.vs3", view3d_cube);
+    REQUIRE(run_hemi(quick({"factors", scene, "-o", directory.path("F.txt")})).status == 0);
+    const std::string text = directory.read("F.txt");
+    CHECK(text.ends_with("\n0.5 0.5 0.5 0.5 0.5 0.5\n"));
+    CHECK(std::count(text.begin(), text.end(), '\n') == 9);
+
+    REQUIRE(run_hemi(quick({"factors", scene, "-o", directory.path("F.hff")})).status == 0);
+    const Outcome convert = run_hemi({"convert", directory.path("F.hff"), directory.path("F.vf")});
+    REQUIRE(convert.status == 0);
+    CHECK(convert.err_has("emissivities are not in a .hff"));
+    CHECK(directory.read("F.vf").size() == 32 + 4 * (6 + 36 + 6));
+    REQUIRE(run_hemi({"convert", directory.path("F.hff"), directory.path("F.npz")}).status == 0);
+    const Outcome bare = run_hemi({"convert", directory.path("F.npz"), directory.path("G.txt")});
+    CHECK(bare.status == 2);
+    CHECK(bare.err_has("hold areas"));
 }
