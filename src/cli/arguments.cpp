@@ -294,8 +294,9 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     add_estimate(app, a.rows);
     add_max_memory(app, a.rows);
     Options output(app, "Output");
-    auto* file = output.path("-o,--output", "FILE", a.output,
-                             "form factors: .hff .mtx .csv .npz, View3D's .txt .vf; - for .csv on stdout");
+    auto* file = output.path(
+        "-o,--output", "FILE", a.output,
+        "form factors: .hff .mtx .csv .npz, View3D's .txt .vf, ParaView's .vtp; - for .csv on stdout");
     output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
     auto* row = output.value("--row", "I", "print one row, largest first, with names",
                              [&a](const std::string& text) { a.row = to_index("--row", text, 0); });
@@ -359,15 +360,32 @@ void add_view(CLI::App& app, ViewArguments& a) {
 }
 
 void add_convert(CLI::App& app, ConvertArguments& a) {
-    add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz");
+    add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz; or a solution: .hres");
     add_positional(
         app, "OUT", a.output,
-        "form factors: .mtx .csv .npz; from .hff also .hff and View3D's .txt .vf; - for .csv on stdout");
+        "form factors: .mtx .csv .npz; from .hff also .hff and View3D's .txt .vf; - for .csv on stdout; "
+        "from .hres: .vtp");
     add_repair(app, a.repair);
+    Options paraview(app, "ParaView");
+    auto* factors =
+        paraview.path("--factors", "FILE.hff", a.factors, "for .vtp: form factors with the rows of --row");
+    auto* row = app.add_option_function<Words>(
+                       "--row",
+                       [&a](const Words& all) {
+                           for (const std::string& text : all) {
+                               a.rows.push_back(to_index("--row", text, 0));
+                           }
+                       },
+                       "for .vtp: show F(I, j) at every patch j; repeatable")
+                    ->allow_extra_args(false)
+                    ->option_text("I")
+                    ->group("ParaView");
+    row->needs(factors);
+    factors->needs(row);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi convert room.hff room.npz\n"
-               "  hemi convert room.mtx room.csv");
+               "  hemi convert room.hres room.vtp --factors room.hff --row 12 --row 40");
 }
 
 void add_info(CLI::App& app, InfoArguments& a) {

@@ -1,3 +1,4 @@
+#include "cli/cell_data.hpp"
 #include "cli/commands.hpp"
 #include "cli/error_report.hpp"
 #include "cli/outputs.hpp"
@@ -70,7 +71,7 @@ std::vector<double> emissivities(const Subject& subject) {
 Outputs check_outputs(const FactorsArguments& arguments) {
     Outputs outputs;
     if (arguments.output) {
-        outputs.add("-o", *arguments.output, {".hff", ".mtx", ".csv", ".npz", ".txt", ".vf"}, true);
+        outputs.add("-o", *arguments.output, {".hff", ".mtx", ".csv", ".npz", ".txt", ".vf", ".vtp"}, true);
     }
     if (arguments.patches) {
         outputs.add("--patches", *arguments.patches, {".csv"}, true);
@@ -349,7 +350,11 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     estimate_rows(file);
     subject.seconds.estimate += estimate_watch.seconds();
     if (writes && !holds_raw_rows(*arguments.output)) {
-        write_factors(*arguments.output, file, emissivities(subject));
+        if (extension_of(*arguments.output) == ".vtp") {
+            io::write_vtp(*arguments.output, subject.loaded->mesh, cell_data(file));
+        } else {
+            write_factors(*arguments.output, file, emissivities(subject));
+        }
     }
     if (arguments.row) {
         show_row(arguments, subject);

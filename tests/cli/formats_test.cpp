@@ -80,3 +80,42 @@ TEST_CASE("View3D output: from a scene with its emissivities, from a .hff with a
     CHECK(bare.status == 2);
     CHECK(bare.err_has("hold areas"));
 }
+
+TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(2));
+    const std::string hres = directory.path("cube.hres");
+    const std::string hff = directory.path("cube.hff");
+    REQUIRE(run_hemi(quick({"solve", scene, "--result", hres, "--factors", hff})).status == 0);
+    const std::string vtp = directory.path("cube.vtp");
+    const Outcome run =
+        run_hemi({"convert", hres, vtp, "--factors", hff, "--row", "0", "--row", "23", "--json"});
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json arrays = run.json()["arrays"];
+    for (const char* name : {"radiosity", "irradiance", "exitance", "reflectance", "row_sum", "environment",
+                             "blocked", "row_error", "radiosity_error", "F_0", "F_23"}) {
+        INFO(name);
+        CHECK(std::count(arrays.begin(), arrays.end(), Json(name)) == 1);
+        CHECK(directory.read("cube.vtp").find(std::string(" Name=\"") + name + "\" ") != std::string::npos);
+    }
+    CHECK(directory.read("cube.vtp").find("NumberOfPolys=\"24\"") != std::string::npos);
+    CHECK(run_hemi(quick({"factors", scene, "-o", directory.path("F.vtp")})).status == 0);
+    CHECK(directory.read("F.vtp").find("Name=\"row_error\"") != std::string::npos);
+
+    const auto refused = [](const Words& words, int status, const std::string& text) {
+        const Outcome outcome = run_hemi(words);
+        INFO(outcome.err);
+        CHECK(outcome.status == status);
+        CHECK(outcome.err_has(text));
+    };
+    refused({"convert", hff, vtp}, 2, "a .vtp needs the patches");
+    refused({"convert", hres, directory.path("x.npz")}, 2, "can be written as .vtp");
+    refused({"convert", hff, directory.path("x.npz"), "--factors", hff, "--row", "1"}, 2, "are for a .hres");
+    refused({"convert", hres, vtp, "--factors", hff, "--row", "24"}, 2, "--row 24: there are 24 rows");
+    refused({"convert", hres, vtp, "--row", "1"}, 2, "--factors");
+    const std::string other = directory.path("other.hff");
+    REQUIRE(run_hemi(quick({"factors", directory.write("other.json", cube(3)), "-o", other})).status == 0);
+    refused({"convert", hres, vtp, "--factors", other, "--row", "1"}, 3,
+            "other.hff: belongs to another geometry");
+}
