@@ -3,6 +3,7 @@
 #include "core/nearest_word.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/io/scene_reader.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -86,8 +87,9 @@ void add_common(CLI::App& app, CommonOptions& common, bool json = true) {
 void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SCENE",
                const std::string& stored = "") {
     add_positional(app, name, scene.path,
-                   stored.empty() ? "scene: .json or .obj"
-                                  : fmt::format("scene (.json, .obj) or stored file ({})", stored));
+                   stored.empty()
+                       ? fmt::format("scene: {}", io::scene_extensions())
+                       : fmt::format("scene ({}) or stored file ({})", io::scene_extensions(), stored));
     Options options(app, "Scene");
     auto* size = options.value("--patch-size", "S", "patch edges no longer than S scene units",
                                [&scene](const std::string& text) {
@@ -100,7 +102,8 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
                })
         ->excludes(size);
     options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
-    app.add_option("--two-sided", scene.two_sided, "OBJ: faces of GROUP radiate on both sides; repeatable")
+    app.add_option("--two-sided", scene.two_sided,
+                   "faces of GROUP radiate on both sides (not for .json); repeatable")
         ->allow_extra_args(false)
         ->option_text("GROUP")
         ->group("Scene");
@@ -314,8 +317,9 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     add_estimate(app, a.rows);
     add_max_memory(app, a.rows);
     Options output(app, "Output");
-    auto* file = output.path("-o,--output", "FILE", a.output,
-                             "form factors: .hff .mtx .csv .npz; - for .csv on stdout");
+    auto* file = output.path(
+        "-o,--output", "FILE", a.output,
+        "form factors: .hff .mtx .csv .npz, View3D's .txt .vf, ParaView's .vtp; - for .csv on stdout");
     output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
     auto* row = output.value("--row", "I", "print one row, largest first, with names",
                              [&a](const std::string& text) { a.row = to_index("--row", text, 0); });
@@ -418,14 +422,32 @@ void add_view(CLI::App& app, ViewArguments& a) {
 }
 
 void add_convert(CLI::App& app, ConvertArguments& a) {
-    add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz");
-    add_positional(app, "OUT", a.output,
-                   "form factors: .mtx .csv .npz (.hff from .hff); - for .csv on stdout");
+    add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz; or a solution: .hres");
+    add_positional(
+        app, "OUT", a.output,
+        "form factors: .mtx .csv .npz; from .hff also .hff and View3D's .txt .vf; - for .csv on stdout; "
+        "from .hres: .vtp");
     add_repair(app, a.repair);
+    Options paraview(app, "ParaView");
+    auto* factors =
+        paraview.path("--factors", "FILE.hff", a.factors, "for .vtp: form factors with the rows of --row");
+    auto* row = app.add_option_function<Words>(
+                       "--row",
+                       [&a](const Words& all) {
+                           for (const std::string& text : all) {
+                               a.rows.push_back(to_index("--row", text, 0));
+                           }
+                       },
+                       "for .vtp: show F(I, j) at every patch j; repeatable")
+                    ->allow_extra_args(false)
+                    ->option_text("I")
+                    ->group("ParaView");
+    row->needs(factors);
+    factors->needs(row);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi convert room.hff room.npz\n"
-               "  hemi convert room.mtx room.csv");
+               "  hemi convert room.hres room.vtp --factors room.hff --row 12 --row 40");
 }
 
 void add_info(CLI::App& app, InfoArguments& a) {

@@ -123,7 +123,9 @@ struct ConvertArguments {
     CommonOptions common;
     std::filesystem::path input;
     std::filesystem::path output;
-    std::optional<Repair> repair; ///< none: what suits the rows
+    std::optional<Repair> repair;                 ///< none: what suits the rows
+    std::optional<std::filesystem::path> factors; ///< for .vtp: where the rows are
+    std::vector<std::uint32_t> rows;              ///< for .vtp: rows of F as cell data
 };
 
 struct InfoArguments {

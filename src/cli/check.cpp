@@ -202,10 +202,9 @@ Json to_json(const Findings& findings, const RowRepair& repair, const io::Factor
 io::FactorFile read_file(const CheckArguments& arguments) {
     const std::filesystem::path& path = arguments.scene.path;
     if (extension_of(path) != ".hff") {
-        throw InvalidArgument(
-            fmt::format("{}: check needs a scene (.json, .obj) or a .hff; other files hold no row "
-                        "balance and no areas",
-                        path.string()));
+        throw InvalidArgument(fmt::format("{}: check needs a scene ({}) or a .hff; other files hold no row "
+                                          "balance and no areas",
+                                          path.string(), io::scene_extensions()));
     }
     refuse_all_but(arguments.common, std::vector<std::string>{"--enclosure", "--max-row-error", "--repair"},
                    path);

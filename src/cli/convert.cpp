@@ -1,3 +1,4 @@
+#include "cli/cell_data.hpp"
 #include "cli/commands.hpp"
 #include "cli/outputs.hpp"
 #include "cli/pipeline.hpp"
@@ -24,13 +25,68 @@ io::FactorFile read_input(const std::filesystem::path& path) {
     return file;
 }
 
+/// Rows of the --factors file, repaired, if it belongs to the patches of `mesh`.
+FormFactorMatrix read_rows(const ConvertArguments& arguments, const PatchMesh& mesh) {
+    io::FactorFile file = io::read_hff(*arguments.factors);
+    if (file.geometry_hash != mesh.geometry_hash() || file.factors.size() != mesh.size()) {
+        throw InputError(fmt::format("{}: belongs to another geometry than {}", arguments.factors->string(),
+                                     arguments.input.string()));
+    }
+    settle_contacts(file);
+    (void)repair_rows(file, arguments.repair);
+    return std::move(file.factors);
+}
+
+void convert_result(const ConvertArguments& arguments) {
+    if (arguments.repair && !arguments.factors) {
+        throw InvalidArgument("--repair needs form factors: --factors FILE.hff");
+    }
+    const io::ResultFile result = io::read_hres(arguments.input);
+    const PatchMesh mesh(result.scene, result.subdivision);
+    std::vector<io::CellArray> arrays = cell_data(result, mesh);
+    if (arguments.factors) {
+        const FormFactorMatrix factors = read_rows(arguments, mesh);
+        for (const std::uint32_t row : arguments.rows) {
+            arrays.push_back(row_data(factors, row));
+        }
+    }
+    io::write_vtp(arguments.output, mesh, arrays);
+    if (arguments.common.json) {
+        std::vector<std::string> names;
+        for (const io::CellArray& array : arrays) {
+            names.push_back(array.name);
+        }
+        print_json({{"schema", "hemi/convert/1"},
+                    {"input", arguments.input.string()},
+                    {"output", arguments.output.string()},
+                    {"patches", mesh.size()},
+                    {"arrays", names}});
+    }
+}
+
 } // namespace
 
 ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
     Outputs outputs;
-    outputs.add("OUT", arguments.output, {".hff", ".mtx", ".csv", ".npz"}, true);
+    outputs.add("OUT", arguments.output, {".hff", ".mtx", ".csv", ".npz", ".txt", ".vf", ".vtp"}, true);
     if (outputs.uses_standard_output() && arguments.common.json) {
         throw InvalidArgument("--json and an output to - cannot both go to standard output");
+    }
+    const bool from_result = extension_of(arguments.input) == ".hres";
+    if (from_result != (extension_of(arguments.output) == ".vtp")) {
+        throw InvalidArgument(
+            from_result
+                ? fmt::format("{}: a stored solution can be written as .vtp", arguments.output.string())
+                : fmt::format("{}: a .vtp needs the patches, which {} does not have; convert a .hres, or "
+                              "use `hemi factors SCENE -o FILE.vtp`",
+                              arguments.output.string(), arguments.input.string()));
+    }
+    if (from_result) {
+        convert_result(arguments);
+        return ExitStatus::ok;
+    }
+    if (arguments.factors) {
+        throw InvalidArgument("--factors and --row are for a .hres that becomes a .vtp");
     }
     const bool from_hff = extension_of(arguments.input) == ".hff";
     const bool to_hff = extension_of(arguments.output) == ".hff";
@@ -38,6 +94,12 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
         throw InvalidArgument(
             fmt::format("{}: a .hff holds areas, names, row balance and the geometry's hash, which "
                         "{} does not have; `hemi factors SCENE -o FILE.hff` makes one",
+                        arguments.output.string(), arguments.input.string()));
+    }
+    const bool to_view3d = is_view3d_factor_file(arguments.output);
+    if (to_view3d && !from_hff && is_bare_factor_file(arguments.input)) {
+        throw InvalidArgument(
+            fmt::format("{}: View3D's files hold areas, which {} does not have; a .hff does",
                         arguments.output.string(), arguments.input.string()));
     }
     if (arguments.repair && (to_hff || !from_hff)) {
@@ -57,9 +119,14 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
     }
     if (from_hff && !to_hff) {
         terminal.note(
-            fmt::format("not in {}: areas, group names, row balance (environment, blocked), settings and "
-                        "the geometry's hash",
-                        is_standard_output(arguments.output) ? "a .csv" : arguments.output.string()));
+            fmt::format("not in {}: {}group names, row balance (environment, blocked), settings and the "
+                        "geometry's hash",
+                        is_standard_output(arguments.output) ? "a .csv" : arguments.output.string(),
+                        to_view3d ? "" : "areas, "));
+        if (to_view3d) {
+            terminal.note("emissivities are not in a .hff and are written as 0.999; `hemi factors SCENE -o "
+                          "FILE` writes the scene's");
+        }
         if (!file.factors.all_known()) {
             terminal.warn("rows that were not computed become empty rows");
         }

@@ -1,3 +1,4 @@
+#include "cli/cell_data.hpp"
 #include "cli/commands.hpp"
 #include "cli/error_report.hpp"
 #include "cli/error_target.hpp"
@@ -5,6 +6,7 @@
 #include "cli/pipeline.hpp"
 #include "cli/repair_rows.hpp"
 #include "cli/report.hpp"
+#include "cli/solution.hpp"
 #include "cli/stored_factors.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/yardsticks.hpp"
@@ -57,10 +59,24 @@ bool holds_raw_rows(const std::filesystem::path& path) {
     return extension_of(path) == ".hff";
 }
 
+/// 1 - reflectance of every patch, the mean of all channels.
+std::vector<double> emissivities(const Subject& subject) {
+    const LoadedScene& loaded = *subject.loaded;
+    const std::vector<double> reflectance = patch_reflectance(loaded.scene, loaded.mesh);
+    const std::size_t channels = loaded.scene.channels.size();
+    std::vector<double> result;
+    for (auto first = reflectance.begin(); first != reflectance.end();
+         first += static_cast<std::ptrdiff_t>(channels)) {
+        const double sum = std::accumulate(first, first + static_cast<std::ptrdiff_t>(channels), 0.0);
+        result.push_back(1.0 - sum / static_cast<double>(channels));
+    }
+    return result;
+}
+
 Outputs check_outputs(const FactorsArguments& arguments) {
     Outputs outputs;
     if (arguments.output) {
-        outputs.add("-o", *arguments.output, {".hff", ".mtx", ".csv", ".npz"}, true);
+        outputs.add("-o", *arguments.output, {".hff", ".mtx", ".csv", ".npz", ".txt", ".vf", ".vtp"}, true);
     }
     if (arguments.patches) {
         outputs.add("--patches", *arguments.patches, {".csv"}, true);
@@ -135,8 +151,8 @@ Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal) 
 Subject from_file(const FactorsArguments& arguments) {
     const std::filesystem::path& path = arguments.scene.path;
     if (extension_of(path) != ".hff") {
-        throw InvalidArgument(fmt::format(
-            "{}: must be a scene (.json, .obj) or form factors with names (.hff)", path.string()));
+        throw InvalidArgument(fmt::format("{}: must be a scene ({}) or form factors with names (.hff)",
+                                          path.string(), io::scene_extensions()));
     }
     refuse_all_but(arguments.common, std::vector<std::string>{"--row", "--by-group", "--output", "--repair"},
                    path);
@@ -437,7 +453,11 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     estimate_rows(file);
     subject.seconds.estimate += estimate_watch.seconds();
     if (writes && !holds_raw_rows(*arguments.output)) {
-        write_factors(*arguments.output, file);
+        if (extension_of(*arguments.output) == ".vtp") {
+            io::write_vtp(*arguments.output, subject.loaded->mesh, cell_data(file));
+        } else {
+            write_factors(*arguments.output, file, emissivities(subject));
+        }
     }
     if (arguments.row) {
         show_row(arguments, subject);

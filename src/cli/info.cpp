@@ -315,8 +315,8 @@ ExitStatus run(const InfoArguments& arguments, const Terminal& terminal) {
     } else if (is_bare_factor_file(path)) {
         show_bare_factors(arguments);
     } else {
-        throw InvalidArgument(
-            fmt::format("{}: info reads .json, .obj, .hff, .hres, .mtx, .csv and .npz", path.string()));
+        throw InvalidArgument(fmt::format("{}: info reads {}, .hff, .hres, .mtx, .csv and .npz",
+                                          path.string(), io::scene_extensions()));
     }
     return ExitStatus::ok;
 }

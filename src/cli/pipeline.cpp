@@ -48,8 +48,8 @@ void check_two_sided_groups(const Scene& scene, const SceneOptions& options) {
     if (options.two_sided.empty()) {
         return;
     }
-    if (extension_of(options.path) != ".obj") {
-        throw InvalidArgument("--two-sided is for OBJ files; a JSON scene says \"two_sided\": true");
+    if (extension_of(options.path) == ".json") {
+        throw InvalidArgument("--two-sided is not for JSON scenes, which say \"two_sided\": true");
     }
     for (const std::string& name : options.two_sided) {
         if (std::find(scene.groups.begin(), scene.groups.end(), name) == scene.groups.end()) {

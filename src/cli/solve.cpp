@@ -295,8 +295,8 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
                                           arguments.factors->string()));
     }
     if (!io::is_scene_file(arguments.scene.path)) {
-        throw InvalidArgument(
-            fmt::format("{}: solve needs a scene, .json or .obj", arguments.scene.path.string()));
+        throw InvalidArgument(fmt::format("{}: solve needs a scene ({})", arguments.scene.path.string(),
+                                          io::scene_extensions()));
     }
     Seconds seconds;
     const LoadedScene loaded = load_scene(arguments.scene, terminal);

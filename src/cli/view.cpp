@@ -68,8 +68,8 @@ void view_scene(const ViewArguments& arguments, const Terminal& terminal) {
 void view_result(const ViewArguments& arguments) {
     const std::filesystem::path& path = arguments.scene.path;
     if (extension_of(path) != ".hres") {
-        throw InvalidArgument(
-            fmt::format("{}: view shows a scene (.json, .obj) or a stored solution (.hres)", path.string()));
+        throw InvalidArgument(fmt::format("{}: view shows a scene ({}) or a stored solution (.hres)",
+                                          path.string(), io::scene_extensions()));
     }
     refuse_all_but(arguments.common,
                    std::vector<std::string>{"--size", "--show", "--camera", "--flat", "--exposure",

@@ -6,6 +6,7 @@
 #include "io/obj_mesh.hpp"
 #include "io/polygon_pieces.hpp"
 #include "io/transform.hpp"
+#include "io/two_sided.hpp"
 
 #include <fmt/format.h>
 

@@ -41,8 +41,4 @@ struct ObjMesh {
 find_obj_materials(const ObjMesh& mesh, std::span<const std::string> defined_elsewhere,
                    Diagnostics& diagnostics);
 
-/// Makes the surfaces of the named groups two-sided.
-/// @throws InputError for an unknown group, with the nearest.
-void make_two_sided(Scene& scene, const std::vector<std::string>& groups, const std::string& file);
-
 } // namespace hemi::io

@@ -1,5 +1,6 @@
 #include "hemi/io/scene_reader.hpp"
 #include "io/obj_mesh.hpp"
+#include "io/two_sided.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 
 namespace hemi::io {
 
@@ -17,23 +19,49 @@ std::string lower_extension(const std::filesystem::path& path) {
     return extension;
 }
 
+struct Reader {
+    std::string_view extension;
+    Scene (*read)(const std::filesystem::path&, const SceneReaderOptions&, Diagnostics&);
+};
+constexpr Reader readers[] = {{".json", read_json_scene},
+                              {".obj", read_obj_scene},
+                              {".gltf", read_gltf_scene},
+                              {".glb", read_gltf_scene},
+                              {".vs3", read_vs3_scene}};
+
+const Reader* reader_of(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    const auto* found = std::find_if(std::begin(readers), std::end(readers),
+                                     [&](const Reader& reader) { return reader.extension == extension; });
+    return found == std::end(readers) ? nullptr : found;
+}
+
 } // namespace
 
+std::string scene_extensions() {
+    std::string list;
+    for (const Reader& reader : readers) {
+        list += list.empty() ? "" : ", ";
+        list += reader.extension;
+    }
+    return list;
+}
+
 bool is_scene_file(const std::filesystem::path& path) {
-    const std::string extension = lower_extension(path);
-    return extension == ".json" || extension == ".obj";
+    return reader_of(path) != nullptr;
 }
 
 Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                  Diagnostics& diagnostics) {
-    const std::string extension = lower_extension(path);
-    if (!is_scene_file(path)) {
-        throw InputError(fmt::format("{}: {}; scenes are read from .json and .obj files", path.string(),
-                                     extension.empty() ? std::string("no extension")
-                                                       : fmt::format("unknown extension \"{}\"", extension)));
+    const Reader* reader = reader_of(path);
+    if (reader == nullptr) {
+        throw InputError(fmt::format("{}: {}; scenes are read from {} files", path.string(),
+                                     path.has_extension()
+                                         ? fmt::format("unknown extension \"{}\"", lower_extension(path))
+                                         : std::string("no extension"),
+                                     scene_extensions()));
     }
-    Scene scene = extension == ".json" ? read_json_scene(path, options, diagnostics)
-                                       : read_obj_scene(path, options, diagnostics);
+    Scene scene = reader->read(path, options, diagnostics);
     try {
         validate(scene);
     } catch (const InputError& error) {

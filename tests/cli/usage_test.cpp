@@ -102,7 +102,7 @@ TEST_CASE("Command line: output names are looked at before the work", "[cli]") {
     const std::string scene = directory.write("cube.json", cube(2));
     refuses({"solve", scene, "-o", directory.path("a.jpg")}, "must end in .png, .hdr");
     refuses({"solve", scene, "--result", directory.path("a.bin")}, "must end in .hres");
-    refuses({"factors", scene, "-o", directory.path("a.txt")}, "must end in .hff, .mtx, .csv, .npz");
+    refuses({"factors", scene, "-o", directory.path("a.doc")}, "must end in .hff, .mtx, .csv, .npz, .txt, .vf");
     refuses({"solve", scene, "--patches", directory.path("a.csv"), "--radiosity", directory.path("a.csv")},
             "the same file");
     refuses({"solve", scene, "-o", "-", "--json"}, "standard output");

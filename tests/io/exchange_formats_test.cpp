@@ -4,8 +4,10 @@
 
 #include <clocale>
 #include <cstdlib>
+#include <cstring>
 #include <fmt/format.h>
 #include <locale>
+#include <sstream>
 
 namespace hemi::io_test {
 
@@ -241,6 +243,71 @@ TEST_CASE("NPZ: files cut short, flipped bits and other files are refused or rea
     require_parts(message_of<InputError>([&] { (void)io::read_npz(folder.write("x.npz", "i,j,F\n")); }),
                   {"x.npz: cannot be read as a ZIP archive"});
     require_parts(message_of<InputError>([&] { (void)io::read_npz(folder / "no.npz"); }), {"No such file"});
+}
+
+TEST_CASE("View3D factors: header, areas, rows and emissivities are where View3D's readers look", "[io]") {
+    const Folder folder;
+    io::FactorFile file;
+    file.factors = FormFactorMatrix(3);
+    file.factors.set_block(
+        {0, {0, 1, 2, 2}, {1, 0}, {1.0f / 3.0f, 1e-7f}, {}, {0, 0, 0}, {0, 0, 0}, {1, 1, 1}});
+    file.areas = {1.0, 2.0 / 3.0, 3e6};
+    file.enclosure = "closed";
+    const std::vector<double> emissivity{0.5, 0.0, 1.0};
+    io::write_view3d(folder / "a.txt", file, io::View3dFormat::text, emissivity);
+    const std::string text = io::read_file(folder / "a.txt");
+    REQUIRE(text.substr(0, 5) == "hemi ");
+    REQUIRE(text.substr(0, 30).find(" 0 1 0 3 ") != std::string::npos);
+    REQUIRE(text.substr(30) == "\n1 0.666666667 3000000\n0 0.333333343 0\n1.00000001e-07 0 0\n0 0 0\n"
+                               "0.5 0.001 0.999\n");
+
+    io::write_view3d(folder / "a.vf", file, io::View3dFormat::binary);
+    const std::string binary = io::read_file(folder / "a.vf");
+    REQUIRE(binary.size() == 32 + 4 * (3 + 9 + 3));
+    REQUIRE(binary.substr(0, 30).find(" 1 1 0 3 ") != std::string::npos);
+    REQUIRE(binary.substr(30, 2) == "\r\n");
+    std::vector<float> numbers(15);
+    std::memcpy(numbers.data(), binary.data() + 32, 60);
+    REQUIRE(numbers == std::vector<float>{1.0f, 2.0f / 3.0f, 3e6f, 0, 1.0f / 3.0f, 0, 1e-7f, 0, 0, 0, 0, 0,
+                                          0.999f, 0.999f, 0.999f});
+}
+
+TEST_CASE("View3D factors: every factor and every row sum reads back from text", "[io]") {
+    const Folder folder;
+    io::FactorFile file;
+    file.factors = random_matrix(150, true);
+    file.areas.assign(150, 2.5);
+    io::write_view3d(folder / "a.txt", file, io::View3dFormat::text);
+    std::istringstream stream(io::read_file(folder / "a.txt"));
+    std::string line;
+    std::getline(stream, line);
+    REQUIRE(line.size() == 30);
+    std::getline(stream, line);
+    for (std::uint32_t i = 0; i < 150; ++i) {
+        const RowView row = file.factors.row(i);
+        double sum = 0.0;
+        std::size_t entries = 0;
+        for (std::uint32_t j = 0; j < 150; ++j) {
+            float value = -1.0f;
+            stream >> value;
+            sum += static_cast<double>(value);
+            if (entries < row.columns.size() && row.columns[entries] == j) {
+                REQUIRE(value == row.values[entries++]);
+            } else {
+                REQUIRE(value == 0.0f);
+            }
+        }
+        REQUIRE(sum == row.sum());
+    }
+    REQUIRE_THROWS_AS(io::write_view3d("/dev/full", file, io::View3dFormat::binary), IoError);
+    file.areas.pop_back();
+    REQUIRE_THROWS_AS(io::write_view3d(folder / "b.txt", file, io::View3dFormat::text), InvalidArgument);
+    file.areas.push_back(1.0);
+    file.factors = FormFactorMatrix(150);
+    require_parts(message_of<InvalidArgument>(
+                      [&] { io::write_view3d(folder / "b.txt", file, io::View3dFormat::text); }),
+                  {"not computed", "use .hff"});
+    REQUIRE(folder.files() == 1);
 }
 
 } // namespace hemi::io_test

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,17 @@ void write_csv(const std::filesystem::path& path, const FormFactorMatrix& factor
 /// What scipy.sparse.load_npz reads as a CSR matrix of float32.
 void write_npz(const std::filesystem::path& path, const FormFactorMatrix& factors);
 
-/// The readers of the same three formats. Row balance is not in these files: environment and blocked are 0.
+enum class View3dFormat { text, binary };
+
+/// A view factor file as View3D writes it: a header of 30 characters (program, version, format, enclosure,
+/// 0 for factors without reflection, N), N areas, N rows of N factors, N emissivities. Text has 9 significant
+/// digits; binary is 32-bit floats behind the header and a CR LF. Zeros are written too: N² numbers.
+/// @param emissivity  N, limited to [0.001, 0.999] as View3D does; empty: 0.999
+/// @throws InvalidArgument for unknown rows and spans that do not fit; IoError
+void write_view3d(const std::filesystem::path& path, const FactorFile& file, View3dFormat format,
+                  std::span<const double> emissivity = {});
+
+/// The readers of the first three formats. Row balance is not in these files: environment and blocked are 0.
 /// .csv needs the matrix' size: one more than the largest index.
 [[nodiscard]] FormFactorMatrix read_mtx(const std::filesystem::path& path);
 [[nodiscard]] FormFactorMatrix read_csv(const std::filesystem::path& path);

@@ -10,11 +10,12 @@
 namespace hemi::io {
 
 struct SceneReaderOptions {
-    std::vector<std::string> two_sided_groups; ///< OBJ: groups whose faces radiate on both sides
+    std::vector<std::string> two_sided_groups; ///< groups whose faces radiate on both sides
     bool skip_degenerate = false; ///< leave out faces of zero area, with a warning, instead of refusing
 };
 
-/// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl).
+/// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3
+/// (View3D).
 /// @throws ParseError or InputError with file, place, value and what would be right.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                Diagnostics& diagnostics);
@@ -27,6 +28,22 @@ struct SceneReaderOptions {
 /// blue). Without a material: reflectance 0.5, exitance 0.
 [[nodiscard]] Scene read_obj_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                    Diagnostics& diagnostics);
+
+/// glTF 2.0, text or binary: triangles as surfaces, placed by their nodes; a group for every node's name (or
+/// its mesh's). Base colour is reflectance, emissiveFactor times KHR_materials_emissive_strength is exitance
+/// in W/m², doubleSided is two-sided. Without a material: reflectance 0.5, exitance 0. Buffers are read from
+/// data URIs and from files in the scene's folder.
+[[nodiscard]] Scene read_gltf_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                    Diagnostics& diagnostics);
+
+/// View3D input, format 3: every `S` a surface in the group of its name (or, combined, of the surface it is
+/// combined with), reflectance 1 - emissivity, exitance 0. Every `O` is a black two-sided surface of the
+/// group "obstruction": it blocks, and nothing comes from it. Control `encl` is the enclosure.
+[[nodiscard]] Scene read_vs3_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                   Diagnostics& diagnostics);
+
+/// The extensions that read_scene knows, as a message lists them: ".json, .obj".
+[[nodiscard]] std::string scene_extensions();
 
 /// Whether a path's extension says that it is a scene (rather than factors or a result).
 [[nodiscard]] bool is_scene_file(const std::filesystem::path& path);

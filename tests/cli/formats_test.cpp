@@ -1,0 +1,121 @@
+#include "cli/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace hemi::cli_test;
+
+namespace {
+
+/// The cube of View3D's manual.
+const std::string view3d_cube = "T A simple cube\nC encl=1 list=3\nF 3\n"
+                                "V 1 0. 0. 0.\nV 2 1. 0. 0.\nV 3 1. 1. 0.\nV 4 0. 1. 0.\n"
+                                "V 5 0. 0. 1.\nV 6 1. 0. 1.\nV 7 1. 1. 1.\nV 8 0. 1. 1.\n"
+                                "S 1 1 2 3 4 0 0 0.50 zeq0\nS 2 1 4 8 5 0 0 0.50 xeq0\n"
+                                "S 3 1 5 6 2 0 0 0.50 yeq0\nS 4 7 6 5 8 0 0 0.50 zeq1\n"
+                                "S 5 7 3 2 6 0 0 0.50 xeq1\nS 6 7 8 4 3 0 0 0.50 yeq1\nEnd of data\n";
+
+} // namespace
+
+TEST_CASE("View3D input: the manual's cube gives the manual's factors", "[cli]") {
+    const Directory directory;
+    const std::string path = directory.write("cube.vs3", view3d_cube);
+    const Outcome run =
+        run_hemi(quick({"factors", path, "--by-group", "--json", "--patches-per-face", "64"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json json = run.json();
+    CHECK(json["groups"] == Json({"zeq0", "xeq0", "yeq0", "zeq1", "xeq1", "yeq1"}));
+    CHECK(json["factors"][0][3].get<double>() == Approx(0.199825).margin(1e-4));
+    CHECK(json["factors"][0][1].get<double>() == Approx(0.200044).margin(1e-4));
+    CHECK(run_hemi({"info", path, "--json"}).json()["enclosure"] == "closed");
+}
+
+TEST_CASE("View3D input: what an obstruction hides arrives there, and the rest balances", "[cli]") {
+    const Directory directory;
+    const std::string path = directory.write(
+        "obstructed.vs3", "C encl=0\nF 3\nV 1 0 0 0\nV 2 1 0 0\nV 3 1 1 0\nV 4 0 1 0\nV 5 0 0 1\nV 6 1 0 1\n"
+                          "V 7 1 1 1\nV 8 0 1 1\nV 9 -9 -9 .5\nV 10 9 -9 .5\nV 11 9 9 .5\nV 12 -9 9 .5\n"
+                          "S 1 1 2 3 4 0 0 .5 low\nS 2 8 7 6 5 0 0 .5 high\nO 3 9 10 11 12\n");
+    const Json json = run_hemi(quick({"factors", path, "--by-group", "--json"})).json();
+    CHECK(json["groups"] == Json({"low", "high", "obstruction"}));
+    CHECK(json["factors"][0][1] == 0.0);
+    CHECK(json["factors"][0][2].get<double>() > 0.99);
+    CHECK(json["factors"][1][2].get<double>() > 0.99);
+    CHECK(json["blocked"] == Json({0.0, 0.0, 0.0}));
+}
+
+TEST_CASE("Bad input in an exchange format: exit status 3, with the file and the line", "[cli]") {
+    const Directory directory;
+    const std::string vs3 = directory.write("bad.vs3", "F 3\nV 1 0 0\n");
+    const std::string glb =
+        directory.write("bad.glb", std::string("glTF\2\0\0\0\377\377\377\377", 12) + std::string(20, ' '));
+    const Outcome claim = run_hemi({"info", glb});
+    CHECK(claim.status == 3);
+    CHECK(claim.err_has("bad.glb: cut short: 32 bytes; its header says 4294967295"));
+    for (const char* command : {"info", "factors", "check", "solve"}) {
+        const Outcome run = run_hemi({command, vs3});
+        INFO(command << ": " << run.err);
+        CHECK(run.status == 3);
+        CHECK(run.err_has("bad.vs3:2: vertex 1: z \"\"; must be a number"));
+    }
+}
+
+TEST_CASE("View3D output: from a scene with its emissivities, from a .hff with a note", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.vs3", view3d_cube);
+    REQUIRE(run_hemi(quick({"factors", scene, "-o", directory.path("F.txt")})).status == 0);
+    const std::string text = directory.read("F.txt");
+    CHECK(text.ends_with("\n0.5 0.5 0.5 0.5 0.5 0.5\n"));
+    CHECK(std::count(text.begin(), text.end(), '\n') == 9);
+
+    REQUIRE(run_hemi(quick({"factors", scene, "-o", directory.path("F.hff")})).status == 0);
+    const Outcome convert = run_hemi({"convert", directory.path("F.hff"), directory.path("F.vf")});
+    REQUIRE(convert.status == 0);
+    CHECK(convert.err_has("emissivities are not in a .hff"));
+    CHECK(directory.read("F.vf").size() == 32 + 4 * (6 + 36 + 6));
+    REQUIRE(run_hemi({"convert", directory.path("F.hff"), directory.path("F.npz")}).status == 0);
+    const Outcome bare = run_hemi({"convert", directory.path("F.npz"), directory.path("G.txt")});
+    CHECK(bare.status == 2);
+    CHECK(bare.err_has("hold areas"));
+}
+
+TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(2));
+    const std::string hres = directory.path("cube.hres");
+    const std::string hff = directory.path("cube.hff");
+    REQUIRE(run_hemi(quick({"solve", scene, "--result", hres, "--factors", hff})).status == 0);
+    const std::string vtp = directory.path("cube.vtp");
+    const Outcome run =
+        run_hemi({"convert", hres, vtp, "--factors", hff, "--row", "0", "--row", "23", "--json"});
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json arrays = run.json()["arrays"];
+    for (const char* name : {"radiosity", "irradiance", "exitance", "reflectance", "row_sum", "environment",
+                             "blocked", "row_error", "radiosity_error", "F_0", "F_23"}) {
+        INFO(name);
+        CHECK(std::count(arrays.begin(), arrays.end(), Json(name)) == 1);
+        CHECK(directory.read("cube.vtp").find(std::string(" Name=\"") + name + "\" ") != std::string::npos);
+    }
+    CHECK(directory.read("cube.vtp").find("NumberOfPolys=\"24\"") != std::string::npos);
+    CHECK(run_hemi(quick({"factors", scene, "-o", directory.path("F.vtp")})).status == 0);
+    CHECK(directory.read("F.vtp").find("Name=\"row_error\"") != std::string::npos);
+
+    const auto refused = [](const Words& words, int status, const std::string& text) {
+        const Outcome outcome = run_hemi(words);
+        INFO(outcome.err);
+        CHECK(outcome.status == status);
+        CHECK(outcome.err_has(text));
+    };
+    refused({"convert", hff, vtp}, 2, "a .vtp needs the patches");
+    refused({"convert", hres, directory.path("x.npz")}, 2, "can be written as .vtp");
+    refused({"convert", hff, directory.path("x.npz"), "--factors", hff, "--row", "1"}, 2, "are for a .hres");
+    refused({"convert", hres, vtp, "--factors", hff, "--row", "24"}, 2, "--row 24: there are 24 rows");
+    refused({"convert", hres, vtp, "--row", "1"}, 2, "--factors");
+    const std::string other = directory.path("other.hff");
+    REQUIRE(run_hemi(quick({"factors", directory.write("other.json", cube(3)), "-o", other})).status == 0);
+    refused({"convert", hres, vtp, "--factors", other, "--row", "1"}, 3,
+            "other.hff: belongs to another geometry");
+}

@@ -1,0 +1,421 @@
+#include "hemi/io/scene_reader.hpp"
+
+#include "io/base64.hpp"
+#include "io_fixtures.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <cstring>
+
+namespace hemi::io_test {
+
+namespace {
+
+using Json = nlohmann::json;
+
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+    std::string bytes(values.size() * sizeof(T), '\0');
+    std::memcpy(bytes.data(), values.data(), bytes.size());
+    return bytes;
+}
+
+/// Four corners of a unit square, 48 bytes, then six 16-bit indices.
+const std::string square_bytes =
+    bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) + bytes_of<std::uint16_t>({0, 1, 2, 0, 2, 3});
+
+Json square() {
+    return Json::parse(R"({
+        "asset": {"version": "2.0"},
+        "scene": 0, "scenes": [{"nodes": [0]}],
+        "nodes": [{"name": "floor", "mesh": 0}],
+        "meshes": [{"name": "plate",
+                    "primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}],
+        "materials": [{"name": "paint", "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 0.75, 1]}}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 4},
+                      {"bufferView": 1, "componentType": 5123, "type": "SCALAR", "count": 6}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+        "buffers": [{"byteLength": 60, "uri": "square.bin"}]})");
+}
+
+std::string word(std::uint32_t value) {
+    return bytes_of<std::uint32_t>({value});
+}
+
+std::string glb(Json document, const std::string& binary) {
+    document["buffers"][0].erase("uri");
+    std::string json = document.dump();
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto size = static_cast<std::uint32_t>(28 + json.size() + binary.size());
+    return "glTF" + word(2) + word(size) + word(static_cast<std::uint32_t>(json.size())) + "JSON" + json +
+           word(static_cast<std::uint32_t>(binary.size())) + std::string("BIN\0", 4) + binary;
+}
+
+Scene read(const std::filesystem::path& path, Diagnostics* diagnostics = nullptr,
+           const io::SceneReaderOptions& options = {}) {
+    Diagnostics unused;
+    return io::read_scene(path, options, diagnostics != nullptr ? *diagnostics : unused);
+}
+
+Scene read(const Folder& folder, const Json& document, Diagnostics* diagnostics = nullptr,
+           const io::SceneReaderOptions& options = {}) {
+    folder.write("square.bin", square_bytes);
+    return read(folder.write("room.gltf", document.dump()), diagnostics, options);
+}
+
+void require_near(const Vec3& a, const Vec3& b) {
+    INFO(a.x << " " << a.y << " " << a.z << " and " << b.x << " " << b.y << " " << b.z);
+    REQUIRE(glm::length(a - b) < 1e-12);
+}
+
+bool has_warning(const Diagnostics& diagnostics, const std::string& part) {
+    const auto& all = diagnostics.warnings();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const std::string& text) { return text.find(part) != std::string::npos; });
+}
+
+} // namespace
+
+TEST_CASE("Base64: text with and without padding, and what is none", "[io]") {
+    REQUIRE(io::decode_base64("") == "");
+    REQUIRE(io::decode_base64("Zg==") == "f");
+    REQUIRE(io::decode_base64("Zm8=") == "fo");
+    REQUIRE(io::decode_base64("Zm8") == "fo");
+    REQUIRE(io::decode_base64("Zm9vYmFy") == "foobar");
+    REQUIRE(io::decode_base64("+/+/") == "\xFB\xFF\xBF");
+    for (const char* bad : {"Z", "Zm9vY", "Zm9 ", "Zm=v", "Zm9v====", "Z\xC3\xA4=="}) {
+        INFO(bad);
+        REQUIRE_FALSE(io::decode_base64(bad).has_value());
+    }
+}
+
+TEST_CASE("glTF reader: triangles become surfaces in the group of their node", "[io]") {
+    const Folder folder;
+    const Scene scene = read(folder, square());
+    REQUIRE(scene.name == "room");
+    REQUIRE(scene.channels == std::vector<std::string>{"red", "green", "blue"});
+    REQUIRE(scene.groups == std::vector<std::string>{"floor"});
+    REQUIRE(scene.materials == std::vector<Material>{{"paint", {0.5, 0.25, 0.75}, {0, 0, 0}}});
+    REQUIRE(scene.surfaces.size() == 2);
+    REQUIRE(scene.surfaces[1].vertex_count == 3);
+    REQUIRE(scene.surfaces[1].vertices[1] == Vec3(1, 1, 0));
+    REQUIRE(scene.surfaces[1].vertices[2] == Vec3(0, 1, 0));
+    REQUIRE_FALSE(scene.surfaces[0].two_sided);
+    REQUIRE_FALSE(scene.camera.has_value());
+}
+
+TEST_CASE("glTF reader: .glb, a file beside it and a data URI say the same", "[io]") {
+    const Folder folder;
+    Json document = square();
+    const Scene beside = read(folder, document);
+    const Scene binary = read(folder.write("room.glb", glb(document, square_bytes)));
+    document["buffers"][0]["uri"] =
+        "data:application/"
+        "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAAAAAAAAAAgD8AAAAA"
+        "AAABAAIAAAACAAMA";
+    const Scene inside = read(folder, document);
+    document["buffers"][0]["uri"] = "sub%20folder/%73quare.bin";
+    std::filesystem::create_directory(folder / "sub folder");
+    folder.write("sub folder/square.bin", square_bytes);
+    const Scene below = read(folder, document);
+    for (const Scene& other : {binary, inside, below}) {
+        REQUIRE(other.surfaces.size() == 2);
+        for (std::size_t s = 0; s < 2; ++s) {
+            REQUIRE(other.surfaces[s].vertices == beside.surfaces[s].vertices);
+        }
+        REQUIRE(other.materials == beside.materials);
+    }
+}
+
+TEST_CASE("glTF reader: every width of index, none, and interleaved positions are read alike", "[io]") {
+    const Folder folder;
+    const Scene expected = read(folder, square());
+    const auto require_same = [&](Json document, const std::string& bytes) {
+        document["buffers"][0]["byteLength"] = bytes.size();
+        const Scene scene = read(folder.write("other.glb", glb(document, bytes)));
+        REQUIRE(scene.surfaces.size() == 2);
+        for (std::size_t s = 0; s < 2; ++s) {
+            REQUIRE(scene.surfaces[s].vertices == expected.surfaces[s].vertices);
+        }
+    };
+    Json document = square();
+    document["accessors"][1]["componentType"] = 5121;
+    document["bufferViews"][1]["byteLength"] = 6;
+    require_same(document, square_bytes.substr(0, 48) + std::string("\0\1\2\0\2\3", 6));
+    document["accessors"][1]["componentType"] = 5125;
+    document["bufferViews"][1]["byteLength"] = 24;
+    require_same(document, square_bytes.substr(0, 48) + bytes_of<std::uint32_t>({0, 1, 2, 0, 2, 3}));
+
+    document = square();
+    document["meshes"][0]["primitives"][0].erase("indices");
+    document["accessors"][0]["count"] = 6;
+    document["bufferViews"][0]["byteLength"] = 72;
+    require_same(document, bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0}));
+
+    document = square();
+    document["bufferViews"][0] = {{"buffer", 0}, {"byteOffset", 12}, {"byteLength", 76}, {"byteStride", 20}};
+    document["accessors"][0]["byteOffset"] = 4;
+    std::string bytes = square_bytes.substr(48);
+    for (std::size_t k = 0; k < 4; ++k) {
+        bytes += "abcd" + square_bytes.substr(12 * k, 12) + (k < 3 ? "efgh" : "");
+    }
+    document["bufferViews"][1]["byteOffset"] = 0;
+    require_same(document, bytes);
+}
+
+TEST_CASE("glTF reader: nodes place, turn, scale and mirror what is below them", "[io]") {
+    const Folder folder;
+    Json document = square();
+    const double half = std::sqrt(0.5);
+    document["nodes"] = {{{"children", {1, 2}}, {"translation", {10, 0, 0}}},
+                         {{"name", "turned"},
+                          {"mesh", 0},
+                          {"translation", {0, 5, 0}},
+                          {"rotation", {0, 0, half, half}},
+                          {"scale", {2, 3, 1}}},
+                         {{"mesh", 0}, {"matrix", {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 7, 1}}}};
+    const Scene scene = read(folder, document);
+    REQUIRE(scene.groups == std::vector<std::string>{"turned", "plate"});
+    REQUIRE(scene.surfaces.size() == 4);
+    require_near(scene.surfaces[0].vertices[0], {10, 5, 0});
+    require_near(scene.surfaces[0].vertices[1], {10, 7, 0});
+    require_near(scene.surfaces[0].vertices[2], {7, 7, 0});
+    // A mirrored plate still faces the way it did.
+    require_near(scene.surfaces[2].vertices[0], {9, 1, 7});
+    require_near(scene.surfaces[2].vertices[2], {10, 0, 7});
+    for (const Surface& surface : scene.surfaces) {
+        REQUIRE(area_vector(surface.polygon()).z > 0.0);
+    }
+    document.erase("scenes");
+    document.erase("scene");
+    REQUIRE(read(folder, document).surfaces.size() == 4);
+}
+
+TEST_CASE("glTF reader: emission, sidedness and the lack of a material", "[io]") {
+    const Folder folder;
+    Json document = square();
+    document["materials"][0] = {
+        {"emissiveFactor", {1, 0.5, 0}},
+        {"doubleSided", true},
+        {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 20}}}}}};
+    Diagnostics diagnostics;
+    Scene scene = read(folder, document, &diagnostics);
+    REQUIRE(scene.materials == std::vector<Material>{{"material_0", {0.99, 0.99, 0.99}, {20, 10, 0}}});
+    REQUIRE(scene.surfaces[0].two_sided);
+    REQUIRE(has_warning(diagnostics, "reflectance 0.99 instead of the base colour's 1 in material_0"));
+
+    document["meshes"][0]["primitives"][0].erase("material");
+    REQUIRE(read(folder, document).materials ==
+            std::vector<Material>{{"default", {0.5, 0.5, 0.5}, {0, 0, 0}}});
+    document.erase("materials");
+    scene = read(folder, document, nullptr, {.two_sided_groups = {"floor"}});
+    REQUIRE(scene.materials == std::vector<Material>{{"default", {0.5}, {0.0}}});
+    REQUIRE(scene.surfaces[0].two_sided);
+}
+
+TEST_CASE("glTF reader: the first perspective camera is the scene's", "[io]") {
+    const Folder folder;
+    Json document = square();
+    document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    document["nodes"].push_back({{"camera", 0}, {"translation", {1, 2, 3}}});
+    document["scenes"][0]["nodes"] = {0, 1};
+    const Scene scene = read(folder, document);
+    REQUIRE(scene.camera.has_value());
+    require_near(scene.camera->eye, {1, 2, 3});
+    require_near(scene.camera->target, {1, 2, 2});
+    require_near(scene.camera->up, {0, 1, 0});
+    REQUIRE(scene.camera->fov == Approx(28.6478897));
+}
+
+TEST_CASE("glTF reader: what is not used is told", "[io]") {
+    const Folder folder;
+    Json document = square();
+    document["skins"] = Json::array();
+    document["animations"] = Json::array();
+    document["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_unlit"};
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    document["materials"][0]["alphaMode"] = "BLEND";
+    document["meshes"][0]["primitives"][0]["targets"] = Json::array();
+    document["meshes"][0]["primitives"].push_back({{"mode", 1}, {"attributes", {{"POSITION", 0}}}});
+    Diagnostics diagnostics;
+    REQUIRE(read(folder, document, &diagnostics).surfaces.size() == 2);
+    for (const char* part : {"room.gltf: not used: KHR_materials_transmission, skins, animations",
+                             "1 primitives of points or lines left out", "morph targets are not used",
+                             "textures are not used; baseColorFactor", "transparency is not used"}) {
+        INFO(part);
+        REQUIRE(has_warning(diagnostics, part));
+    }
+    REQUIRE(diagnostics.warnings().size() == 5);
+}
+
+TEST_CASE("glTF reader: what is wrong is named with its place, its value and what would be right", "[io]") {
+    struct Bad {
+        const char* patch; ///< JSON Patch (RFC 6902) of the square
+        std::vector<std::string> parts;
+    };
+    const std::vector<Bad> table{
+        {R"({"op": "remove", "path": "/asset"})", {"room.gltf: \"asset\" is missing"}},
+        {R"({"op": "replace", "path": "/asset/version", "value": "1.0"})",
+         {"asset.version: \"1.0\"; must be"}},
+        {R"({"op": "add", "path": "/extensionsRequired", "value": ["KHR_draco_mesh_compression"]})",
+         {"extensionsRequired[0]: KHR_draco_mesh_compression is not supported"}},
+        {R"({"op": "replace", "path": "/scene", "value": 1})", {"scene: 1; there are 1 scenes"}},
+        {R"({"op": "replace", "path": "/scenes/0/nodes/0", "value": 4000000000})",
+         {"scenes[0].nodes[0]: 4000000000; there are 1 nodes"}},
+        {R"({"op": "replace", "path": "/scenes/0/nodes", "value": []})", {"no triangles; a scene needs"}},
+        {R"({"op": "replace", "path": "/scenes/0/nodes", "value": [0, 0]})", {"nodes[0]: is reached twice"}},
+        {R"({"op": "add", "path": "/nodes/0/children", "value": [0]})", {"nodes[0]: is reached twice"}},
+        {R"({"op": "replace", "path": "/nodes/0/mesh", "value": 1})",
+         {"nodes[0].mesh: 1; there are 1 meshes"}},
+        {R"({"op": "replace", "path": "/nodes/0/mesh", "value": -1})",
+         {"nodes[0].mesh: -1; must be a whole"}},
+        {R"({"op": "replace", "path": "/nodes/0", "value": 7})", {"nodes[0]: 7; must be an object"}},
+        {R"({"op": "add", "path": "/nodes/0/matrix", "value": [1, 2]})", {"nodes[0].matrix:", "16 numbers"}},
+        {R"({"op": "add", "path": "/nodes/0/matrix", "value": [1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1]})",
+         {"nodes[0].matrix: the last row must be 0, 0, 0, 1"}},
+        {R"({"op": "add", "path": "/nodes/0/rotation", "value": [0,0,0,0]})", {"nodes[0].rotation: not a"}},
+        {R"({"op": "add", "path": "/nodes/0/scale", "value": [0,1,1]})",
+         {"meshes[0].primitives[0]: triangle 0 (placed by nodes[0]): zero area"}},
+        {R"({"op": "add", "path": "/nodes/0/translation", "value": [1e200,0,0]})", {"triangle 0", "1e70"}},
+        {R"({"op": "add", "path": "/meshes/0/primitives/0/mode", "value": 5})",
+         {"meshes[0].primitives[0].mode: 5 (a triangle strip) is not supported; must be 4"}},
+        {R"({"op": "remove", "path": "/meshes/0/primitives/0/attributes/POSITION"})",
+         {"meshes[0].primitives[0].attributes: \"POSITION\" is missing"}},
+        {R"({"op": "replace", "path": "/meshes/0/primitives/0/attributes/POSITION", "value": 9})",
+         {"attributes.POSITION: 9; there are 2 accessors"}},
+        {R"({"op": "replace", "path": "/meshes/0/primitives/0/attributes/POSITION", "value": 1})",
+         {"attributes.POSITION: must be an accessor of VEC3"}},
+        {R"({"op": "replace", "path": "/meshes/0/primitives/0/indices", "value": 0})",
+         {"primitives[0].indices: must be an accessor of SCALAR"}},
+        {R"({"op": "replace", "path": "/meshes/0/primitives/0/material", "value": 1})",
+         {"primitives[0].material: 1; there are 1 materials"}},
+        {R"({"op": "add", "path": "/accessors/0/sparse", "value": {}})",
+         {"accessors[0].sparse: sparse accessors are not supported"}},
+        {R"({"op": "replace", "path": "/accessors/0/componentType", "value": 5120})",
+         {"accessors[0].componentType: 5120; supported are"}},
+        {R"({"op": "replace", "path": "/accessors/0/type", "value": "MAT4"})",
+         {"accessors[0].type: \"MAT4\""}},
+        {R"({"op": "replace", "path": "/accessors/0/count", "value": 5})",
+         {"accessors[0]: 5 elements of 12 bytes from byte 0 on, every 12 bytes; its bufferView has 48 "
+          "bytes"}},
+        {R"({"op": "replace", "path": "/accessors/0/count", "value": 1000000000000})",
+         {"accessors[0]: 1000000000000 elements"}},
+        {R"({"op": "replace", "path": "/accessors/0/count", "value": 18446744073709551615})",
+         {"accessors[0].count: 18446744073709551615; must be a whole number from 0"}},
+        {R"({"op": "replace", "path": "/accessors/0/count", "value": 0})", {"accessors[0]: count 0"}},
+        {R"({"op": "replace", "path": "/accessors/0/count", "value": 3})",
+         {"primitives[0].indices: index 5 is 3; there are 3 positions"}},
+        {R"({"op": "replace", "path": "/accessors/1/count", "value": 5})",
+         {"primitives[0]: 5 indices; triangles need a multiple of 3"}},
+        {R"({"op": "add", "path": "/accessors/0/byteOffset", "value": 1})", {"accessors[0]: 4 elements"}},
+        {R"({"op": "remove", "path": "/accessors/0/bufferView"})",
+         {"accessors[0]: \"bufferView\" is missing"}},
+        {R"({"op": "replace", "path": "/bufferViews/0/byteLength", "value": 61})",
+         {"bufferViews[0]: bytes 0 to 61; its buffer has 60"}},
+        {R"({"op": "replace", "path": "/bufferViews/1/byteOffset", "value": 1099511627776})",
+         {"bufferViews[1]: bytes 1099511627776 to"}},
+        {R"({"op": "replace", "path": "/bufferViews/0/buffer", "value": 1})",
+         {"buffer: 1; there are 1 buffers"}},
+        {R"({"op": "add", "path": "/bufferViews/0/byteStride", "value": 4})",
+         {"bufferViews[0]: byteStride 4; must be at least 12"}},
+        {R"({"op": "replace", "path": "/buffers/0/byteLength", "value": 4294967296})",
+         {"buffers[0]: cut short: 60 bytes; byteLength says 4294967296"}},
+        {R"({"op": "remove", "path": "/buffers/0/uri"})", {"buffers[0]: no \"uri\""}},
+        {R"({"op": "replace", "path": "/buffers/0/uri", "value": "no.bin"})", {"buffers[0].uri: ", "no.bin"}},
+        {R"({"op": "replace", "path": "/buffers/0/uri", "value": "/etc/hostname"})",
+         {"buffers[0].uri: \"/etc/hostname\"; must be a data URI or a file in the scene's folder"}},
+        {R"({"op": "replace", "path": "/buffers/0/uri", "value": "%2e%2e/x.bin"})",
+         {"in the scene's folder"}},
+        {R"({"op": "replace", "path": "/buffers/0/uri", "value": "link/passwd"})", {"in the scene's folder"}},
+        {R"({"op": "replace", "path": "/buffers/0/uri", "value": "http://x/y.bin"})",
+         {"in the scene's folder"}},
+        {R"({"op": "replace", "path": "/buffers/0/uri", "value": "a%2"})", {"% must be followed by two"}},
+        {R"({"op": "replace", "path": "/buffers/0/uri", "value": "data:,abc"})", {"without \";base64,\""}},
+        {R"({"op": "replace", "path": "/buffers/0/uri", "value": "data:;base64,ab!"})",
+         {"is no base64 text"}},
+        {R"({"op": "replace", "path": "/materials/0/pbrMetallicRoughness/baseColorFactor/1", "value": 1.5})",
+         {"baseColorFactor[1]: 1.5; must be a number from 0 to 1"}},
+        {R"({"op": "replace", "path": "/materials/0/pbrMetallicRoughness/baseColorFactor", "value": [1]})",
+         {"baseColorFactor: an array of 1; must be 4 numbers"}},
+        {R"({"op": "add", "path": "/materials/0/emissiveFactor", "value": [0, -1, 0]})",
+         {"materials[0].emissiveFactor[1]: -1"}},
+        {R"({"op": "add", "path": "/materials/0/extensions",
+             "value": {"KHR_materials_emissive_strength": {"emissiveStrength": -2}}})",
+         {"emissiveStrength: -2; must be a number that is not negative"}},
+    };
+    const Folder folder;
+    std::filesystem::create_directory_symlink("/etc", folder / "link");
+    for (const Bad& bad : table) {
+        INFO(bad.patch);
+        const Json document = square().patch(Json::array({Json::parse(bad.patch)}));
+        require_parts(message_of<InputError>([&] { (void)read(folder, document); }), bad.parts);
+    }
+}
+
+TEST_CASE("glTF reader: positions that are no numbers, and a mesh placed too often", "[io]") {
+    const Folder folder;
+    std::string bytes = square_bytes;
+    bytes.replace(0, 4, bytes_of<float>({std::numeric_limits<float>::quiet_NaN()}));
+    require_parts(
+        message_of<InputError>([&] { (void)read(folder.write("nan.glb", glb(square(), bytes))); }),
+        {"nan.glb: meshes[0].primitives[0]: triangle 0 (placed by nodes[0]): vertex 0 is not finite"});
+
+    Json document = square();
+    const std::size_t indices = 600'000;
+    document["accessors"][1]["count"] = indices;
+    document["accessors"][1]["componentType"] = 5121;
+    document["bufferViews"][1]["byteLength"] = indices;
+    document["buffers"][0]["byteLength"] = 48 + indices;
+    document["nodes"] = Json::array();
+    for (int k = 0; k < 60; ++k) {
+        document["nodes"].push_back({{"mesh", 0}});
+    }
+    document.erase("scenes");
+    document.erase("scene");
+    const auto path =
+        folder.write("often.glb", glb(document, square_bytes.substr(0, 48) + std::string(indices, '\0')));
+    require_parts(message_of<InputError>([&] {
+                      (void)read(path, nullptr, {{}, true});
+                  }),
+                  {"often.glb: meshes[0].primitives[0]: more than 10000000 triangles and primitives in all"});
+}
+
+TEST_CASE("glTF reader: a .glb cut anywhere is refused, and claims of its header are not believed", "[io]") {
+    const Folder folder;
+    const std::string whole = glb(square(), square_bytes);
+    for (std::size_t length = 0; length < whole.size(); length += length < 40 ? 1 : 13) {
+        INFO(length);
+        require_parts(
+            message_of<InputError>([&] { (void)read(folder.write("cut.glb", whole.substr(0, length))); }),
+            {"cut.glb"});
+    }
+    const auto changed = [&](std::size_t at, const std::string& bytes) {
+        std::string other = whole;
+        other.replace(at, bytes.size(), bytes);
+        return message_of<InputError>([&] { (void)read(folder.write("a.glb", other)); });
+    };
+    require_parts(changed(4, word(1)), {"a.glb: glTF version 1; must be 2"});
+    require_parts(changed(8, word(0xFFFFFFFF)), {"a.glb: cut short:", "its header says 4294967295"});
+    require_parts(changed(12, word(0xFFFFFFF0)), {"a.glb: byte 12: a chunk of 4294967280 bytes"});
+    require_parts(changed(16, "BINX"), {"a.glb: byte 12: the first chunk must be JSON"});
+    require_parts(changed(8, word(12)), {"a.glb: no JSON chunk"});
+}
+
+TEST_CASE("glTF reader: no flipped bit of a .glb does harm", "[io]") {
+    const Folder folder;
+    const std::string whole = glb(square(), square_bytes);
+    for (std::size_t position = 0; position < whole.size(); ++position) {
+        INFO("byte " << position);
+        std::string flipped = whole;
+        flipped[position] = static_cast<char>(flipped[position] ^ (1 << position % 8));
+        try {
+            const Scene scene = read(folder.write("flipped.glb", flipped));
+            REQUIRE(scene.surfaces.size() <= 2);
+        } catch (const InputError& error) {
+            require_parts(error.what(), {"flipped.glb"});
+        }
+    }
+}
+
+} // namespace hemi::io_test
