@@ -1,14 +1,17 @@
 #include "viewer/script.hpp"
 
 #include "hemi/core/error.hpp"
+#include "viewer/look.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace hemi::viewer {
 
@@ -122,11 +125,15 @@ DragCommand parse_drag(Line& line) {
 KeyCommand parse_key(Line& line) {
     std::string_view name = line.word("a key");
     const bool shift = take_shift(name);
-    if (name == "Escape") {
-        return {{escape_key, shift}};
+    constexpr std::array<std::pair<std::string_view, char>, 3> named{
+        {{"Escape", escape_key}, {"Tab", tab_key}, {"F1", help_key}}};
+    for (const auto& [word, key] : named) {
+        if (name == word) {
+            return {{key, shift}};
+        }
     }
     if (name.size() != 1 || std::isalnum(static_cast<unsigned char>(name[0])) == 0) {
-        line.fail(fmt::format("key \"{}\"; must be a letter, a digit or Escape", name));
+        line.fail(fmt::format("key \"{}\"; must be a letter, a digit, Escape, Tab or F1", name));
     }
     return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift}};
 }
@@ -139,9 +146,36 @@ ScreenshotCommand parse_screenshot(Line& line) {
     return screenshot;
 }
 
+/// A file name, the rest of the line, that ends in `extension`.
+std::string parse_file(Line& line, std::string_view command, std::string_view extension) {
+    std::string path(line.rest());
+    if (!path.ends_with(extension)) {
+        line.fail(fmt::format("{} \"{}\"; the name must end in {}", command, path, extension));
+    }
+    return path;
+}
+
+ShowCommand parse_show(Line& line) {
+    const std::string_view word = line.word("a quantity");
+    if (!quantity_by_word(word)) {
+        std::string all;
+        for (const QuantityName& name : quantity_names()) {
+            all += (all.empty() ? "" : ", ") + std::string(name.word);
+        }
+        line.fail(fmt::format("quantity \"{}\"; must be one of {}", word, all));
+    }
+    return {std::string(word)};
+}
+
 ScriptCommand parse_command(std::string_view command, Line& line, std::size_t number) {
     if (command == "screenshot") {
         return {number, parse_screenshot(line)};
+    }
+    if (command == "windowshot") {
+        return {number, WindowshotCommand{parse_file(line, command, ".png")}};
+    }
+    if (command == "report") {
+        return {number, ReportCommand{parse_file(line, command, ".json")}};
     }
     ScriptCommand result{number, QuitCommand{}};
     if (command == "drag") {
@@ -150,6 +184,14 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         const double x = line.number("x");
         const double y = line.number("y");
         result.action = ScrollCommand{x, y, line.number("the amount")};
+    } else if (command == "click") {
+        const double x = line.number("x");
+        result.action = ClickCommand{x, line.number("y")};
+    } else if (command == "move") {
+        const double x = line.number("x");
+        result.action = MoveCommand{x, line.number("y")};
+    } else if (command == "show") {
+        result.action = parse_show(line);
     } else if (command == "key") {
         result.action = parse_key(line);
     } else if (command == "resize") {
@@ -157,7 +199,9 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = ResizeCommand{width, line.size("the height")};
     } else if (command != "quit") {
         line.fail(
-            fmt::format("command \"{}\"; must be drag, scroll, key, resize, screenshot or quit", command));
+            fmt::format("command \"{}\"; must be drag, click, move, scroll, key, show, resize, screenshot, "
+                        "windowshot, report or quit",
+                        command));
     }
     line.end();
     return result;
