@@ -265,4 +265,19 @@ std::vector<std::array<float, 3>> plain_colours(const PatchMesh& mesh) {
     return colours;
 }
 
+std::vector<std::array<float, 3>> light_colours(const PictureMesh& mesh, double exposure,
+                                                ToneMapping tone_mapping) {
+    std::vector<std::array<float, 3>> colours(mesh.patches.size() / 3);
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            // As resolve.frag does it.
+            const auto x = static_cast<float>(
+                std::clamp(static_cast<double>(mesh.patches[i * 3 + c]) * exposure, 0.0, 1e6));
+            const float filmic = x * (2.51F * x + 0.03F) / (x * (2.43F * x + 0.59F) + 0.14F);
+            colours[i][c] = std::clamp(tone_mapping == ToneMapping::filmic ? filmic : x, 0.0F, 1.0F);
+        }
+    }
+    return colours;
+}
+
 } // namespace hemi::viewer

@@ -86,6 +86,10 @@ struct Field {
 /// Greys by the direction that a patch faces, so that shapes can be told.
 [[nodiscard]] std::vector<std::array<float, 3>> plain_colours(const PatchMesh& mesh);
 
+/// Radiosity of every patch of `mesh` as the picture shows it in its flat shading; display linear.
+[[nodiscard]] std::vector<std::array<float, 3>> light_colours(const PictureMesh& mesh, double exposure,
+                                                              ToneMapping tone_mapping);
+
 /// F(i, j) of a row or F(j, i) of a column at j; 0 where nothing is stored.
 [[nodiscard]] std::vector<double> factors_from(const FormFactorMatrix& factors, std::uint32_t patch);
 [[nodiscard]] std::vector<double> factors_to(const FormFactorMatrix& factors, std::uint32_t patch);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace hemi::viewer {
 
@@ -249,6 +250,7 @@ void patch_section(const PanelContent& content, Choices& choices) {
         return;
     }
     patch_lines(content, content.picked->patch);
+    ImGui::Checkbox("hemicube: what the patch sees", &choices.hemicube);
     ImGui::Spacing();
     if (content.input.factors == nullptr) {
         faint(fmt::format("No row of F: {}.", why_not(Quantity::row, content.input, choices.picked)));
@@ -330,6 +332,39 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
     }
 }
 
+void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2> view, Choices& choices) {
+    constexpr float margin = 10.0F;
+    const auto smaller = static_cast<float>(std::min(view[0], view[1]));
+    const float edge = std::floor(std::clamp(0.36F * smaller, 120.0F, 420.0F));
+    ImGui::SetNextWindowPos({static_cast<float>(view[0]) - margin, margin}, ImGuiCond_Always, {1.0F, 0.0F});
+    ImGui::SetNextWindowBgAlpha(0.88F);
+    ImGui::Begin("hemicube", nullptr, fixed_window | ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushTextWrapPos(edge + 8.0F);
+    text(fmt::format("Hemicube of patch {}", picture.patch));
+    ImGui::PopTextWrapPos();
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip(
+            "%d texels along an edge. The top is in the middle, the four sides are folded out;\n"
+            "the patch's own plane is all round. Turned about its normal, as it was drawn.\n"
+            "Dark grey: nothing, the environment. Dark red: back faces.",
+            static_cast<int>(picture.resolution));
+    }
+    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), {edge, edge});
+    choice("as shown", false, choices.hemicube_ids);
+    ImGui::SameLine();
+    choice("ids", true, choices.hemicube_ids);
+    if (picture.eyes > 1) {
+        auto eye = static_cast<int>(choices.hemicube_eye) + 1;
+        ImGui::SetNextItemWidth(edge);
+        if (ImGui::SliderInt("##eye", &eye, 1, static_cast<int>(picture.eyes),
+                             fmt::format("eye point %d of {}", picture.eyes).c_str(),
+                             ImGuiSliderFlags_NoInput)) {
+            choices.hemicube_eye = static_cast<std::uint32_t>(eye - 1);
+        }
+    }
+    ImGui::End();
+}
+
 void mark_line(const std::array<double, 2>& from, const std::array<double, 2>& to, bool picked) {
     const ImVec2 a{static_cast<float>(from[0]), static_cast<float>(from[1])};
     const ImVec2 b{static_cast<float>(to[0]), static_cast<float>(to[1])};
@@ -348,7 +383,7 @@ void help_window(std::array<std::uint32_t, 2> view, bool& open) {
         ImGui::End();
         return;
     }
-    constexpr std::array<std::array<const char*, 2>, 20> lines{
+    constexpr std::array<std::array<const char*, 2>, 21> lines{
         {{"left drag", "orbit about the point under the cursor"},
          {"middle drag, shift + left drag", "pan"},
          {"wheel, right drag", "zoom at the cursor"},
@@ -363,6 +398,7 @@ void help_window(std::array<std::uint32_t, 2> view, bool& open) {
          {"E, shift + E", "brighter, darker by a third of a stop"},
          {"V, shift + V", "next quantity, previous one"},
          {"H", "heat map of the picked patch: row of F, column, none"},
+         {"C", "hemicube of the picked patch"},
          {"L", "linear or logarithmic scale"},
          {"P, shift + P", "screenshot of the picture, of the whole window"},
          {"Tab", "side panel"},

@@ -30,6 +30,9 @@ struct Choices {
     std::optional<std::uint32_t> picked;
     std::optional<std::uint32_t> pointed_at; ///< the patch in a list under the cursor
     bool partners_by_light = false;          ///< else by factor
+    bool hemicube = true;                    ///< as the picked patch sees it
+    bool hemicube_ids = false;               ///< coloured by item, else as the scene is
+    std::uint32_t hemicube_eye = 0;
     bool panel = true;
     bool help = false;
 };
@@ -52,6 +55,15 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view);
 /// A line over the view, in pixels from the upper left.
 /// @param picked  else pointed at: another colour
 void mark_line(const std::array<double, 2>& from, const std::array<double, 2>& to, bool picked);
+/// A hemicube unfolded, as a texture of the window's context.
+struct HemicubePicture {
+    std::uint32_t texture;
+    std::uint32_t patch;
+    std::uint32_t resolution;
+    std::uint32_t eyes; ///< eye points of the patch
+};
+/// In the upper right of the view, with what it is and how it is coloured.
+void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2> view, Choices& choices);
 /// Mouse and keys.
 void help_window(std::array<std::uint32_t, 2> view, bool& open);
 

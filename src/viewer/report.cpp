@@ -29,6 +29,7 @@ void write_report(const std::filesystem::path& path, const Report& report) {
               {"picked", index_or_null(report.choices.picked)},
               {"pointed_at", index_or_null(report.choices.pointed_at)},
               {"partners", Json::array()},
+              {"hemicube", report.seen},
               {"values", nullptr},
               {"scale", nullptr},
               {"radiosity", Json::array()}};

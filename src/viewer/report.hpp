@@ -3,8 +3,10 @@
 #include "viewer/look.hpp"
 #include "viewer/panels.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace hemi::viewer {
 
@@ -15,11 +17,12 @@ struct Report {
     const Choices& choices;
     const std::optional<Field>& field;
     const std::optional<PickedPatch>& picked;
+    std::vector<std::uint32_t> seen; ///< patches in the hemicube that is shown
 };
 
 /// One JSON object: {"schema": "hemi/view/1", "quantity", "picked": patch or null, "pointed_at", "partners":
-/// [patch …], "values": one a patch, null where there is none, or null, "scale": {"low", "high",
-/// "logarithmic"} or null, "radiosity": [[per channel] …]}.
+/// [patch …], "hemicube": [patch …], "values": one a patch, null where there is none, or null, "scale":
+/// {"low", "high", "logarithmic"} or null, "radiosity": [[per channel] …]}.
 /// @throws IoError
 void write_report(const std::filesystem::path& path, const Report& report);
 

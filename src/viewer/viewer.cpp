@@ -4,6 +4,7 @@
 #include "display/picture_renderer.hpp"
 #include "display/visible_point.hpp"
 #include "viewer/gui.hpp"
+#include "viewer/hemicube_inset.hpp"
 #include "viewer/look.hpp"
 #include "viewer/panels.hpp"
 #include "viewer/report.hpp"
@@ -49,6 +50,14 @@ struct Overloaded : Functions... {
 };
 template <typename... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
+
+struct HemicubeChoice {
+    bool shown = true;
+    bool ids = false;
+    std::uint32_t eye = 0;
+
+    bool operator==(const HemicubeChoice&) const = default;
+};
 
 /// The window's picture and what the user does to it. Real input and scripts come in by the same door,
 /// handle().
@@ -287,6 +296,8 @@ private:
         } else if (event.key == tab_key) {
             choices_.panel = !choices_.panel;
             picture_changed_ = true;
+        } else if (event.key == 'C') {
+            choices_.hemicube = !choices_.hemicube;
         } else if (event.key == help_key) {
             choices_.help = !choices_.help;
         } else if (event.key == escape_key && choices_.help) {
@@ -349,8 +360,10 @@ private:
         }
         const bool other_patch = shown_pick_ != choices_.picked;
         const bool other_look = shown_look_ != choices_.look;
+        const HemicubeChoice hemicube{choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
+        const bool other_hemicube = shown_hemicube_ != hemicube;
         const bool other_order = shown_by_light_ != choices_.partners_by_light;
-        if (!other_patch && !other_look && !other_order) {
+        if (!other_patch && !other_look && !other_order && !other_hemicube) {
             return;
         }
         const Quantity quantity = choices_.look.quantity;
@@ -367,25 +380,44 @@ private:
                                      choices_.partners_by_light, partner_count);
             }
         }
+        if (other_patch) {
+            choices_.hemicube_eye = 0;
+        }
         shown_pick_ = choices_.picked;
         shown_look_ = choices_.look;
         shown_by_light_ = choices_.partners_by_light;
+        shown_hemicube_ = {choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
+        draw_hemicube();
         update_title();
     }
 
     /// Puts the quantity that was chosen on the scene.
     void show() {
+        colours_.clear();
         field_ = make_field(choices_.look, input_, light_, choices_.picked, usual_factor_);
         if (field_) {
-            renderer_.upload(painted(light_mesh_, field_colours(*field_, *input_.mesh)));
+            colours_ = field_colours(*field_, *input_.mesh);
         } else if (choices_.look.quantity == Quantity::items) {
-            renderer_.upload(painted(light_mesh_, item_colours(*input_.mesh)));
+            colours_ = item_colours(*input_.mesh);
         } else if (choices_.look.quantity == Quantity::outlines) {
-            renderer_.upload(painted(light_mesh_, plain_colours(*input_.mesh)));
-        } else {
-            renderer_.upload(light_mesh_);
+            colours_ = plain_colours(*input_.mesh);
         }
+        renderer_.upload(colours_.empty() ? light_mesh_ : painted(light_mesh_, colours_));
         picture_changed_ = true;
+    }
+
+    /// The picked patch's hemicube, where it is wanted and there is room for it.
+    void draw_hemicube() {
+        if (!choices_.hemicube || !choices_.picked || panel_width(window_.size(), choices_.panel) == 0) {
+            return;
+        }
+        if (!inset_) {
+            inset_.emplace(*input_.mesh, input_.hemicube, window_);
+        }
+        inset_->look(*choices_.picked, choices_.hemicube_eye);
+        inset_->paint(choices_.hemicube_ids ? item_colours(*input_.mesh)
+                      : colours_.empty() ? light_colours(light_mesh_, exposure(), choices_.look.tone_mapping)
+                                         : colours_);
     }
 
     [[nodiscard]] double exposure() const { return exposure_ * std::exp2(choices_.look.stops); }
@@ -430,6 +462,9 @@ private:
             draw_outlines();
             if (field_) {
                 legend(*field_, view);
+            }
+            if (inset_ && choices_.hemicube && choices_.picked && view[0] < size[0]) {
+                hemicube_window(inset_->picture(), view, choices_);
             }
             if (choices_.help) {
                 help_window(view, choices_.help);
@@ -595,7 +630,10 @@ private:
     }
     void perform(const WindowshotCommand& command) { windowshot(command.path); }
     void perform(const ReportCommand& command) {
-        write_report(command.path, {input_, light_, choices_, field_, picked_});
+        write_report(
+            command.path,
+            {input_, light_, choices_, field_, picked_,
+             inset_ && choices_.picked && choices_.hemicube ? inset_->seen() : std::vector<std::uint32_t>()});
     }
     void perform(const ScreenshotCommand& command) { screenshot(command.path); }
     void perform(const QuitCommand&) { closing_ = true; }
@@ -605,6 +643,7 @@ private:
     PictureRenderer renderer_;
     SceneTarget target_;
     Gui gui_;
+    std::optional<HemicubeInset> inset_; ///< made when it is first needed
     OrbitCamera orbit_;
     Choices choices_;
     Light light_;
@@ -616,6 +655,8 @@ private:
     std::optional<Look> shown_look_;
     std::optional<std::uint32_t> shown_pick_;
     bool shown_by_light_ = false;
+    HemicubeChoice shown_hemicube_;
+    std::vector<std::array<float, 3>> colours_; ///< of the patches, display linear; empty: light
     std::optional<Field> field_;
     std::optional<PickedPatch> picked_;
     std::string status_;

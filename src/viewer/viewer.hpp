@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/display/picture.hpp"
+#include "hemi/engine/engine.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
@@ -27,6 +28,7 @@ struct ViewerInput {
     std::vector<double> row_sum;                ///< sum_j F(i, j), N, or empty with the next two
     std::vector<double> environment_share;      ///< e_i
     std::vector<double> blocked;                ///< b_i; may be known alone
+    HemicubeSettings hemicube;                  ///< as the rows were, or would be, computed
     std::vector<double> radiosity_error;        ///< estimated, N·channels, or empty
     std::array<float, 3> environment{};         ///< as PictureMesh::environment
     Camera camera;                              ///< where R goes back to

@@ -98,6 +98,26 @@ TEST_CASE("Viewer: heat maps show the row and the column of the picked patch", "
     CHECK(value(patch, row["partners"][0]) == largest);
 }
 
+TEST_CASE("Viewer: the hemicube of the picked patch shows the patches of its row", "[viewer][gl]") {
+    const Workplace place;
+    REQUIRE(place.run(fmt::format("'{}' factors room.json --preset plain --resolution 32 --device osmesa -o "
+                                  "room.hff",
+                                  HEMI_PROGRAM)) == 0);
+    const int status = place.view("click 174 200\nwindowshot light.png\nreport seen.json\n"
+                                  "show items\nwindowshot items.png\nkey C\nwindowshot none.png\n"
+                                  "report none.json\n",
+                                  with_panel);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto report = place.json("seen.json");
+    const auto factors = hemi::io::read_hff(place.path("room.hff")).factors;
+    const hemi::RowView row = factors.row(picked(report));
+    REQUIRE(row.columns.size() > 50);
+    CHECK(report["hemicube"] == std::vector<std::uint32_t>(row.columns.begin(), row.columns.end()));
+    CHECK(place.json("none.json")["hemicube"].empty());
+    CHECK(place.read("items.png") != place.read("none.png"));
+}
+
 TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
     const Workplace place;
     const int status = place.view("windowshot start.png\nclick 150 200\nwindowshot picked.png\n"
