@@ -60,6 +60,7 @@ void view_scene(const ViewArguments& arguments, const Terminal& terminal) {
     const FormFactorMatrix& factors = rows.file.factors;
     Solution solution = solve_scene(loaded, factors, arguments.solver, false, terminal);
     input.factors = &factors;
+    input.solver = arguments.solver;
     input.hemicube = plan_rows(arguments.rows, loaded.mesh.size()).hemicube;
     input.radiosity = std::move(solution.radiosity);
     input.exitance = std::move(solution.exitance);

@@ -188,6 +188,16 @@ std::vector<double> factors_to(const FormFactorMatrix& factors, std::uint32_t pa
     return result;
 }
 
+std::vector<double> of_patches(const std::vector<Material>& materials, const PatchMesh& mesh,
+                               std::vector<double> Material::*property) {
+    std::vector<double> values;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const std::vector<double>& of_material = materials[mesh.material(i)].*property;
+        values.insert(values.end(), of_material.begin(), of_material.end());
+    }
+    return values;
+}
+
 std::optional<Field> make_field(const Look& look, const ViewerInput& input, const Light& light,
                                 std::optional<std::uint32_t> picked, double usual_factor) {
     switch (look.quantity) {

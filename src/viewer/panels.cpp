@@ -260,6 +260,69 @@ void patch_section(const PanelContent& content, Choices& choices) {
     partner_list(content, choices);
 }
 
+/// Highest reflectance that a slider gives.
+constexpr float most_reflectance = 0.98F;
+
+/// A slider for every channel, side by side, or one for all where they are many.
+void channel_sliders(const char* name, std::vector<double>& values, float most, const char* format) {
+    constexpr std::size_t most_sliders = 4;
+    const int count = values.size() > most_sliders ? 1 : static_cast<int>(values.size());
+    std::array<float, most_sliders> shown{};
+    for (int c = 0; c < count; ++c) {
+        shown[static_cast<std::size_t>(c)] = static_cast<float>(values[static_cast<std::size_t>(c)]);
+    }
+    const float least = 0.0F;
+    ImGui::SetNextItemWidth(-86.0F);
+    if (ImGui::SliderScalarN(name, ImGuiDataType_Float, shown.data(), count, &least, &most, format,
+                             ImGuiSliderFlags_NoInput)) {
+        for (std::size_t c = 0; c < values.size(); ++c) {
+            const float value = shown[values.size() > most_sliders ? 0 : c];
+            if (value != static_cast<float>(values[c])) { // others keep their digits
+                values[c] = static_cast<double>(value);
+            }
+        }
+    }
+}
+
+void material_section(const PanelContent& content, Choices& choices) {
+    if (!heading("Materials")) {
+        return;
+    }
+    const ViewerInput& input = content.input;
+    if (input.factors == nullptr) {
+        faint("Light cannot follow a change without form factors: open the scene instead of its result.");
+        return;
+    }
+    double brightest = 0.0;
+    for (const Material& material : input.scene->materials) {
+        brightest =
+            std::max(brightest, *std::max_element(material.exitance.begin(), material.exitance.end()));
+    }
+    const auto most_exitance = static_cast<float>(brightest > 0.0 ? 2.0 * brightest : 10.0);
+    for (std::size_t m = 0; m < choices.materials.size(); ++m) {
+        Material& material = choices.materials[m];
+        ImGui::PushID(static_cast<int>(m));
+        const bool lamp = *std::max_element(material.exitance.begin(), material.exitance.end()) > 0.0;
+        if (ImGui::TreeNodeEx(material.name.empty() ? "(no name)" : material.name.c_str(),
+                              ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen |
+                                  (lamp ? ImGuiTreeNodeFlags_DefaultOpen : 0))) {
+            if (content.without_rows[m]) {
+                faint("reflects nothing; its form factors were not computed");
+            } else {
+                channel_sliders("reflectance", material.reflectance, most_reflectance, "%.2f");
+            }
+            channel_sliders("exitance", material.exitance, most_exitance, "%.3g");
+        }
+        ImGui::PopID();
+    }
+    if (choices.materials != input.scene->materials && ImGui::Button("As in the scene")) {
+        choices.materials = input.scene->materials;
+    }
+    if (!content.relit.empty()) {
+        faint(content.relit);
+    }
+}
+
 } // namespace
 
 std::uint32_t panel_width(std::array<std::uint32_t, 2> window, bool wanted) {
@@ -276,6 +339,7 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     ImGui::BeginChild("sections", {0.0F, -foot});
     show_section(content, choices);
     patch_section(content, choices);
+    material_section(content, choices);
     ImGui::EndChild();
     ImGui::Separator();
     faint(content.status);

@@ -33,6 +33,7 @@ struct Choices {
     bool hemicube = true;                    ///< as the picked patch sees it
     bool hemicube_ids = false;               ///< coloured by item, else as the scene is
     std::uint32_t hemicube_eye = 0;
+    std::vector<Material> materials; ///< as the light should be
     bool panel = true;
     bool help = false;
 };
@@ -43,6 +44,9 @@ struct PanelContent {
     const Light& light;
     const std::optional<PickedPatch>& picked;
     std::string status; ///< at the panel's foot
+    std::string relit;  ///< on the last change of materials
+    /// Materials of which a row is unknown: they must not begin to reflect. One a material.
+    const std::vector<bool>& without_rows;
 };
 
 /// Pixels of the window that the side panel takes, from the right; 0 where the window is too small for it.

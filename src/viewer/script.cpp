@@ -155,6 +155,32 @@ std::string parse_file(Line& line, std::string_view command, std::string_view ex
     return path;
 }
 
+SetCommand parse_set(Line& line) {
+    const std::string_view property = line.word("a property");
+    if (property != "reflectance" && property != "exitance") {
+        line.fail(fmt::format("property \"{}\"; must be reflectance or exitance", property));
+    }
+    SetCommand set{property == "exitance", {}, {}};
+    const double most = set.exitance ? 1e30 : 0.999999;
+    std::string_view values = line.word("a value");
+    while (true) {
+        const std::size_t end = std::min(values.find(','), values.size());
+        double value = 0.0;
+        const auto [last, error] = std::from_chars(values.data(), values.data() + end, value);
+        if (error != std::errc() || last != values.data() + end || !(value >= 0.0 && value <= most)) {
+            line.fail(fmt::format("\"{}\" as {}; must be a number from 0 to {}", values.substr(0, end),
+                                  property, most));
+        }
+        set.values.push_back(value);
+        if (end == values.size()) {
+            break;
+        }
+        values.remove_prefix(end + 1);
+    }
+    set.material = line.rest();
+    return set;
+}
+
 ShowCommand parse_show(Line& line) {
     const std::string_view word = line.word("a quantity");
     if (!quantity_by_word(word)) {
@@ -170,6 +196,9 @@ ShowCommand parse_show(Line& line) {
 ScriptCommand parse_command(std::string_view command, Line& line, std::size_t number) {
     if (command == "screenshot") {
         return {number, parse_screenshot(line)};
+    }
+    if (command == "set") {
+        return {number, parse_set(line)};
     }
     if (command == "windowshot") {
         return {number, WindowshotCommand{parse_file(line, command, ".png")}};
@@ -198,10 +227,10 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         const std::uint32_t width = line.size("the width");
         result.action = ResizeCommand{width, line.size("the height")};
     } else if (command != "quit") {
-        line.fail(
-            fmt::format("command \"{}\"; must be drag, click, move, scroll, key, show, resize, screenshot, "
-                        "windowshot, report or quit",
-                        command));
+        line.fail(fmt::format(
+            "command \"{}\"; must be drag, click, move, scroll, key, show, set, resize, screenshot, "
+            "windowshot, report or quit",
+            command));
     }
     line.end();
     return result;

@@ -37,6 +37,12 @@ struct MoveCommand {
 struct ShowCommand {
     std::string quantity;
 };
+/// A material's values, one or one a channel.
+struct SetCommand {
+    bool exitance; ///< else reflectance
+    std::vector<double> values;
+    std::string material;
+};
 struct ResizeCommand {
     std::uint32_t width;
     std::uint32_t height;
@@ -56,7 +62,7 @@ struct QuitCommand {};
 
 struct ScriptCommand {
     std::size_t line;
-    std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand,
+    std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand, SetCommand,
                  ResizeCommand, ScreenshotCommand, WindowshotCommand, ReportCommand, QuitCommand>
         action;
 };
@@ -71,6 +77,8 @@ struct ScriptCommand {
 /// key [shift+]NAME       a letter, a digit, Escape, Tab or F1
 /// show QUANTITY          picture, outlines, items, radiosity, reflectance, exitance, row-error, error, row
 ///                        or column
+/// set reflectance|exitance VALUE[,VALUE ...] MATERIAL
+///                        one value, or one a channel; waits until the light has followed
 /// resize WIDTH HEIGHT
 /// screenshot FILE        .png or .hdr: the picture; the name is the rest of the line
 /// windowshot FILE        .png: the window with its panels

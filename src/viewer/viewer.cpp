@@ -7,6 +7,7 @@
 #include "viewer/hemicube_inset.hpp"
 #include "viewer/look.hpp"
 #include "viewer/panels.hpp"
+#include "viewer/relighter.hpp"
 #include "viewer/report.hpp"
 #include "viewer/scene_target.hpp"
 #include "viewer/script.hpp"
@@ -25,6 +26,7 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
+#include <thread>
 
 namespace hemi::viewer {
 
@@ -71,7 +73,15 @@ public:
         choices_.look.shading = input.picture.shading;
         choices_.look.tone_mapping = input.picture.tone_mapping;
         choices_.look.outlines = input.picture.outlines;
+        choices_.materials = asked_materials_ = input.scene->materials;
+        without_rows_.resize(choices_.materials.size(), false);
         if (input.factors != nullptr) {
+            for (std::uint32_t i = 0; i < input.mesh->size(); ++i) {
+                if (!input.factors->known(i)) {
+                    without_rows_[input.mesh->material(i)] = true;
+                }
+            }
+            relighter_.emplace(input, Window::wake);
             usual_factor_ = usual_largest_factor(*input.factors);
         }
         prepare_light();
@@ -88,6 +98,7 @@ public:
             draw(preview);
             moving_ = button_.has_value() && dragging_;
             handle(window_.wait(preview && !button_ ? rest : 0.0));
+            take_light();
             // Nothing came: the preview on the screen is drawn anew in full quality.
             picture_changed_ = picture_changed_ || (preview && !moving_);
         }
@@ -353,10 +364,32 @@ private:
         shown_look_.reset();
     }
 
+    /// What the relighter has found, on the screen.
+    void take_light() {
+        std::optional<Relit> relit = relighter_ ? relighter_->take() : std::nullopt;
+        if (!relit) {
+            return;
+        }
+        relit_ = relit->problem.empty()
+                     ? fmt::format("solved in {:.2f} s, {} sweeps", relit->seconds, relit->sweeps)
+                     : "no solution: " + relit->problem;
+        if (relit->problem.empty()) {
+            light_ = std::move(relit->light);
+            prepare_light();
+            settle();
+        }
+    }
+
     /// Brings what hangs on the choices in line with them.
     void settle() {
         if (why_not(choices_.look.quantity, input_, choices_.picked) != nullptr) {
             choices_.look.quantity = Quantity::picture;
+        }
+        if (relighter_ && choices_.materials != asked_materials_) {
+            asked_materials_ = choices_.materials;
+            relighter_->ask({of_patches(asked_materials_, *input_.mesh, &Material::reflectance),
+                             of_patches(asked_materials_, *input_.mesh, &Material::exitance),
+                             light_.radiosity});
         }
         const bool other_patch = shown_pick_ != choices_.picked;
         const bool other_look = shown_look_ != choices_.look;
@@ -455,7 +488,7 @@ private:
         const auto view = view_size();
         gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
         if (view[0] < size[0]) {
-            const PanelContent content{input_, light_, picked_, status_};
+            const PanelContent content{input_, light_, picked_, status_, relit_, without_rows_};
             side_panel(content, size, choices_);
         }
         if (view[0] > 0 && view[1] > 0) {
@@ -609,6 +642,31 @@ private:
         choices_.look.quantity = quantity;
         settle();
     }
+    void perform(const SetCommand& set) {
+        std::vector<Material>& materials = choices_.materials;
+        const auto found = std::find_if(materials.begin(), materials.end(), [&set](const Material& material) {
+            return material.name == set.material;
+        });
+        if (!relighter_) {
+            throw InvalidArgument("set: a stored solution has no form factors; open the scene instead");
+        }
+        if (found == materials.end()) {
+            throw InvalidArgument(fmt::format("set: the scene has no material \"{}\"", set.material));
+        }
+        if (set.values.size() != 1 && set.values.size() != input_.channels) {
+            throw InvalidArgument(
+                fmt::format("set: {} values for {} channels", set.values.size(), input_.channels));
+        }
+        std::vector<double>& values = set.exitance ? found->exitance : found->reflectance;
+        for (std::size_t c = 0; c < values.size(); ++c) {
+            values[c] = set.values[set.values.size() == 1 ? 0 : c];
+        }
+        settle();
+        while (relighter_->busy()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            take_light();
+        }
+    }
     void perform(const ScrollCommand& scroll) {
         handle(CursorEvent{scroll.x, scroll.y});
         handle(ScrollEvent{scroll.amount});
@@ -660,6 +718,9 @@ private:
     std::optional<Field> field_;
     std::optional<PickedPatch> picked_;
     std::string status_;
+    std::string relit_;
+    std::vector<Material> asked_materials_;
+    std::vector<bool> without_rows_; ///< by material
     std::string title_;
 
     Point cursor_{0.0, 0.0};
@@ -671,6 +732,8 @@ private:
     bool picture_changed_ = true;
     bool lost_ = true; ///< what the window holds is not what was drawn last
     bool closing_ = false;
+
+    std::optional<Relighter> relighter_; ///< where there are form factors; the first to go
 };
 
 } // namespace

@@ -6,6 +6,8 @@
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 
+#include "hemi/solver/solver.hpp"
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -28,6 +30,7 @@ struct ViewerInput {
     std::vector<double> row_sum;                ///< sum_j F(i, j), N, or empty with the next two
     std::vector<double> environment_share;      ///< e_i
     std::vector<double> blocked;                ///< b_i; may be known alone
+    SolverSettings solver;                      ///< for the light after a change of materials
     HemicubeSettings hemicube;                  ///< as the rows were, or would be, computed
     std::vector<double> radiosity_error;        ///< estimated, N·channels, or empty
     std::array<float, 3> environment{};         ///< as PictureMesh::environment

@@ -180,6 +180,10 @@ std::vector<Event> Window::poll() {
     return std::exchange(events_, {});
 }
 
+void Window::wake() {
+    glfwPostEmptyEvent();
+}
+
 std::vector<Event> Window::wait(double seconds) {
     if (seconds > 0.0) {
         glfwWaitEventsTimeout(seconds);

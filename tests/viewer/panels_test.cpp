@@ -118,6 +118,43 @@ TEST_CASE("Viewer: the hemicube of the picked patch shows the patches of its row
     CHECK(place.read("items.png") != place.read("none.png"));
 }
 
+TEST_CASE("Viewer: light follows a change of materials as a fresh solution has it", "[viewer][gl]") {
+    const Workplace place;
+    const int status = place.view("set reflectance 0.3,0.5,0.6 white\nset exitance 30,5,12 lamp\n"
+                                  "set exitance 0.5 red\nreport changed.json\nscreenshot changed.png\n"
+                                  "set exitance 0 lamp\nset exitance 0 red\nreport dark.json\n",
+                                  small);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    std::string scene = place.read("room.json");
+    const auto replace = [&scene](const std::string& from, const std::string& to) {
+        REQUIRE(scene.find(from) != std::string::npos);
+        scene.replace(scene.find(from), from.size(), to);
+    };
+    replace("\"reflectance\": 0.7", "\"reflectance\": [0.3, 0.5, 0.6]");
+    replace("[20, 18, 12]", "[30, 5, 12]");
+    replace("[0.6, 0.1, 0.1]", "[0.6, 0.1, 0.1], \"exitance\": 0.5");
+    place.write("room.json", scene);
+    REQUIRE(place.view("report fresh.json\n", small) == 0);
+    const auto changed = place.json("changed.json")["radiosity"];
+    const auto fresh = place.json("fresh.json")["radiosity"];
+    REQUIRE(changed.size() == fresh.size());
+    double largest = 0.0;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double was = fresh[i][c];
+            const double is = changed[i][c];
+            largest = std::max(largest, std::abs(is - was) / was);
+        }
+    }
+    CHECK(largest < 2e-5); // both are solved to a residual of 1e-6
+    for (const auto& patch : place.json("dark.json")["radiosity"]) {
+        CHECK(patch == std::vector<double>(3, 0.0));
+    }
+    CHECK(place.view("set exitance 1 gold\n", small) == 2);
+    CHECK(place.view("set reflectance 1 white\n", small) == 3);
+}
+
 TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
     const Workplace place;
     const int status = place.view("windowshot start.png\nclick 150 200\nwindowshot picked.png\n"
