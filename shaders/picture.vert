@@ -4,6 +4,7 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 gouraud_radiosity;
 layout(location = 2) in vec3 patch_radiosity;
 layout(location = 3) in vec3 outline_distance; // in triangle heights, from the edges that are a patch's own
+layout(location = 4) in uint item;             // patch and 1
 
 uniform vec3 eye;                 // relative to the scene's centre
 uniform mat4 clip_from_direction; // infinite reversed-Z: clip.z is the near distance, clip.w the depth
@@ -11,10 +12,12 @@ uniform mat4 clip_from_direction; // infinite reversed-Z: clip.z is the near dis
 out vec3 smooth_radiosity;
 flat out vec3 flat_radiosity;
 out vec3 outline;
+flat out uint patch_item;
 
 void main() {
     gl_Position = clip_from_direction * vec4(position - eye, 1.0);
     smooth_radiosity = gouraud_radiosity;
     flat_radiosity = patch_radiosity;
     outline = outline_distance;
+    patch_item = item;
 }

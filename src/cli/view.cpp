@@ -34,7 +34,9 @@ viewer::ViewerInput make_input(const ViewArguments& arguments, const Scene& scen
     viewer::ViewerInput input;
     input.title = scene.name.empty() ? arguments.scene.path.filename().string() : scene.name;
     input.file_stem = arguments.scene.path.stem().string();
+    input.scene = &scene;
     input.mesh = &mesh;
+    input.reflectance = patch_reflectance(scene, mesh);
     input.channels = static_cast<std::uint32_t>(scene.channels.size());
     input.show = channels_to_show(scene.channels, options.show);
     input.environment = shown_environment(scene, input.show);
@@ -52,16 +54,22 @@ viewer::ViewerInput make_input(const ViewArguments& arguments, const Scene& scen
 void view_scene(const ViewArguments& arguments, const Terminal& terminal) {
     const LoadedScene loaded = load_scene(arguments.scene, terminal);
     viewer::ViewerInput input = make_input(arguments, loaded.scene, loaded.mesh);
-    Solution solution;
-    {
-        Rows rows = compute_rows(loaded, reflecting_patches(loaded), arguments.rows, terminal);
-        settle_contacts(rows.file);
-        (void)repair_rows(rows.file, arguments.rows.repair);
-        solution = solve_scene(loaded, rows.file.factors, arguments.solver, false, terminal);
-    }
+    Rows rows = compute_rows(loaded, reflecting_patches(loaded), arguments.rows, terminal);
+    settle_contacts(rows.file);
+    (void)repair_rows(rows.file, arguments.rows.repair);
+    const FormFactorMatrix& factors = rows.file.factors;
+    Solution solution = solve_scene(loaded, factors, arguments.solver, false, terminal);
+    input.factors = &factors;
+    input.solver = arguments.solver;
+    input.hemicube = plan_rows(arguments.rows, loaded.mesh.size()).hemicube;
     input.radiosity = std::move(solution.radiosity);
     input.exitance = std::move(solution.exitance);
-    input.blocked = std::move(solution.blocked);
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        const RowView row = factors.row(i);
+        input.row_sum.push_back(row.sum());
+        input.environment_share.push_back(row.environment);
+        input.blocked.push_back(row.blocked);
+    }
     viewer::run_viewer(input);
 }
 
@@ -80,7 +88,12 @@ void view_result(const ViewArguments& arguments) {
     viewer::ViewerInput input = make_input(arguments, result.scene, mesh);
     input.radiosity = result.radiosity;
     input.exitance = patch_exitance(result.scene, mesh);
+    input.row_sum = result.row_sum;
+    input.environment_share = result.environment;
     input.blocked = result.blocked;
+    if (result.radiosity_error) {
+        input.radiosity_error = result.radiosity_error->patches;
+    }
     viewer::run_viewer(input);
 }
 

@@ -47,6 +47,32 @@ ViewRay OrbitCamera::ray(double x, double y) const {
     return {view.eye, forward + scale * (x * glm::cross(forward, view.up) + y * view.up)};
 }
 
+std::optional<std::array<std::array<double, 2>, 2>> OrbitCamera::line(const Vec3& a, const Vec3& b) const {
+    const Camera view = squared(camera_);
+    const Vec3 forward = glm::normalize(view.target - view.eye);
+    const Vec3 right = glm::cross(forward, view.up);
+    const double nearest = 1e-5 * bounds_.diagonal();
+    std::array<Vec3, 2> ends{a - view.eye, b - view.eye};
+    std::array<double, 2> depths{glm::dot(ends[0], forward), glm::dot(ends[1], forward)};
+    if (depths[0] < nearest && depths[1] < nearest) {
+        return std::nullopt;
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (depths[k] < nearest) {
+            const double share = (nearest - depths[k]) / (depths[1 - k] - depths[k]);
+            ends[k] += share * (ends[1 - k] - ends[k]);
+            depths[k] = nearest;
+        }
+    }
+    const double scale = 0.5 / std::tan(half_fov(view));
+    std::array<std::array<double, 2>, 2> places{};
+    for (std::size_t k = 0; k < 2; ++k) {
+        places[k] = {scale * glm::dot(ends[k], right) / depths[k],
+                     scale * glm::dot(ends[k], view.up) / depths[k]};
+    }
+    return places;
+}
+
 void OrbitCamera::grab(const Vec3& pivot) {
     start_ = camera_;
     grabbed_ = squared(camera_);

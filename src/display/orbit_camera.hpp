@@ -3,7 +3,9 @@
 #include "hemi/core/geometry.hpp"
 #include "hemi/scene/scene.hpp"
 
+#include <array>
 #include <cstdint>
+#include <optional>
 
 namespace hemi {
 
@@ -30,6 +32,9 @@ public:
 
     [[nodiscard]] const Camera& camera() const noexcept { return camera_; }
     [[nodiscard]] ViewRay ray(double x, double y) const;
+    /// Where a line from `a` to `b` is seen: the ends of what lies in front of the eye, {x, y} each.
+    [[nodiscard]] std::optional<std::array<std::array<double, 2>, 2>> line(const Vec3& a,
+                                                                           const Vec3& b) const;
 
     /// Begins a gesture about `pivot`.
     void grab(const Vec3& pivot);

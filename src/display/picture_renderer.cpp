@@ -36,6 +36,7 @@ struct Vertex {
     std::array<float, 3> gouraud;
     std::array<float, 3> patch;
     std::array<float, 3> outline;
+    std::uint32_t item;
 };
 
 std::array<float, 3> triple(const std::vector<float>& values, std::size_t index) {
@@ -51,10 +52,11 @@ struct Triangles {
 
 void add_patch(const PictureMesh& mesh, std::size_t patch, Triangles& out) {
     const auto first = static_cast<std::uint32_t>(out.vertices.size());
+    const auto item = static_cast<std::uint32_t>(patch + 1);
     const std::array<float, 3> flat = triple(mesh.patches, patch);
     const auto corner = [&](std::size_t k, std::array<float, 3> outline) {
         return Vertex{triple(mesh.positions, patch * 4 + k), triple(mesh.corners, patch * 4 + k), flat,
-                      outline};
+                      outline, item};
     };
     if (triple(mesh.positions, patch * 4 + 2) == triple(mesh.positions, patch * 4 + 3)) {
         out.vertices.insert(out.vertices.end(), {corner(0, {1.0F, 0.0F, 0.0F}), corner(1, {0.0F, 1.0F, 0.0F}),
@@ -62,7 +64,7 @@ void add_patch(const PictureMesh& mesh, std::size_t patch, Triangles& out) {
         out.indices.insert(out.indices.end(), {first, first + 1, first + 2});
         return;
     }
-    Vertex centre{{}, {}, flat, {1.0F, 1.0F, 1.0F}};
+    Vertex centre{{}, {}, flat, {1.0F, 1.0F, 1.0F}, item};
     for (std::size_t k = 0; k < 4; ++k) {
         out.vertices.push_back(corner(k, {0.0F, 1.0F, 1.0F}));
         for (std::size_t i = 0; i < 3; ++i) {
@@ -159,7 +161,9 @@ GLint uniform(const gl::Program& program, const char* name) {
 
 PictureRenderer::PictureRenderer()
     : picture_program_(gl::make_program("picture", gl::shaders::picture_vert, gl::shaders::picture_frag)),
-      resolve_program_(gl::make_program("resolve", gl::shaders::fullscreen_vert, gl::shaders::resolve_frag)) {
+      resolve_program_(gl::make_program("resolve", gl::shaders::fullscreen_vert, gl::shaders::resolve_frag)),
+      item_program_(
+          gl::make_program("picture items", gl::shaders::picture_vert, gl::shaders::picture_item_frag)) {
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_);
     gl::label(GL_BUFFER, vertices_.get(), "picture vertices");
     gl::label(GL_BUFFER, indices_.get(), "picture indices");
@@ -173,6 +177,11 @@ PictureRenderer::PictureRenderer()
                                   static_cast<GLuint>(offsets[attribute]));
         glVertexArrayAttribBinding(vertex_array_.get(), attribute, 0);
     }
+    constexpr GLuint item_attribute = 4;
+    glEnableVertexArrayAttrib(vertex_array_.get(), item_attribute);
+    glVertexArrayAttribIFormat(vertex_array_.get(), item_attribute, 1, GL_UNSIGNED_INT,
+                               static_cast<GLuint>(offsetof(Vertex, item)));
+    glVertexArrayAttribBinding(vertex_array_.get(), item_attribute, 0);
 }
 
 void PictureRenderer::upload(const PictureMesh& mesh) {
@@ -242,20 +251,26 @@ void PictureRenderer::draw_samples(const Camera& camera, const PictureSettings& 
     glClearNamedFramebufferfv(sample_target_.get(), GL_COLOR, 0, nothing.data());
     glClearNamedFramebufferfv(sample_target_.get(), GL_DEPTH, 0, &far_depth);
 
+    glUseProgram(picture_program_.get());
+    glUniform1i(uniform(picture_program_, "flat_shading"), settings.shading == Shading::flat ? 1 : 0);
+    glUniform1f(uniform(picture_program_, "outline_width"),
+                settings.outlines ? outline_pixels * static_cast<float>(samples) : 0.0F);
+    draw_mesh(picture_program_, camera, settings, tile);
+}
+
+void PictureRenderer::draw_mesh(const gl::Program& program, const Camera& camera,
+                                const PictureSettings& settings, const Tile& tile) {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
     glEnable(GL_CULL_FACE);
-    glUseProgram(picture_program_.get());
+    glUseProgram(program.get());
     const std::array<float, 16> matrix =
         projection(camera, settings, tile.x, tile.y, tile.width, tile.height, near_share * diagonal_);
-    glUniformMatrix4fv(uniform(picture_program_, "clip_from_direction"), 1, GL_FALSE, matrix.data());
+    glUniformMatrix4fv(uniform(program, "clip_from_direction"), 1, GL_FALSE, matrix.data());
     const Vec3 eye = camera.eye - origin_;
-    glUniform3f(uniform(picture_program_, "eye"), static_cast<float>(eye.x), static_cast<float>(eye.y),
+    glUniform3f(uniform(program, "eye"), static_cast<float>(eye.x), static_cast<float>(eye.y),
                 static_cast<float>(eye.z));
-    glUniform1i(uniform(picture_program_, "flat_shading"), settings.shading == Shading::flat ? 1 : 0);
-    glUniform1f(uniform(picture_program_, "outline_width"),
-                settings.outlines ? outline_pixels * static_cast<float>(samples) : 0.0F);
     glBindVertexArray(vertex_array_.get());
     glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
 
@@ -348,6 +363,59 @@ Picture PictureRenderer::picture(const Camera& camera, const PictureSettings& se
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
     gl::check_errors("drawing the picture");
     return result;
+}
+
+std::vector<std::uint32_t> PictureRenderer::draw_items(const Camera& camera, const PictureSettings& settings,
+                                                       const Tile& tile) {
+    const gl::Texture2D items = make_texture(GL_R32UI, tile.width, tile.height, "picture items");
+    const gl::Texture2D depth = make_texture(GL_DEPTH_COMPONENT32F, tile.width, tile.height, "item depth");
+    const gl::Framebuffer target;
+    glNamedFramebufferTexture(target.get(), GL_COLOR_ATTACHMENT0, items.get(), 0);
+    glNamedFramebufferTexture(target.get(), GL_DEPTH_ATTACHMENT, depth.get(), 0);
+    require_complete(target, "picture items");
+    const std::array<GLuint, 4> nothing{};
+    const float far_depth = 0.0F;
+    glClearNamedFramebufferuiv(target.get(), GL_COLOR, 0, nothing.data());
+    glClearNamedFramebufferfv(target.get(), GL_DEPTH, 0, &far_depth);
+    glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+    glViewport(0, 0, static_cast<GLsizei>(tile.width), static_cast<GLsizei>(tile.height));
+    draw_mesh(item_program_, camera, settings, tile);
+    std::vector<std::uint32_t> result(std::size_t{tile.width} * tile.height);
+    glReadPixels(0, 0, static_cast<GLsizei>(tile.width), static_cast<GLsizei>(tile.height), GL_RED_INTEGER,
+                 GL_UNSIGNED_INT, result.data());
+    glBindVertexArray(0);
+    glUseProgram(0);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl::check_errors("drawing the picture's items");
+    return result;
+}
+
+std::vector<std::uint32_t> PictureRenderer::items(const Camera& camera, const PictureSettings& settings) {
+    check(camera, settings);
+    PictureSettings single = settings;
+    single.samples = 1;
+    std::vector<std::uint32_t> result(std::size_t{settings.width} * settings.height);
+    for (const Tile& tile : tiles(single)) {
+        const std::vector<std::uint32_t> part = draw_items(camera, settings, tile);
+        for (std::uint32_t y = 0; y < tile.height; ++y) {
+            const std::size_t to = std::size_t{settings.height - 1 - tile.y - y} * settings.width + tile.x;
+            for (std::uint32_t x = 0; x < tile.width; ++x) {
+                result[to + x] = part[std::size_t{y} * tile.width + x] - 1; // 0 becomes no_item
+            }
+        }
+    }
+    return result;
+}
+
+std::optional<std::uint32_t> PictureRenderer::item(const Camera& camera, const PictureSettings& settings,
+                                                   std::uint32_t x, std::uint32_t y) {
+    check(camera, settings);
+    if (x >= settings.width || y >= settings.height) {
+        throw InvalidArgument(
+            fmt::format("pixel {}, {} of a picture of {}x{}", x, y, settings.width, settings.height));
+    }
+    const std::uint32_t found = draw_items(camera, settings, {x, settings.height - 1 - y, 1, 1})[0];
+    return found == 0 ? std::nullopt : std::optional(found - 1);
 }
 
 Picture draw_picture(const PictureMesh& mesh, const Camera& camera, const PictureSettings& settings,

@@ -16,7 +16,7 @@ namespace hemi {
 ///
 /// Make, use and destroy it with one context current on the calling thread. Draws expect OpenGL's default
 /// state and leave it behind; the caller's framebuffer binding and viewport are not kept.
-/// Memory: about 230 bytes a patch on the device, and one tile of samples (at most 335 MB).
+/// Memory: about 250 bytes a patch on the device, and one tile of samples (at most 335 MB).
 class PictureRenderer {
 public:
     /// Largest width and height of a picture.
@@ -37,6 +37,14 @@ public:
     /// The same pixels, read back. @throws as draw()
     [[nodiscard]] Picture picture(const Camera& camera, const PictureSettings& settings);
 
+    /// Patch seen at the centre of every pixel, row by row from the top; no_item where none is.
+    /// @throws as draw()
+    [[nodiscard]] std::vector<std::uint32_t> items(const Camera& camera, const PictureSettings& settings);
+    /// The same of one pixel, x from the left and y from the top, inside the picture.
+    [[nodiscard]] std::optional<std::uint32_t> item(const Camera& camera, const PictureSettings& settings,
+                                                    std::uint32_t x, std::uint32_t y);
+    static constexpr std::uint32_t no_item = 0xFFFFFFFFU;
+
 private:
     /// Pixels of the picture, from its lower left.
     struct Tile {
@@ -54,6 +62,11 @@ private:
 
     [[nodiscard]] std::vector<Tile> tiles(const PictureSettings& settings) const;
     void draw_samples(const Camera& camera, const PictureSettings& settings, const Tile& tile);
+    void draw_mesh(const gl::Program& program, const Camera& camera, const PictureSettings& settings,
+                   const Tile& tile);
+    /// Items of a part of the picture, rows from the bottom: patch and 1, or 0.
+    [[nodiscard]] std::vector<std::uint32_t> draw_items(const Camera& camera, const PictureSettings& settings,
+                                                        const Tile& tile);
     void resolve(const PictureSettings& settings, const Tile& tile, GLuint target, std::uint32_t x,
                  std::uint32_t y);
     /// At least so large.
@@ -61,6 +74,7 @@ private:
 
     gl::Program picture_program_;
     gl::Program resolve_program_;
+    gl::Program item_program_;
     gl::VertexArray vertex_array_;
     gl::VertexArray no_vertices_;
     gl::Buffer vertices_;

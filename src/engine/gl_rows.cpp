@@ -46,9 +46,10 @@ struct GlRows::State {
     };
     using Batch = std::vector<Hemicube>;
 
-    State(const EngineGeometry& the_geometry, const HemicubeSettings& the_settings, const std::string& device)
+    State(const EngineGeometry& the_geometry, const HemicubeSettings& the_settings,
+          std::unique_ptr<gl::Context> own, gl::Context& the_context)
         : geometry(the_geometry), settings(the_settings), weights(the_settings.resolution),
-          context(gl::make_context(device)),
+          own_context(std::move(own)), context(&the_context),
           buffers(*context, settings.resolution, batch_slots(settings.resolution, context->software())),
           views(geometry.list, buffers.slots()) {
         if (settings.quantity == RowQuantity::visibility) {
@@ -130,7 +131,8 @@ struct GlRows::State {
     HemicubeSettings settings;
     DeltaFormFactors weights;
     std::deque<std::pair<double, DeltaFormFactors>> scaled_weights;
-    std::unique_ptr<gl::Context> context;
+    std::unique_ptr<gl::Context> own_context; ///< null where the context is another's
+    gl::Context* context;
     ItemBuffers buffers;
     ViewBuilder views;
     std::optional<RowAccumulator> accumulator;       ///< of form factors
@@ -138,8 +140,14 @@ struct GlRows::State {
     DrawStream stream;
 };
 
-GlRows::GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, const std::string& device)
-    : state_(std::make_unique<State>(geometry, settings, device)) {}
+GlRows::GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, const std::string& device) {
+    auto context = gl::make_context(device);
+    gl::Context& made = *context;
+    state_ = std::make_unique<State>(geometry, settings, std::move(context), made);
+}
+
+GlRows::GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, gl::Context& context)
+    : state_(std::make_unique<State>(geometry, settings, nullptr, context)) {}
 
 GlRows::~GlRows() {
     if (state_) {
@@ -194,6 +202,7 @@ std::vector<std::uint32_t> GlRows::items(std::uint32_t patch, std::uint32_t eye)
     for (std::size_t texel = 0; texel < items.size(); ++texel) {
         items[texel] = state_->geometry.list.item_of_id[ids[texel]];
     }
+    state_->buffers.restore_defaults();
     return items;
 }
 

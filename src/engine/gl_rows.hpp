@@ -11,6 +11,10 @@
 #include <string>
 #include <vector>
 
+namespace hemi::gl {
+class Context;
+}
+
 namespace hemi {
 
 /// All that an engine needs to know of a mesh: what to draw, and from where. Can be sent to a worker.
@@ -25,6 +29,9 @@ class GlRows {
 public:
     /// @throws NoDevice, GlError
     GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, const std::string& device);
+    /// The same on a context that is there already, for what a window shows of the hemicubes: items() only.
+    /// The context must outlive it, and be current when it is made and destroyed.
+    GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, gl::Context& context);
     ~GlRows();
     GlRows(const GlRows&) = delete;
     GlRows& operator=(const GlRows&) = delete;
@@ -36,7 +43,8 @@ public:
     void rows(std::span<const std::uint32_t> patches, const RowSink& sink);
 
     /// The item buffer of one eye point of a patch: 3·resolution rows of `resolution` items (nothing,
-    /// blocked, or item_first_patch + patch). For tests and for looking at what a patch sees.
+    /// blocked, or item_first_patch + patch). For tests and for looking at what a patch sees. Leaves OpenGL's
+    /// default state behind.
     [[nodiscard]] std::vector<std::uint32_t> items(std::uint32_t patch, std::uint32_t eye = 0);
 
 private:

@@ -198,6 +198,19 @@ void ItemBuffers::discard() noexcept {
     }
 }
 
+void ItemBuffers::restore_defaults() noexcept {
+    unmap();
+    glUseProgram(0);
+    glBindVertexArray(0);
+    glDisable(GL_CULL_FACE);
+    glFrontFace(GL_CCW);
+    glDisable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
+    glPolygonOffset(0.0f, 0.0f);
+    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
 void ItemBuffers::unmap() noexcept {
     if (mapped_ != nullptr) {
         glUnmapNamedBuffer(targets_[mapped_target_].pixels.get());

@@ -31,6 +31,8 @@ public:
     [[nodiscard]] const std::uint32_t* finish();
     /// Forgets the batches under way.
     void discard() noexcept;
+    /// OpenGL's default state, for whoever else draws with the context. Ids of finish() are gone afterwards.
+    void restore_defaults() noexcept;
 
 private:
     struct Target {

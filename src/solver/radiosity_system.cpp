@@ -81,6 +81,18 @@ double RadiositySystem::worst_relative(const std::vector<double>& squares) const
     return worst;
 }
 
+ChannelField RadiositySystem::scaled(std::span<const double> values) const {
+    ChannelField field(size(), channels_);
+    for (std::uint32_t i = 0; i < size(); ++i) {
+        for (std::uint32_t c = 0; c < channels_; ++c) {
+            if (source_norm_[c] > 0.0) {
+                field.patch(i)[c] = std::ldexp(values[std::size_t{i} * channels_ + c], -exponent_[c]);
+            }
+        }
+    }
+    return field;
+}
+
 std::vector<double> RadiositySystem::unscaled(const ChannelField& field) const {
     std::vector<double> values;
     values.reserve(std::size_t{size()} * channels_);

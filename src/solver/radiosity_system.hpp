@@ -31,6 +31,8 @@ public:
     [[nodiscard]] double relative(double squares, std::uint32_t c) const;
     /// The worst channel of sqrt(squares) / ||E'||; NaN if one is. Dark channels do not count.
     [[nodiscard]] double worst_relative(const std::vector<double>& squares) const;
+    /// The other way round; dark channels are dark.
+    [[nodiscard]] ChannelField scaled(std::span<const double> values) const;
     /// A field in the caller's units and layout.
     [[nodiscard]] std::vector<double> unscaled(const ChannelField& field) const;
 

@@ -126,6 +126,16 @@ RadiositySolution solve_radiosity(const RadiosityProblem& problem, const SolverS
     if (!(settings.tolerance > 0.0) || !std::isfinite(settings.tolerance)) {
         throw InvalidArgument(fmt::format("tolerance {}; it must be finite and above 0", settings.tolerance));
     }
+    if (!settings.start.empty() && settings.start.size() != problem.exitance.size()) {
+        throw InvalidArgument(fmt::format("{} radiosities to begin with for {} patches of {} channels",
+                                          settings.start.size(), problem.factors->size(), problem.channels));
+    }
+    for (const double value : settings.start) {
+        if (!(value >= 0.0) || !std::isfinite(value)) {
+            throw InvalidArgument(
+                fmt::format("radiosity {} to begin with; it must be finite and not negative", value));
+        }
+    }
     const RadiositySystem system(problem);
     RadiositySolution solution;
     solution.dominance = system.dominance();

@@ -125,7 +125,7 @@ ChannelField solve_by_sweeps(const RadiositySystem& system, const SolverRun& run
     const SolverSettings& settings = run.settings;
     RadiositySolution& solution = run.solution;
     Sweeper sweeper(system);
-    ChannelField radiosity = system.source();
+    ChannelField radiosity = settings.start.empty() ? system.source() : system.scaled(settings.start);
     const bool jacobi = solution.method == SolverMethod::jacobi;
     ChannelField previous = jacobi ? radiosity : ChannelField(0, system.channels());
 

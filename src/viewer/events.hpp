@@ -20,7 +20,9 @@ struct ScrollEvent {
     double amount; ///< notches of the wheel, away from the user positive
 };
 inline constexpr char escape_key = '\x1B';
-/// `key` is what a keyboard shows on it: a capital letter, a digit, or escape_key.
+inline constexpr char tab_key = '\t';
+inline constexpr char help_key = '\x01'; ///< F1
+/// `key` is what a keyboard shows on it: a capital letter, a digit, or one of the above.
 struct KeyEvent {
     char key;
     bool shift;

@@ -1,14 +1,17 @@
 #include "viewer/script.hpp"
 
 #include "hemi/core/error.hpp"
+#include "viewer/look.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace hemi::viewer {
 
@@ -122,11 +125,15 @@ DragCommand parse_drag(Line& line) {
 KeyCommand parse_key(Line& line) {
     std::string_view name = line.word("a key");
     const bool shift = take_shift(name);
-    if (name == "Escape") {
-        return {{escape_key, shift}};
+    constexpr std::array<std::pair<std::string_view, char>, 3> named{
+        {{"Escape", escape_key}, {"Tab", tab_key}, {"F1", help_key}}};
+    for (const auto& [word, key] : named) {
+        if (name == word) {
+            return {{key, shift}};
+        }
     }
     if (name.size() != 1 || std::isalnum(static_cast<unsigned char>(name[0])) == 0) {
-        line.fail(fmt::format("key \"{}\"; must be a letter, a digit or Escape", name));
+        line.fail(fmt::format("key \"{}\"; must be a letter, a digit, Escape, Tab or F1", name));
     }
     return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift}};
 }
@@ -139,9 +146,65 @@ ScreenshotCommand parse_screenshot(Line& line) {
     return screenshot;
 }
 
+/// A file name, the rest of the line, that ends in `extension`.
+std::string parse_file(Line& line, std::string_view command, std::string_view extension) {
+    std::string path(line.rest());
+    if (!path.ends_with(extension)) {
+        line.fail(fmt::format("{} \"{}\"; the name must end in {}", command, path, extension));
+    }
+    return path;
+}
+
+SetCommand parse_set(Line& line) {
+    const std::string_view property = line.word("a property");
+    if (property != "reflectance" && property != "exitance") {
+        line.fail(fmt::format("property \"{}\"; must be reflectance or exitance", property));
+    }
+    SetCommand set{property == "exitance", {}, {}};
+    const double most = set.exitance ? 1e30 : 0.999999;
+    std::string_view values = line.word("a value");
+    while (true) {
+        const std::size_t end = std::min(values.find(','), values.size());
+        double value = 0.0;
+        const auto [last, error] = std::from_chars(values.data(), values.data() + end, value);
+        if (error != std::errc() || last != values.data() + end || !(value >= 0.0 && value <= most)) {
+            line.fail(fmt::format("\"{}\" as {}; must be a number from 0 to {}", values.substr(0, end),
+                                  property, most));
+        }
+        set.values.push_back(value);
+        if (end == values.size()) {
+            break;
+        }
+        values.remove_prefix(end + 1);
+    }
+    set.material = line.rest();
+    return set;
+}
+
+ShowCommand parse_show(Line& line) {
+    const std::string_view word = line.word("a quantity");
+    if (!quantity_by_word(word)) {
+        std::string all;
+        for (const QuantityName& name : quantity_names()) {
+            all += (all.empty() ? "" : ", ") + std::string(name.word);
+        }
+        line.fail(fmt::format("quantity \"{}\"; must be one of {}", word, all));
+    }
+    return {std::string(word)};
+}
+
 ScriptCommand parse_command(std::string_view command, Line& line, std::size_t number) {
     if (command == "screenshot") {
         return {number, parse_screenshot(line)};
+    }
+    if (command == "set") {
+        return {number, parse_set(line)};
+    }
+    if (command == "windowshot") {
+        return {number, WindowshotCommand{parse_file(line, command, ".png")}};
+    }
+    if (command == "report") {
+        return {number, ReportCommand{parse_file(line, command, ".json")}};
     }
     ScriptCommand result{number, QuitCommand{}};
     if (command == "drag") {
@@ -150,14 +213,24 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         const double x = line.number("x");
         const double y = line.number("y");
         result.action = ScrollCommand{x, y, line.number("the amount")};
+    } else if (command == "click") {
+        const double x = line.number("x");
+        result.action = ClickCommand{x, line.number("y")};
+    } else if (command == "move") {
+        const double x = line.number("x");
+        result.action = MoveCommand{x, line.number("y")};
+    } else if (command == "show") {
+        result.action = parse_show(line);
     } else if (command == "key") {
         result.action = parse_key(line);
     } else if (command == "resize") {
         const std::uint32_t width = line.size("the width");
         result.action = ResizeCommand{width, line.size("the height")};
     } else if (command != "quit") {
-        line.fail(
-            fmt::format("command \"{}\"; must be drag, scroll, key, resize, screenshot or quit", command));
+        line.fail(fmt::format(
+            "command \"{}\"; must be drag, click, move, scroll, key, show, set, resize, screenshot, "
+            "windowshot, report or quit",
+            command));
     }
     line.end();
     return result;

@@ -25,6 +25,24 @@ struct ScrollCommand {
 struct KeyCommand {
     KeyEvent event;
 };
+struct ClickCommand {
+    double x;
+    double y;
+};
+/// The cursor goes there, no button pressed.
+struct MoveCommand {
+    double x;
+    double y;
+};
+struct ShowCommand {
+    std::string quantity;
+};
+/// A material's values, one or one a channel.
+struct SetCommand {
+    bool exitance; ///< else reflectance
+    std::vector<double> values;
+    std::string material;
+};
 struct ResizeCommand {
     std::uint32_t width;
     std::uint32_t height;
@@ -32,11 +50,20 @@ struct ResizeCommand {
 struct ScreenshotCommand {
     std::string path;
 };
+/// As ScreenshotCommand, of the window with its panels.
+struct WindowshotCommand {
+    std::string path;
+};
+/// Writes what is shown as JSON.
+struct ReportCommand {
+    std::string path;
+};
 struct QuitCommand {};
 
 struct ScriptCommand {
     std::size_t line;
-    std::variant<DragCommand, ScrollCommand, KeyCommand, ResizeCommand, ScreenshotCommand, QuitCommand>
+    std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand, SetCommand,
+                 ResizeCommand, ScreenshotCommand, WindowshotCommand, ReportCommand, QuitCommand>
         action;
 };
 
@@ -44,10 +71,18 @@ struct ScriptCommand {
 /// Points are pixels from the upper left.
 /// ```
 /// drag [shift+]left|middle|right X0 Y0 X1 Y1 [X Y ...]
+/// click X Y              with the left button
+/// move X Y               of the cursor
 /// scroll X Y AMOUNT
-/// key [shift+]NAME       a letter, a digit or Escape
+/// key [shift+]NAME       a letter, a digit, Escape, Tab or F1
+/// show QUANTITY          picture, outlines, items, radiosity, reflectance, exitance, row-error, error, row
+///                        or column
+/// set reflectance|exitance VALUE[,VALUE ...] MATERIAL
+///                        one value, or one a channel; waits until the light has followed
 /// resize WIDTH HEIGHT
-/// screenshot FILE        .png or .hdr; the name is the rest of the line
+/// screenshot FILE        .png or .hdr: the picture; the name is the rest of the line
+/// windowshot FILE        .png: the window with its panels
+/// report FILE            .json: picked patch, quantity shown and its values, radiosity
 /// quit
 /// ```
 /// @param file  name for messages.

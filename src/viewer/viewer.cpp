@@ -3,6 +3,13 @@
 #include "display/orbit_camera.hpp"
 #include "display/picture_renderer.hpp"
 #include "display/visible_point.hpp"
+#include "viewer/gui.hpp"
+#include "viewer/hemicube_inset.hpp"
+#include "viewer/look.hpp"
+#include "viewer/panels.hpp"
+#include "viewer/relighter.hpp"
+#include "viewer/report.hpp"
+#include "viewer/scene_target.hpp"
 #include "viewer/script.hpp"
 #include "viewer/window.hpp"
 
@@ -12,12 +19,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
 #include <optional>
+#include <thread>
 
 namespace hemi::viewer {
 
@@ -28,8 +37,12 @@ constexpr double radians_per_height = std::numbers::pi;
 /// Change of the distance by one notch of the wheel, and by a right drag over the height of the picture.
 constexpr double zoom_per_notch = 0.85;
 constexpr double zoom_per_height = 0.05;
-/// One press of E.
-constexpr double exposure_step = 1.259921049894873; // a third of a stop
+/// One press of E, stops.
+constexpr double exposure_step = 1.0 / 3.0;
+/// A press and release with less way between is a click, pixels.
+constexpr double click_way = 4.0;
+/// Lines in the list of partners.
+constexpr std::size_t partner_count = 8;
 /// After so long without an event the picture is drawn in full quality, seconds.
 constexpr double rest = 0.2;
 
@@ -40,36 +53,54 @@ struct Overloaded : Functions... {
 template <typename... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
+struct HemicubeChoice {
+    bool shown = true;
+    bool ids = false;
+    std::uint32_t eye = 0;
+
+    bool operator==(const HemicubeChoice&) const = default;
+};
+
 /// The window's picture and what the user does to it. Real input and scripts come in by the same door,
 /// handle().
 class Viewer {
 public:
     explicit Viewer(const ViewerInput& input)
         : input_(input), window_(input.title, input.picture.width, input.picture.height),
-          orbit_(input.camera, input.mesh->bounds()), settings_(input.picture) {
-        PictureMesh picture =
-            make_picture_mesh(*input.mesh, input.channels, input.radiosity, input.blocked, input.show);
-        picture.environment = input.environment;
-        if (input.automatic_exposure) {
-            settings_.exposure =
-                automatic_exposure(*input.mesh, picture, input.blocked, input.exitance, input.channels);
+          orbit_(input.camera, input.mesh->bounds()), light_{input.reflectance, input.exitance,
+                                                             input.radiosity},
+          exposure_(input.picture.exposure) {
+        choices_.look.shading = input.picture.shading;
+        choices_.look.tone_mapping = input.picture.tone_mapping;
+        choices_.look.outlines = input.picture.outlines;
+        choices_.materials = asked_materials_ = input.scene->materials;
+        without_rows_.resize(choices_.materials.size(), false);
+        if (input.factors != nullptr) {
+            for (std::uint32_t i = 0; i < input.mesh->size(); ++i) {
+                if (!input.factors->known(i)) {
+                    without_rows_[input.mesh->material(i)] = true;
+                }
+            }
+            relighter_.emplace(input, Window::wake);
+            usual_factor_ = usual_largest_factor(*input.factors);
         }
-        renderer_.upload(picture);
-        update_title();
+        prepare_light();
+        if (input.automatic_exposure) {
+            exposure_ =
+                automatic_exposure(*input.mesh, light_mesh_, input.blocked, input.exitance, input.channels);
+        }
+        settle();
     }
 
     void run() {
         while (!closing_) {
             const bool preview = moving_ && window_.software();
-            if (changed_) {
-                draw(preview);
-            }
-            moving_ = button_.has_value();
-            for (const Event& event : window_.wait(preview && !button_ ? rest : 0.0)) {
-                handle(event);
-            }
+            draw(preview);
+            moving_ = button_.has_value() && dragging_;
+            handle(window_.wait(preview && !button_ ? rest : 0.0));
+            take_light();
             // Nothing came: the preview on the screen is drawn anew in full quality.
-            changed_ = changed_ || (preview && !moving_);
+            picture_changed_ = picture_changed_ || (preview && !moving_);
         }
     }
 
@@ -90,7 +121,7 @@ public:
                     handle(event);
                 }
             }
-            if (changed_ && !closing_) {
+            if (!closing_) {
                 draw(window_.software());
             }
         }
@@ -102,25 +133,54 @@ private:
         double y;
     };
 
+    /// Of cursor moves in a row only the last counts.
+    void handle(const std::vector<Event>& events) {
+        for (std::size_t k = 0; k < events.size() && !closing_; ++k) {
+            const bool passed = std::holds_alternative<CursorEvent>(events[k]) && k + 1 < events.size() &&
+                                std::holds_alternative<CursorEvent>(events[k + 1]);
+            if (!passed) {
+                handle(events[k]);
+            }
+        }
+    }
+
+    /// The panels see every event first; a drag that began in the view stays the view's.
     void handle(const Event& event) {
+        gui_.feed(event);
+        describe_panels();
+        const bool of_mouse =
+            std::holds_alternative<ButtonEvent>(event) || std::holds_alternative<ScrollEvent>(event);
+        if (!(of_mouse && gui_.has_mouse() && !button_)) {
+            act_on(event);
+        }
+        settle();
+    }
+
+    void act_on(const Event& event) {
         std::visit(Overloaded{[this](const CursorEvent& e) { on_cursor(e); },
                               [this](const ButtonEvent& e) { on_button(e); },
                               [this](const ScrollEvent& e) { on_scroll(e); },
                               [this](const KeyEvent& e) { on_key(e); },
-                              [this](const RefreshEvent&) { changed_ = true; },
+                              [this](const RefreshEvent&) { picture_changed_ = lost_ = true; },
                               [this](const CloseEvent&) { closing_ = true; }},
                    event);
     }
 
     /// On the screen as OrbitCamera wants it: heights of the picture, from its centre, y upwards.
     [[nodiscard]] Point on_screen(Point pixel) const {
-        const auto size = window_.size();
+        const auto size = view_size();
         const double height = std::max(size[1], 1U);
         return {(pixel.x - 0.5 * size[0]) / height, 0.5 - pixel.y / height};
     }
 
-    [[nodiscard]] double aspect() const {
+    /// Pixels of the window that show the scene, from its upper left.
+    [[nodiscard]] std::array<std::uint32_t, 2> view_size() const {
         const auto size = window_.size();
+        return {size[0] - panel_width(size, choices_.panel), size[1]};
+    }
+
+    [[nodiscard]] double aspect() const {
+        const auto size = view_size();
         return static_cast<double>(std::max(size[0], 1U)) / std::max(size[1], 1U);
     }
 
@@ -140,6 +200,11 @@ private:
         if (!button_) {
             return;
         }
+        const double way = std::hypot(cursor_.x - pressed_at_.x, cursor_.y - pressed_at_.y);
+        dragging_ = dragging_ || way >= click_way;
+        if (!dragging_) {
+            return;
+        }
         const Point from = on_screen(pressed_at_);
         const Point to = on_screen(cursor_);
         if (panning_) {
@@ -156,12 +221,16 @@ private:
         if (!event.pressed) {
             if (button_ == event.button) {
                 button_.reset();
+                if (!dragging_ && event.button == Button::left && !panning_) {
+                    pick(cursor_);
+                }
             }
             return;
         }
         button_ = event.button;
         panning_ = event.button == Button::middle || (event.button == Button::left && event.shift);
         pressed_at_ = cursor_;
+        dragging_ = false;
         orbit_.grab(event.button == Button::left && !panning_ ? pivot_for_orbit() : point_under_cursor());
     }
 
@@ -182,8 +251,13 @@ private:
     }
 
     void on_key(const KeyEvent& event) {
-        const char key = event.key;
         button_.reset();
+        if (!camera_key(event.key) && !look_key(event)) {
+            other_key(event);
+        }
+    }
+
+    bool camera_key(char key) {
         if (key == 'F') {
             orbit_.frame_all(aspect());
         } else if (key == 'R') {
@@ -194,59 +268,309 @@ private:
             orbit_.look_along(OrbitCamera::Axis::right, aspect());
         } else if (key == '7') {
             orbit_.look_along(OrbitCamera::Axis::top, aspect());
-        } else if (key == 'S') {
-            settings_.shading = settings_.shading == Shading::flat ? Shading::gouraud : Shading::flat;
-        } else if (key == 'T') {
-            settings_.tone_mapping =
-                settings_.tone_mapping == ToneMapping::filmic ? ToneMapping::linear : ToneMapping::filmic;
-        } else if (key == 'E') {
-            settings_.exposure *= event.shift ? 1.0 / exposure_step : exposure_step;
-        } else if (key == 'W') {
-            settings_.outlines = !settings_.outlines;
-        } else if (key == 'P') {
-            numbered_screenshot();
-            return;
-        } else if (key == 'Q' || key == escape_key) {
-            closing_ = true;
-            return;
         } else {
+            return false;
+        }
+        picture_changed_ = true;
+        return true;
+    }
+
+    bool look_key(const KeyEvent& event) {
+        Look& look = choices_.look;
+        if (event.key == 'S') {
+            look.shading = look.shading == Shading::flat ? Shading::gouraud : Shading::flat;
+        } else if (event.key == 'T') {
+            look.tone_mapping =
+                look.tone_mapping == ToneMapping::filmic ? ToneMapping::linear : ToneMapping::filmic;
+        } else if (event.key == 'E') {
+            look.stops += event.shift ? -exposure_step : exposure_step;
+        } else if (event.key == 'W') {
+            look.outlines = !look.outlines;
+        } else if (event.key == 'L') {
+            bool& logarithmic = look.quantity == Quantity::row || look.quantity == Quantity::column
+                                    ? look.logarithmic_factors
+                                    : look.logarithmic;
+            logarithmic = !logarithmic;
+        } else if (event.key == 'V') {
+            next_quantity(event.shift);
+        } else if (event.key == 'H') {
+            next_heat_map();
+        } else {
+            return false;
+        }
+        return true;
+    }
+
+    void other_key(const KeyEvent& event) {
+        if (event.key == 'P') {
+            numbered_screenshot(event.shift);
+        } else if (event.key == tab_key) {
+            choices_.panel = !choices_.panel;
+            picture_changed_ = true;
+        } else if (event.key == 'C') {
+            choices_.hemicube = !choices_.hemicube;
+        } else if (event.key == help_key) {
+            choices_.help = !choices_.help;
+        } else if (event.key == escape_key && choices_.help) {
+            choices_.help = false;
+        } else if (event.key == escape_key && choices_.picked) {
+            choices_.picked.reset();
+        } else if (event.key == 'Q' || event.key == escape_key) {
+            closing_ = true;
+        }
+    }
+
+    void next_quantity(bool back) {
+        const auto names = quantity_names();
+        const auto now = std::find_if(names.begin(), names.end(), [this](const QuantityName& name) {
+            return name.quantity == choices_.look.quantity;
+        });
+        const std::size_t step = back ? names.size() - 1 : 1;
+        std::size_t next = static_cast<std::size_t>(now - names.begin());
+        do {
+            next = (next + step) % names.size();
+        } while (why_not(names[next].quantity, input_, choices_.picked) != nullptr);
+        choices_.look.quantity = names[next].quantity;
+    }
+
+    void next_heat_map() {
+        Quantity& quantity = choices_.look.quantity;
+        const Quantity next = quantity == Quantity::row
+                                  ? Quantity::column
+                                  : (quantity == Quantity::column ? Quantity::picture : Quantity::row);
+        quantity = why_not(next, input_, choices_.picked) == nullptr ? next : Quantity::picture;
+    }
+
+    void pick(Point pixel) {
+        const auto size = view_size();
+        if (!(pixel.x >= 0.0 && pixel.x < size[0] && pixel.y >= 0.0 && pixel.y < size[1])) {
             return;
         }
-        changed_ = true;
-        update_title();
+        choices_.picked =
+            renderer_.item(orbit_.camera(), picture_settings(size), static_cast<std::uint32_t>(pixel.x),
+                           static_cast<std::uint32_t>(pixel.y));
     }
 
     void moved() {
-        changed_ = true;
+        picture_changed_ = true;
         moving_ = true;
     }
 
-    void update_title() {
-        window_.set_title(fmt::format("{} - exposure {:.3g}, {} - {}", input_.title, settings_.exposure,
-                                      settings_.tone_mapping == ToneMapping::filmic ? "filmic" : "linear",
-                                      window_.renderer()));
+    /// After radiosity has changed.
+    void prepare_light() {
+        light_mesh_ =
+            make_picture_mesh(*input_.mesh, input_.channels, light_.radiosity, input_.blocked, input_.show);
+        light_mesh_.environment = input_.environment;
+        shown_look_.reset();
     }
 
-    void draw(bool preview) {
-        const auto size = window_.size();
-        changed_ = false;
-        if (size[0] == 0 || size[1] == 0) {
+    /// What the relighter has found, on the screen.
+    void take_light() {
+        std::optional<Relit> relit = relighter_ ? relighter_->take() : std::nullopt;
+        if (!relit) {
             return;
         }
-        PictureSettings settings = settings_;
-        settings.width = size[0];
-        settings.height = size[1];
-        settings.samples = preview ? 1 : settings.samples;
-        renderer_.draw(orbit_.camera(), settings, 0);
+        relit_ = relit->problem.empty()
+                     ? fmt::format("solved in {:.2f} s, {} sweeps", relit->seconds, relit->sweeps)
+                     : "no solution: " + relit->problem;
+        if (relit->problem.empty()) {
+            light_ = std::move(relit->light);
+            prepare_light();
+            settle();
+        }
+    }
+
+    /// Brings what hangs on the choices in line with them.
+    void settle() {
+        if (why_not(choices_.look.quantity, input_, choices_.picked) != nullptr) {
+            choices_.look.quantity = Quantity::picture;
+        }
+        if (relighter_ && choices_.materials != asked_materials_) {
+            asked_materials_ = choices_.materials;
+            relighter_->ask({of_patches(asked_materials_, *input_.mesh, &Material::reflectance),
+                             of_patches(asked_materials_, *input_.mesh, &Material::exitance),
+                             light_.radiosity});
+        }
+        const bool other_patch = shown_pick_ != choices_.picked;
+        const bool other_look = shown_look_ != choices_.look;
+        const HemicubeChoice hemicube{choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
+        const bool other_hemicube = shown_hemicube_ != hemicube;
+        const bool other_order = shown_by_light_ != choices_.partners_by_light;
+        if (!other_patch && !other_look && !other_order && !other_hemicube) {
+            return;
+        }
+        const Quantity quantity = choices_.look.quantity;
+        const bool of_patch = quantity == Quantity::row || quantity == Quantity::column;
+        if (other_look || (other_patch && of_patch)) {
+            show();
+        }
+        picked_.reset();
+        if (choices_.picked) {
+            picked_ = PickedPatch{*choices_.picked, {}};
+            if (input_.factors != nullptr) {
+                picked_->partners =
+                    largest_partners(input_, light_, *choices_.picked, quantity == Quantity::column,
+                                     choices_.partners_by_light, partner_count);
+            }
+        }
+        if (other_patch) {
+            choices_.hemicube_eye = 0;
+        }
+        shown_pick_ = choices_.picked;
+        shown_look_ = choices_.look;
+        shown_by_light_ = choices_.partners_by_light;
+        shown_hemicube_ = {choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
+        draw_hemicube();
+        update_title();
+    }
+
+    /// Puts the quantity that was chosen on the scene.
+    void show() {
+        colours_.clear();
+        field_ = make_field(choices_.look, input_, light_, choices_.picked, usual_factor_);
+        if (field_) {
+            colours_ = field_colours(*field_, *input_.mesh);
+        } else if (choices_.look.quantity == Quantity::items) {
+            colours_ = item_colours(*input_.mesh);
+        } else if (choices_.look.quantity == Quantity::outlines) {
+            colours_ = plain_colours(*input_.mesh);
+        }
+        renderer_.upload(colours_.empty() ? light_mesh_ : painted(light_mesh_, colours_));
+        picture_changed_ = true;
+    }
+
+    /// The picked patch's hemicube, where it is wanted and there is room for it.
+    void draw_hemicube() {
+        if (!choices_.hemicube || !choices_.picked || panel_width(window_.size(), choices_.panel) == 0) {
+            return;
+        }
+        if (!inset_) {
+            inset_.emplace(*input_.mesh, input_.hemicube, window_);
+        }
+        inset_->look(*choices_.picked, choices_.hemicube_eye);
+        inset_->paint(choices_.hemicube_ids ? item_colours(*input_.mesh)
+                      : colours_.empty() ? light_colours(light_mesh_, exposure(), choices_.look.tone_mapping)
+                                         : colours_);
+    }
+
+    [[nodiscard]] double exposure() const { return exposure_ * std::exp2(choices_.look.stops); }
+
+    [[nodiscard]] PictureSettings picture_settings(std::array<std::uint32_t, 2> size) const {
+        PictureSettings settings = input_.picture;
+        const Look& look = choices_.look;
+        settings.width = std::max(size[0], 1U);
+        settings.height = std::max(size[1], 1U);
+        settings.shading = look.shading;
+        settings.tone_mapping = look.tone_mapping;
+        settings.exposure = exposure();
+        settings.outlines = look.outlines;
+        if (look.quantity != Quantity::picture) {
+            settings.shading = Shading::flat;
+            settings.tone_mapping = ToneMapping::linear;
+            settings.exposure = 1.0;
+            settings.outlines = look.outlines || look.quantity == Quantity::outlines;
+        }
+        return settings;
+    }
+
+    void update_title() {
+        const std::string title = fmt::format(
+            "{} - exposure {:.3g}, {} - {}", input_.title, exposure(),
+            choices_.look.tone_mapping == ToneMapping::filmic ? "filmic" : "linear", window_.renderer());
+        if (title != title_) {
+            title_ = title;
+            window_.set_title(title);
+        }
+    }
+
+    void describe_panels() {
+        const auto size = window_.size();
+        const auto view = view_size();
+        gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
+        if (view[0] < size[0]) {
+            const PanelContent content{input_, light_, picked_, status_, relit_, without_rows_};
+            side_panel(content, size, choices_);
+        }
+        if (view[0] > 0 && view[1] > 0) {
+            draw_outlines();
+            if (field_) {
+                legend(*field_, view);
+            }
+            if (inset_ && choices_.hemicube && choices_.picked && view[0] < size[0]) {
+                hemicube_window(inset_->picture(), view, choices_);
+            }
+            if (choices_.help) {
+                help_window(view, choices_.help);
+            }
+        }
+        gui_.end();
+    }
+
+    /// Of the picked patch and of the one that is pointed at, in front of everything.
+    void draw_outlines() {
+        const auto size = view_size();
+        const auto outline = [&](std::uint32_t patch, bool picked) {
+            const PatchCorners corners = input_.mesh->corners(patch);
+            for (std::size_t k = 0; k < corners.count; ++k) {
+                const auto line = orbit_.line(corners.points[k], corners.points[(k + 1) % corners.count]);
+                if (line) {
+                    const auto pixel = [&](const std::array<double, 2>& place) {
+                        return std::array<double, 2>{0.5 * size[0] + place[0] * size[1],
+                                                     (0.5 - place[1]) * size[1]};
+                    };
+                    mark_line(pixel((*line)[0]), pixel((*line)[1]), picked);
+                }
+            }
+        };
+        if (choices_.pointed_at) {
+            outline(*choices_.pointed_at, false);
+        }
+        if (choices_.picked) {
+            outline(*choices_.picked, true);
+        }
+    }
+
+    /// Draws what has changed.
+    void draw(bool preview) {
+        const auto view = view_size();
+        const auto size = window_.size();
+        if (view[0] == 0 || view[1] == 0) {
+            return;
+        }
+        if (picture_changed_ || target_.size() != view) {
+            draw_picture(target_, view, preview);
+            picture_changed_ = false;
+            lost_ = true;
+        }
+        // Twice, since a frame may learn from the one before how large its text is.
+        describe_panels();
+        describe_panels();
+        settle();
+        if (!lost_ && !gui_.changed()) {
+            return;
+        }
+        target_.copy_to(0, size[1]);
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+        gui_.draw();
+        gl::check_errors("drawing the window");
         window_.swap();
+        lost_ = false;
+    }
+
+    void draw_picture(SceneTarget& target, std::array<std::uint32_t, 2> size, bool preview) {
+        const auto start = std::chrono::steady_clock::now();
+        PictureSettings settings = picture_settings(size);
+        settings.samples = preview ? 1 : settings.samples;
+        target.resize(size);
+        renderer_.draw(orbit_.camera(), settings, target.framebuffer());
+        glFinish();
+        const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
+        status_ = fmt::format("{} patches, {:.0f} ms a picture{}", input_.mesh->size(), time.count(),
+                              preview ? " (preview)" : "");
     }
 
     void screenshot(const std::filesystem::path& path) {
-        const auto size = window_.size();
-        PictureSettings settings = settings_;
-        settings.width = std::max(size[0], 1U);
-        settings.height = std::max(size[1], 1U);
-        const Picture picture = renderer_.picture(orbit_.camera(), settings);
+        const Picture picture = renderer_.picture(orbit_.camera(), picture_settings(window_.size()));
         if (path.extension() == ".hdr") {
             io::write_hdr(path, picture.width, picture.height, picture.linear);
         } else {
@@ -255,15 +579,42 @@ private:
         std::fprintf(stderr, "%s\n", path.string().c_str());
     }
 
+    /// The window in full quality, panels included.
+    void windowshot(const std::filesystem::path& path) {
+        const auto size = window_.size();
+        const auto view = view_size();
+        if (view[0] == 0 || view[1] == 0) {
+            return;
+        }
+        SceneTarget picture;
+        draw_picture(picture, view, false);
+        describe_panels();
+        describe_panels();
+        SceneTarget whole;
+        whole.resize(size);
+        picture.copy_to(whole.framebuffer(), size[1]);
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, whole.framebuffer());
+        gui_.draw();
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+        gl::check_errors("drawing the window");
+        lost_ = true;
+        io::write_png(path, size[0], size[1], whole.pixels());
+        std::fprintf(stderr, "%s\n", path.string().c_str());
+    }
+
     /// Under the first free number; a folder that cannot be written to is no reason to close the window.
-    void numbered_screenshot() {
+    void numbered_screenshot(bool of_window) {
         std::filesystem::path path;
         int number = 1;
         do {
             path = fmt::format("{}-{:03}.png", input_.file_stem, number++);
         } while (std::filesystem::exists(path));
         try {
-            screenshot(path);
+            if (of_window) {
+                windowshot(path);
+            } else {
+                screenshot(path);
+            }
         } catch (const IoError& error) {
             std::fprintf(stderr, "%s\n", error.what());
         }
@@ -276,6 +627,45 @@ private:
             handle(CursorEvent{drag.path[i][0], drag.path[i][1]});
         }
         handle(ButtonEvent{drag.button, false, drag.shift});
+    }
+    void perform(const ClickCommand& click) {
+        handle(CursorEvent{click.x, click.y});
+        handle(ButtonEvent{Button::left, true, false});
+        handle(ButtonEvent{Button::left, false, false});
+    }
+    void perform(const MoveCommand& move) { handle(CursorEvent{move.x, move.y}); }
+    void perform(const ShowCommand& show) {
+        const Quantity quantity = quantity_by_word(show.quantity).value_or(Quantity::picture);
+        if (const char* problem = why_not(quantity, input_, choices_.picked)) {
+            throw InvalidArgument(fmt::format("show {}: {}", show.quantity, problem));
+        }
+        choices_.look.quantity = quantity;
+        settle();
+    }
+    void perform(const SetCommand& set) {
+        std::vector<Material>& materials = choices_.materials;
+        const auto found = std::find_if(materials.begin(), materials.end(), [&set](const Material& material) {
+            return material.name == set.material;
+        });
+        if (!relighter_) {
+            throw InvalidArgument("set: a stored solution has no form factors; open the scene instead");
+        }
+        if (found == materials.end()) {
+            throw InvalidArgument(fmt::format("set: the scene has no material \"{}\"", set.material));
+        }
+        if (set.values.size() != 1 && set.values.size() != input_.channels) {
+            throw InvalidArgument(
+                fmt::format("set: {} values for {} channels", set.values.size(), input_.channels));
+        }
+        std::vector<double>& values = set.exitance ? found->exitance : found->reflectance;
+        for (std::size_t c = 0; c < values.size(); ++c) {
+            values[c] = set.values[set.values.size() == 1 ? 0 : c];
+        }
+        settle();
+        while (relighter_->busy()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            take_light();
+        }
     }
     void perform(const ScrollCommand& scroll) {
         handle(CursorEvent{scroll.x, scroll.y});
@@ -294,7 +684,14 @@ private:
                 }
             }
         }
-        changed_ = true;
+        picture_changed_ = true;
+    }
+    void perform(const WindowshotCommand& command) { windowshot(command.path); }
+    void perform(const ReportCommand& command) {
+        write_report(
+            command.path,
+            {input_, light_, choices_, field_, picked_,
+             inset_ && choices_.picked && choices_.hemicube ? inset_->seen() : std::vector<std::uint32_t>()});
     }
     void perform(const ScreenshotCommand& command) { screenshot(command.path); }
     void perform(const QuitCommand&) { closing_ = true; }
@@ -302,23 +699,48 @@ private:
     const ViewerInput& input_;
     Window window_; // before everything that lives in its context
     PictureRenderer renderer_;
+    SceneTarget target_;
+    Gui gui_;
+    std::optional<HemicubeInset> inset_; ///< made when it is first needed
     OrbitCamera orbit_;
-    PictureSettings settings_;
+    Choices choices_;
+    Light light_;
+    PictureMesh light_mesh_;
+    double exposure_ = 1.0; ///< where stops count from
+    double usual_factor_ = 0.0;
+
+    // What the screen shows: follows the choices, see settle().
+    std::optional<Look> shown_look_;
+    std::optional<std::uint32_t> shown_pick_;
+    bool shown_by_light_ = false;
+    HemicubeChoice shown_hemicube_;
+    std::vector<std::array<float, 3>> colours_; ///< of the patches, display linear; empty: light
+    std::optional<Field> field_;
+    std::optional<PickedPatch> picked_;
+    std::string status_;
+    std::string relit_;
+    std::vector<Material> asked_materials_;
+    std::vector<bool> without_rows_; ///< by material
+    std::string title_;
 
     Point cursor_{0.0, 0.0};
     Point pressed_at_{0.0, 0.0};
     std::optional<Button> button_;
     bool panning_ = false;
+    bool dragging_ = false;
     bool moving_ = false;
-    bool changed_ = true;
+    bool picture_changed_ = true;
+    bool lost_ = true; ///< what the window holds is not what was drawn last
     bool closing_ = false;
+
+    std::optional<Relighter> relighter_; ///< where there are form factors; the first to go
 };
 
 } // namespace
 
 int run_viewer(const ViewerInput& input) {
-    if (input.mesh == nullptr) {
-        throw InvalidArgument("viewer: no mesh");
+    if (input.mesh == nullptr || input.scene == nullptr) {
+        throw InvalidArgument("viewer: no scene");
     }
     if (input.script.empty()) {
         Viewer(input).run();

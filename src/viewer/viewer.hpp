@@ -1,7 +1,12 @@
 #pragma once
 
 #include "hemi/display/picture.hpp"
+#include "hemi/engine/engine.hpp"
+#include "hemi/matrix/form_factor_matrix.hpp"
 #include "hemi/scene/patch_mesh.hpp"
+#include "hemi/scene/scene.hpp"
+
+#include "hemi/solver/solver.hpp"
 
 #include <array>
 #include <cstdint>
@@ -12,14 +17,22 @@ namespace hemi::viewer {
 
 /// A solved scene to look at, and how to begin.
 struct ViewerInput {
-    std::string file_stem = "hemi";  ///< how the names of screenshots begin
-    std::string title;               ///< name of the scene, in the window's title
-    const PatchMesh* mesh = nullptr; ///< must outlive run_viewer()
+    std::string file_stem = "hemi";            ///< how the names of screenshots begin
+    std::string title;                         ///< name of the scene, in the window's title
+    const Scene* scene = nullptr;              ///< names, materials, channels; must outlive run_viewer()
+    const PatchMesh* mesh = nullptr;           ///< must outlive run_viewer()
+    const FormFactorMatrix* factors = nullptr; ///< must outlive run_viewer(); null: there are none
     std::uint32_t channels = 1;
     std::array<std::uint32_t, 3> show{0, 0, 0}; ///< channels shown as red, green, blue
     std::vector<double> radiosity;              ///< N·channels
     std::vector<double> exitance;               ///< N·channels
-    std::vector<double> blocked;                ///< N, or empty
+    std::vector<double> reflectance;            ///< N·channels
+    std::vector<double> row_sum;                ///< sum_j F(i, j), N, or empty with the next two
+    std::vector<double> environment_share;      ///< e_i
+    std::vector<double> blocked;                ///< b_i; may be known alone
+    SolverSettings solver;                      ///< for the light after a change of materials
+    HemicubeSettings hemicube;                  ///< as the rows were, or would be, computed
+    std::vector<double> radiosity_error;        ///< estimated, N·channels, or empty
     std::array<float, 3> environment{};         ///< as PictureMesh::environment
     Camera camera;                              ///< where R goes back to
     PictureSettings picture;                    ///< width and height are the window's first size
@@ -30,9 +43,9 @@ struct ViewerInput {
 /// Opens a window and runs it until it is closed, or until the script ends. Call from the main thread.
 ///
 /// Mouse: left drag orbits about the point under the cursor, middle or shift and left drag pans, wheel and
-/// right drag zoom to the cursor. Keys: F frame all, R reset, 1 front, 3 right, 7 top, S Gouraud or flat,
-/// T tone mapping, E and shift E exposure up and down, W patch outlines, P screenshot beside the current
-/// directory, Esc or Q quit. Screenshots have the pixels that draw_picture() gives for the same camera.
+/// right drag zoom to the cursor, a click picks a patch. Keys: see help_window(). Beside the scene stands a
+/// panel where the window is large enough for it. Screenshots have the size of the window and the pixels that
+/// draw_picture() gives for the same camera.
 /// @return 0
 /// @throws NoDevice without a display or without OpenGL 4.5 on it; InputError if the script cannot be read or
 ///   understood, naming file and line; GlError; IoError where a script's screenshot cannot be written.

@@ -35,6 +35,12 @@ std::optional<char> key_name(int key, int scancode) {
     if (key == GLFW_KEY_ESCAPE) {
         return escape_key;
     }
+    if (key == GLFW_KEY_TAB) {
+        return tab_key;
+    }
+    if (key == GLFW_KEY_F1) {
+        return help_key;
+    }
     const char* name = glfwGetKeyName(key, scancode);
     if (name == nullptr || std::string_view(name).size() != 1) {
         return std::nullopt;
@@ -172,6 +178,10 @@ void Window::swap() {
 std::vector<Event> Window::poll() {
     glfwPollEvents();
     return std::exchange(events_, {});
+}
+
+void Window::wake() {
+    glfwPostEmptyEvent();
 }
 
 std::vector<Event> Window::wait(double seconds) {

@@ -32,6 +32,8 @@ public:
 
     /// Events since the last call, in order; does not wait.
     [[nodiscard]] std::vector<Event> poll();
+    /// Ends a wait(); from any thread.
+    static void wake();
     /// Waits for an event, at most `seconds`; 0: as long as it takes.
     [[nodiscard]] std::vector<Event> wait(double seconds);
 

@@ -226,3 +226,23 @@ TEST_CASE("VisiblePoint: finds the nearest front side and passes through backs",
     REQUIRE(sheet);
     check_near(*sheet, {0.3, 0.4, 1.0});
 }
+
+TEST_CASE("OrbitCamera: a line is seen where rays through its ends leave the eye", "[display]") {
+    const Bounds bounds = [] {
+        Bounds box;
+        box.add({-1.0, -1.0, -1.0});
+        box.add({1.0, 1.0, 1.0});
+        return box;
+    }();
+    const OrbitCamera orbit({{0.0, -5.0, 0.5}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 40.0}, bounds);
+    const ViewRay a = orbit.ray(-0.3, 0.2);
+    const ViewRay b = orbit.ray(0.4, -0.1);
+    const auto line = orbit.line(a.origin + 3.0 * a.direction, b.origin + 6.0 * b.direction);
+    REQUIRE(line);
+    CHECK((*line)[0][0] == Approx(-0.3));
+    CHECK((*line)[0][1] == Approx(0.2));
+    CHECK((*line)[1][0] == Approx(0.4));
+    CHECK((*line)[1][1] == Approx(-0.1));
+    CHECK_FALSE(orbit.line(a.origin - a.direction, b.origin - b.direction));
+    CHECK(orbit.line(a.origin - a.direction, b.origin + b.direction));
+}

@@ -1,6 +1,7 @@
 #include "hemi/display/picture.hpp"
 
 #include "display/display_fixtures.hpp"
+#include "display/picture_renderer.hpp"
 #include "gl/context.hpp"
 #include "hemi/core/error.hpp"
 
@@ -356,4 +357,33 @@ TEST_CASE("Picture: a camera that looks along its up direction still shows somet
     camera.up = {0, 0, 1};
     const Picture picture = draw_picture(square(0.5), camera, plain(10, 10), "osmesa");
     CHECK(linear(picture, 5, 5) == Approx(0.5));
+}
+
+TEST_CASE("PictureRenderer: an item is what the item buffer holds there", "[display][gl]") {
+    SceneBuilder builder;
+    builder.floor("below", -1.0, -1.0, 1.0, 0.5, {3, 2});
+    builder.add("above", {{-0.5, -0.5, 0.5}, {0.7, -0.4, 0.5}, {0.1, 0.6, 0.5}}, {2, 2});
+    const PatchMesh mesh = builder.mesh();
+    const auto context = gl::make_context("osmesa");
+    PictureRenderer renderer;
+    renderer.upload(make_picture_mesh(mesh, 1, std::vector<double>(mesh.size(), 1.0), {}, {0, 0, 0}));
+    const PictureSettings settings = plain(60, 40);
+    const std::vector<std::uint32_t> items = renderer.items(from_above(), settings);
+    REQUIRE(items.size() == 60 * 40);
+    std::size_t wrong = 0;
+    std::size_t seen = 0;
+    for (std::uint32_t y = 0; y < 40; ++y) {
+        for (std::uint32_t x = 0; x < 60; ++x) {
+            const std::uint32_t item = items[std::size_t{y} * 60 + x];
+            const auto found = renderer.item(from_above(), settings, x, y);
+            wrong += found.value_or(PictureRenderer::no_item) == item ? 0 : 1;
+            seen += item == PictureRenderer::no_item ? 0 : 1;
+        }
+    }
+    CHECK(wrong == 0);
+    CHECK(seen > 40 * 30); // a square of 40 pixels less its upper quarter, and a tip of the triangle
+    CHECK(seen < 40 * 30 + 20);
+    CHECK(renderer.item(from_above(), settings, 30, 38).value() == 1); // middle of the lower row
+    CHECK(renderer.item(from_above(), settings, 30, 20).value() >= 6); // the triangle hides the square
+    CHECK_THROWS_AS(renderer.item(from_above(), settings, 60, 0), InvalidArgument);
 }

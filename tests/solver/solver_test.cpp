@@ -464,3 +464,31 @@ TEST_CASE("solve_radiosity: calls back after every sweep and can be cancelled", 
                     Cancelled);
     CHECK(last == 3);
 }
+
+TEST_CASE("solve_radiosity: sweeps that begin at the solution end at once, and dark channels stay dark",
+          "[solver]") {
+    const OwnedProblem owned = random_problem(30, 2, 5);
+    RadiosityProblem problem = owned.view();
+    const SolverSettings cold{.method = SolverMethod::gauss_seidel, .tolerance = 1e-9};
+    const RadiositySolution first = solve_radiosity(problem, cold);
+    SolverSettings warm = cold;
+    warm.start = first.radiosity;
+    const RadiositySolution again = solve_radiosity(problem, warm);
+    CHECK(again.sweeps <= 2);
+    CHECK(first.sweeps > 5);
+    CHECK(largest_difference(again.radiosity, first.radiosity) < 1e-7);
+    std::vector<double> exitance = owned.exitance;
+    std::vector<double> environment = owned.environment;
+    for (std::size_t k = 1; k < exitance.size(); k += 2) {
+        exitance[k] = 0.0;
+    }
+    environment[1] = 0.0;
+    problem.exitance = exitance;
+    problem.environment = environment;
+    const RadiositySolution dark = solve_radiosity(problem, warm);
+    for (std::size_t k = 1; k < dark.radiosity.size(); k += 2) {
+        CHECK(dark.radiosity[k] == 0.0);
+    }
+    warm.start = std::span(first.radiosity).first(59);
+    CHECK_THROWS_AS(solve_radiosity(problem, warm), InvalidArgument);
+}

@@ -25,8 +25,9 @@ const std::map<std::string, std::set<std::string>> allowed{
 
 /// Libraries that stay behind one module, by the beginning of the header's name.
 const std::map<std::string, std::string> at_home{
-    {"glad/", "gl"}, {"EGL/", "gl"},     {"GL/", "gl"},   {"GLFW/", "viewer"}, {"CLI/", "cli"},
-    {"stb", "io"},   {"tiny_obj", "io"}, {"zip.h", "io"}, {"zlib.h", "io"},    {"embree3/", "engine"}};
+    {"glad/", "gl"},  {"EGL/", "gl"},         {"GL/", "gl"},       {"GLFW/", "viewer"},
+    {"CLI/", "cli"},  {"stb", "io"},          {"tiny_obj", "io"},  {"zip.h", "io"},
+    {"zlib.h", "io"}, {"embree3/", "engine"}, {"imgui", "viewer"}, {"backends/imgui", "viewer"}};
 
 std::vector<std::string> split(const std::string& path) {
     std::vector<std::string> parts;

@@ -47,6 +47,9 @@ struct SolverSettings {
     SolverMethod method = SolverMethod::automatic;
     double tolerance = 1e-6;           ///< on the relative residual, see RadiositySolution
     std::uint32_t max_sweeps = 100000; ///< or iterations
+    /// Where sweeps begin, N·channels: the solution of a problem that was much the same. Empty: the sources.
+    /// Conjugate gradients do not look at it.
+    std::span<const double> start = {};
 };
 
 struct RadiositySolution {

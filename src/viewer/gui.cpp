@@ -1,0 +1,102 @@
+#include "viewer/gui.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <variant>
+
+namespace hemi::viewer {
+
+namespace {
+
+constexpr std::array<float, 2> far_away{-1e6F, -1e6F};
+
+void set_style() {
+    ImGui::StyleColorsDark();
+    ImGuiStyle& style = ImGui::GetStyle();
+    style.WindowRounding = 0.0F;
+    style.WindowBorderSize = 0.0F;
+    style.FrameRounding = 2.0F;
+    style.GrabRounding = 2.0F;
+    style.ItemSpacing = {6.0F, 4.0F};
+    style.Colors[ImGuiCol_WindowBg] = {0.11F, 0.12F, 0.13F, 1.0F};
+    style.Colors[ImGuiCol_PopupBg] = {0.14F, 0.15F, 0.16F, 0.98F};
+    style.Colors[ImGuiCol_TextDisabled] = {0.66F, 0.68F, 0.70F, 1.0F};
+}
+
+} // namespace
+
+Gui::Gui() {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.LogFilename = nullptr;
+    io.MousePos = {far_away[0], far_away[1]};
+    io.ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
+    set_style();
+    if (!ImGui_ImplOpenGL3_Init("#version 450 core") || !ImGui_ImplOpenGL3_CreateDeviceObjects()) {
+        ImGui::DestroyContext();
+        throw GlError("the panels cannot be drawn with this OpenGL");
+    }
+}
+
+Gui::~Gui() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void Gui::feed(const Event& event) {
+    ImGuiIO& io = ImGui::GetIO();
+    if (const auto* cursor = std::get_if<CursorEvent>(&event)) {
+        io.MousePos = {static_cast<float>(cursor->x), static_cast<float>(cursor->y)};
+    } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
+        const int index = button->button == Button::left ? 0 : (button->button == Button::right ? 1 : 2);
+        io.MouseDown[index] = button->pressed;
+    } else if (const auto* scroll = std::get_if<ScrollEvent>(&event)) {
+        io.MouseWheel += static_cast<float>(scroll->amount);
+    }
+}
+
+bool Gui::has_mouse() const {
+    return ImGui::GetIO().WantCaptureMouse;
+}
+
+void Gui::begin(std::array<std::uint32_t, 2> size) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {static_cast<float>(size[0]), static_cast<float>(size[1])};
+    io.DeltaTime = 1.0F / 60.0F;
+    ImGui::NewFrame();
+}
+
+void Gui::end() {
+    ImGui::Render();
+}
+
+std::vector<unsigned char> Gui::content() {
+    std::vector<unsigned char> bytes;
+    const auto append = [&bytes](const void* data, std::size_t size) {
+        const auto* first = static_cast<const unsigned char*>(data);
+        bytes.insert(bytes.end(), first, first + size);
+    };
+    const ImDrawData* data = ImGui::GetDrawData();
+    for (int i = 0; i < data->CmdListsCount; ++i) {
+        const ImDrawList* list = data->CmdLists[i];
+        append(list->VtxBuffer.Data, static_cast<std::size_t>(list->VtxBuffer.size_in_bytes()));
+        append(list->IdxBuffer.Data, static_cast<std::size_t>(list->IdxBuffer.size_in_bytes()));
+    }
+    return bytes;
+}
+
+bool Gui::changed() const {
+    return content() != drawn_;
+}
+
+void Gui::draw() {
+    drawn_ = content();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+} // namespace hemi::viewer

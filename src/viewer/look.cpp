@@ -1,0 +1,293 @@
+#include "viewer/look.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hemi::viewer {
+
+namespace {
+
+constexpr std::array<QuantityName, 10> names{
+    {{Quantity::picture, "picture", "Light"},
+     {Quantity::outlines, "outlines", "Patch wireframe"},
+     {Quantity::items, "items", "Item ids"},
+     {Quantity::radiosity, "radiosity", "Radiosity, false colour"},
+     {Quantity::reflectance, "reflectance", "Reflectance"},
+     {Quantity::exitance, "exitance", "Exitance"},
+     {Quantity::row_error, "row-error", "Form factors: row-sum error"},
+     {Quantity::estimated_error, "error", "Radiosity: estimated error"},
+     {Quantity::row, "row", "Picked patch: row of F"},
+     {Quantity::column, "column", "Picked patch: column of F"}}};
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+/// Logarithmic scales span so much.
+constexpr double radiosity_range = 1e-3;
+constexpr double factor_range = 1e-4;
+
+/// One channel of N·channels, or the mean over them.
+std::vector<double> one_channel(std::span<const double> values, std::uint32_t channels,
+                                std::optional<std::uint32_t> channel) {
+    std::vector<double> result(values.size() / channels);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const auto of_patch = values.subspan(i * channels, channels);
+        if (channel) {
+            result[i] = of_patch[*channel];
+            continue;
+        }
+        for (const double value : of_patch) {
+            result[i] += value / channels;
+        }
+    }
+    return result;
+}
+
+double largest(std::span<const double> values) {
+    double result = 0.0;
+    for (const double value : values) {
+        result = value > result ? value : result;
+    }
+    return result;
+}
+
+ColourScale scale_to(double high, bool logarithmic, double range) {
+    const double top = high > 0.0 ? round_up(high) : 1.0;
+    return {logarithmic ? top * range : 0.0, top, logarithmic};
+}
+
+/// Lamps and the spots of light beside them outshine all else: the scale ends where nearly all surfaces
+/// without exitance do.
+double most_reflected(const std::vector<double>& radiosity, const std::vector<double>& exitance) {
+    std::vector<double> reflected;
+    for (std::size_t i = 0; i < radiosity.size(); ++i) {
+        if (!(exitance[i] > 0.0)) {
+            reflected.push_back(radiosity[i]);
+        }
+    }
+    if (reflected.empty()) {
+        return largest(radiosity);
+    }
+    const std::size_t place = (reflected.size() - 1) * 98 / 100;
+    std::nth_element(reflected.begin(), reflected.begin() + static_cast<std::ptrdiff_t>(place),
+                     reflected.end());
+    return reflected[place] > 0.0 ? reflected[place] : largest(reflected);
+}
+
+std::string channel_text(const ViewerInput& input, const Look& look) {
+    if (input.channels == 1) {
+        return "";
+    }
+    return look.channel ? ", " + input.scene->channels[*look.channel] : ", mean of channels";
+}
+
+Field light_field(const Look& look, const ViewerInput& input, const Light& light) {
+    const auto take = [&](const std::vector<double>& values) {
+        return one_channel(values, input.channels, look.channel);
+    };
+    const std::string channel = channel_text(input, look);
+    if (look.quantity == Quantity::reflectance) {
+        return {"Reflectance" + channel, "", take(light.reflectance), {0.0, 1.0, false}};
+    }
+    if (look.quantity == Quantity::exitance) {
+        Field field{"Exitance" + channel, "W/m²", take(light.exitance), {}};
+        field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
+        return field;
+    }
+    if (look.quantity == Quantity::estimated_error) {
+        Field field{"Radiosity, estimated error" + channel, "W/m²", take(input.radiosity_error), {}};
+        field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
+        return field;
+    }
+    Field field{"Radiosity" + channel, "W/m²", take(light.radiosity), {}};
+    field.scale =
+        scale_to(most_reflected(field.values, take(light.exitance)), look.logarithmic, radiosity_range);
+    return field;
+}
+
+Field row_error_field(const ViewerInput& input) {
+    Field field{"Row of F: |sum + e + b - 1|", "", {}, {1e-8, 1e-2, true}};
+    for (std::size_t i = 0; i < input.row_sum.size(); ++i) {
+        field.values.push_back(
+            std::abs(input.row_sum[i] + input.environment_share[i] + input.blocked[i] - 1.0));
+    }
+    return field;
+}
+
+} // namespace
+
+std::span<const QuantityName> quantity_names() {
+    return names;
+}
+
+std::optional<Quantity> quantity_by_word(std::string_view word) {
+    const auto found = std::find_if(names.begin(), names.end(),
+                                    [word](const QuantityName& name) { return name.word == word; });
+    return found == names.end() ? std::nullopt : std::optional(found->quantity);
+}
+
+const char* quantity_title(Quantity quantity) {
+    return std::find_if(names.begin(), names.end(),
+                        [quantity](const QuantityName& name) { return name.quantity == quantity; })
+        ->title;
+}
+
+const char* why_not(Quantity quantity, const ViewerInput& input, std::optional<std::uint32_t> picked) {
+    if (quantity == Quantity::estimated_error && input.radiosity_error.empty()) {
+        return "no errors were estimated for this solution";
+    }
+    if (quantity == Quantity::row_error && input.row_sum.empty()) {
+        return "needs form factors";
+    }
+    if (quantity == Quantity::row || quantity == Quantity::column) {
+        if (input.factors == nullptr) {
+            return "a stored solution has no form factors: open the scene, or add --factors FILE.hff";
+        }
+        if (!picked) {
+            return "click a patch first";
+        }
+    }
+    return nullptr;
+}
+
+double usual_largest_factor(const FormFactorMatrix& factors) {
+    std::vector<double> of_rows;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        const RowView row = factors.row(i);
+        const auto found = std::max_element(row.values.begin(), row.values.end());
+        if (found != row.values.end()) {
+            of_rows.push_back(static_cast<double>(*found));
+        }
+    }
+    if (of_rows.empty()) {
+        return 0.0;
+    }
+    const auto middle = of_rows.begin() + static_cast<std::ptrdiff_t>(of_rows.size() / 2);
+    std::nth_element(of_rows.begin(), middle, of_rows.end());
+    return *middle;
+}
+
+std::vector<double> factors_from(const FormFactorMatrix& factors, std::uint32_t patch) {
+    std::vector<double> result(factors.size(), 0.0);
+    const RowView row = factors.row(patch);
+    for (std::size_t k = 0; k < row.columns.size(); ++k) {
+        result[row.columns[k]] = static_cast<double>(row.values[k]);
+    }
+    return result;
+}
+
+std::vector<double> factors_to(const FormFactorMatrix& factors, std::uint32_t patch) {
+    std::vector<double> result(factors.size(), 0.0);
+    for (std::uint32_t j = 0; j < factors.size(); ++j) {
+        const RowView row = factors.row(j);
+        const auto found = std::lower_bound(row.columns.begin(), row.columns.end(), patch);
+        if (found != row.columns.end() && *found == patch) {
+            result[j] =
+                static_cast<double>(row.values[static_cast<std::size_t>(found - row.columns.begin())]);
+        }
+    }
+    return result;
+}
+
+std::vector<double> of_patches(const std::vector<Material>& materials, const PatchMesh& mesh,
+                               std::vector<double> Material::*property) {
+    std::vector<double> values;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const std::vector<double>& of_material = materials[mesh.material(i)].*property;
+        values.insert(values.end(), of_material.begin(), of_material.end());
+    }
+    return values;
+}
+
+std::optional<Field> make_field(const Look& look, const ViewerInput& input, const Light& light,
+                                std::optional<std::uint32_t> picked, double usual_factor) {
+    switch (look.quantity) {
+    case Quantity::picture:
+    case Quantity::outlines:
+    case Quantity::items:
+        return std::nullopt;
+    case Quantity::row_error:
+        return row_error_field(input);
+    case Quantity::row:
+    case Quantity::column: {
+        const bool row = look.quantity == Quantity::row;
+        Field field{row ? "F(i, j), i picked: leaves i, arrives at j"
+                        : "F(j, i), i picked: leaves j, arrives at i",
+                    "", row ? factors_from(*input.factors, *picked) : factors_to(*input.factors, *picked),
+                    scale_to(usual_factor, look.logarithmic_factors, factor_range)};
+        std::replace(field.values.begin(), field.values.end(), 0.0, none);
+        return field;
+    }
+    case Quantity::radiosity:
+    case Quantity::reflectance:
+    case Quantity::exitance:
+    case Quantity::estimated_error:
+        break;
+    }
+    return light_field(look, input, light);
+}
+
+PictureMesh painted(const PictureMesh& base, std::span<const std::array<float, 3>> colours) {
+    PictureMesh result = base;
+    result.environment = {};
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            result.patches[i * 3 + c] = colours[i][c];
+            for (std::size_t k = 0; k < 4; ++k) {
+                result.corners[(i * 4 + k) * 3 + c] = colours[i][c];
+            }
+        }
+    }
+    return result;
+}
+
+std::vector<std::array<float, 3>> field_colours(const Field& field, const PatchMesh& mesh) {
+    constexpr float none_level = 0.25F;
+    std::vector<std::array<float, 3>> colours = plain_colours(mesh);
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        if (std::isnan(field.values[i])) {
+            for (float& channel : colours[i]) {
+                channel *= none_level;
+            }
+        } else {
+            colours[i] = scale_colour(field.scale.position(field.values[i]));
+        }
+    }
+    return colours;
+}
+
+std::vector<std::array<float, 3>> item_colours(const PatchMesh& mesh) {
+    std::vector<std::array<float, 3>> colours;
+    colours.reserve(mesh.size());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        colours.push_back(item_colour(i));
+    }
+    return colours;
+}
+
+std::vector<std::array<float, 3>> plain_colours(const PatchMesh& mesh) {
+    const Vec3 from = glm::normalize(Vec3(0.4, -0.7, 0.6));
+    std::vector<std::array<float, 3>> colours;
+    colours.reserve(mesh.size());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const auto grey = static_cast<float>(0.45 + 0.25 * glm::dot(mesh.normal(i), from));
+        colours.push_back({grey, grey, grey});
+    }
+    return colours;
+}
+
+std::vector<std::array<float, 3>> light_colours(const PictureMesh& mesh, double exposure,
+                                                ToneMapping tone_mapping) {
+    std::vector<std::array<float, 3>> colours(mesh.patches.size() / 3);
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            // As resolve.frag does it.
+            const auto x = static_cast<float>(
+                std::clamp(static_cast<double>(mesh.patches[i * 3 + c]) * exposure, 0.0, 1e6));
+            const float filmic = x * (2.51F * x + 0.03F) / (x * (2.43F * x + 0.59F) + 0.14F);
+            colours[i][c] = std::clamp(tone_mapping == ToneMapping::filmic ? filmic : x, 0.0F, 1.0F);
+        }
+    }
+    return colours;
+}
+
+} // namespace hemi::viewer

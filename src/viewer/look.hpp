@@ -1,0 +1,101 @@
+#pragma once
+
+#include "display/colour_scale.hpp"
+#include "hemi/display/picture.hpp"
+#include "viewer/viewer.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hemi::viewer {
+
+/// What the window shows of every patch.
+enum class Quantity {
+    picture, ///< light, as `hemi render` draws it
+    outlines,
+    items,
+    radiosity,
+    reflectance,
+    exitance,
+    row_error,
+    estimated_error,
+    row,    ///< F(i, j) of the picked patch i, at j
+    column, ///< F(j, i), at j
+};
+
+struct QuantityName {
+    Quantity quantity;
+    const char* word;  ///< in scripts
+    const char* title; ///< in the panel
+};
+/// All of them, in the panel's order.
+[[nodiscard]] std::span<const QuantityName> quantity_names();
+[[nodiscard]] std::optional<Quantity> quantity_by_word(std::string_view word);
+[[nodiscard]] const char* quantity_title(Quantity quantity);
+
+/// How the scene is shown; two equal ones give equal pictures.
+struct Look {
+    Quantity quantity = Quantity::picture;
+    std::optional<std::uint32_t> channel; ///< of false colours; none: the mean over channels
+    bool logarithmic = false;             ///< false colours of radiosity and exitance
+    bool logarithmic_factors = true;      ///< false colours of form factors
+    Shading shading = Shading::gouraud;
+    ToneMapping tone_mapping = ToneMapping::filmic;
+    double stops = 0.0; ///< exposure over the one at the start, powers of two
+    bool outlines = false;
+
+    bool operator==(const Look&) const = default;
+};
+
+/// The light in the scene as it stands: N·channels each, as RadiosityProblem has them.
+struct Light {
+    std::vector<double> reflectance;
+    std::vector<double> exitance;
+    std::vector<double> radiosity;
+};
+
+/// A property of the materials, spread over the patches: N·channels.
+[[nodiscard]] std::vector<double> of_patches(const std::vector<Material>& materials, const PatchMesh& mesh,
+                                             std::vector<double> Material::*property);
+
+/// One value a patch, NaN where there is none, and the scale that it is shown by.
+struct Field {
+    std::string title;
+    std::string unit;
+    std::vector<double> values;
+    ColourScale scale;
+};
+
+/// Why a quantity cannot be shown of this input; null if it can.
+[[nodiscard]] const char* why_not(Quantity quantity, const ViewerInput& input,
+                                  std::optional<std::uint32_t> picked);
+
+/// The field that `look` shows; nothing for what is no field: the picture, outlines, items.
+/// @param usual_factor  scales of rows and columns end there, whichever patch is picked
+[[nodiscard]] std::optional<Field> make_field(const Look& look, const ViewerInput& input, const Light& light,
+                                              std::optional<std::uint32_t> picked, double usual_factor);
+/// Median over the rows of their largest factor: few are far above it, where patches touch.
+[[nodiscard]] double usual_largest_factor(const FormFactorMatrix& factors);
+
+/// `base` with a colour for every patch, display linear, to be drawn flat with linear tone mapping.
+[[nodiscard]] PictureMesh painted(const PictureMesh& base, std::span<const std::array<float, 3>> colours);
+/// What has no value is dark grey.
+[[nodiscard]] std::vector<std::array<float, 3>> field_colours(const Field& field, const PatchMesh& mesh);
+[[nodiscard]] std::vector<std::array<float, 3>> item_colours(const PatchMesh& mesh);
+/// Greys by the direction that a patch faces, so that shapes can be told.
+[[nodiscard]] std::vector<std::array<float, 3>> plain_colours(const PatchMesh& mesh);
+
+/// Radiosity of every patch of `mesh` as the picture shows it in its flat shading; display linear.
+[[nodiscard]] std::vector<std::array<float, 3>> light_colours(const PictureMesh& mesh, double exposure,
+                                                              ToneMapping tone_mapping);
+
+/// F(i, j) of a row or F(j, i) of a column at j; 0 where nothing is stored.
+[[nodiscard]] std::vector<double> factors_from(const FormFactorMatrix& factors, std::uint32_t patch);
+[[nodiscard]] std::vector<double> factors_to(const FormFactorMatrix& factors, std::uint32_t patch);
+
+} // namespace hemi::viewer

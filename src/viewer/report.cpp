@@ -1,0 +1,62 @@
+#include "viewer/report.hpp"
+
+#include "hemi/io/output_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace hemi::viewer {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json index_or_null(const std::optional<std::uint32_t>& patch) {
+    return patch ? Json(*patch) : Json(nullptr);
+}
+
+} // namespace
+
+void write_report(const std::filesystem::path& path, const Report& report) {
+    const auto names = quantity_names();
+    const auto name = std::find_if(names.begin(), names.end(), [&](const QuantityName& candidate) {
+        return candidate.quantity == report.choices.look.quantity;
+    });
+    Json json{{"schema", "hemi/view/1"},
+              {"quantity", name->word},
+              {"picked", index_or_null(report.choices.picked)},
+              {"pointed_at", index_or_null(report.choices.pointed_at)},
+              {"partners", Json::array()},
+              {"hemicube", report.seen},
+              {"values", nullptr},
+              {"scale", nullptr},
+              {"radiosity", Json::array()}};
+    if (report.picked) {
+        for (const Partner& partner : report.picked->partners) {
+            json["partners"].push_back(partner.patch);
+        }
+    }
+    if (report.field) {
+        json["values"] = Json::array();
+        for (const double value : report.field->values) {
+            json["values"].push_back(std::isnan(value) ? Json(nullptr) : Json(value));
+        }
+        const ColourScale& scale = report.field->scale;
+        json["scale"] = {{"low", scale.low}, {"high", scale.high}, {"logarithmic", scale.logarithmic}};
+    }
+    const std::uint32_t channels = report.input.channels;
+    for (std::size_t i = 0; i < report.light.radiosity.size(); i += channels) {
+        Json patch = Json::array();
+        for (std::uint32_t c = 0; c < channels; ++c) {
+            patch.push_back(report.light.radiosity[i + c]);
+        }
+        json["radiosity"].push_back(std::move(patch));
+    }
+    io::OutputFile file(path);
+    file.write(json.dump() + "\n");
+    file.commit();
+}
+
+} // namespace hemi::viewer

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "viewer/look.hpp"
+#include "viewer/panels.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+namespace hemi::viewer {
+
+/// What a window shows, as a script may ask.
+struct Report {
+    const ViewerInput& input;
+    const Light& light;
+    const Choices& choices;
+    const std::optional<Field>& field;
+    const std::optional<PickedPatch>& picked;
+    std::vector<std::uint32_t> seen; ///< patches in the hemicube that is shown
+};
+
+/// One JSON object: {"schema": "hemi/view/1", "quantity", "picked": patch or null, "pointed_at", "partners":
+/// [patch …], "hemicube": [patch …], "values": one a patch, null where there is none, or null, "scale":
+/// {"low", "high", "logarithmic"} or null, "radiosity": [[per channel] …]}.
+/// @throws IoError
+void write_report(const std::filesystem::path& path, const Report& report);
+
+} // namespace hemi::viewer

@@ -1,0 +1,229 @@
+#include "viewer/workplace.hpp"
+
+#include "hemi/io/factor_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string_view>
+#include <vector>
+
+using hemi::viewer_test::Workplace;
+
+namespace {
+
+/// Large enough for the side panel, and quick on software OpenGL.
+const std::string with_panel = "--size 660x400 --preset plain --resolution 32";
+/// The same picture area without it.
+const std::string small = "--size 300x200 --preset plain --resolution 32";
+
+constexpr std::uint32_t no_patch = 0xFFFFFFFFU;
+
+std::uint32_t picked(const nlohmann::json& report) {
+    return report["picked"].is_null() ? no_patch : report["picked"].get<std::uint32_t>();
+}
+
+} // namespace
+
+TEST_CASE("Viewer: a click picks the patch that is seen there, and none beside the scene", "[viewer][gl]") {
+    const Workplace place;
+    // The camera looks along +y at the centre of the back wall, 3.4 away: a wall of 1 x 1 in a view of
+    // 2 tan(15 degrees) 3.4 = 1.822 heights. Wall patches are 1/6, so 18.3 pixels of 200.
+    const int status = place.view("click 150 100\nreport middle.json\n"
+                                  "click 160 90\nreport above.json\n"
+                                  "click 2 2\nreport none.json\n"
+                                  "click 160 90\nkey Escape\nreport let_go.json\n"
+                                  "drag left 150 100 190 100\nreport dragged.json\n",
+                                  small);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    // The back wall's patches begin at 4 * 36; u goes right, v up.
+    const auto wall = [](double x, double y) {
+        const double unit = 200.0 / (2.0 * std::tan(std::numbers::pi / 12.0) * 3.4);
+        const double u = 0.5 + (x + 0.5 - 150.0) / unit;
+        const double v = 0.5 - (y + 0.5 - 100.0) / unit;
+        return 4 * 36 + static_cast<std::uint32_t>(v * 6.0) * 6 + static_cast<std::uint32_t>(u * 6.0);
+    };
+    CHECK(picked(place.json("middle.json")) == wall(150, 100));
+    CHECK(picked(place.json("above.json")) == wall(160, 90));
+    CHECK(picked(place.json("none.json")) == no_patch);
+    CHECK(picked(place.json("let_go.json")) == no_patch);
+    CHECK(picked(place.json("dragged.json")) == no_patch);
+}
+
+TEST_CASE("Viewer: heat maps show the row and the column of the picked patch", "[viewer][gl]") {
+    const Workplace place;
+    REQUIRE(place.run(fmt::format("'{}' factors room.json --preset plain --resolution 32 --device osmesa -o "
+                                  "room.hff",
+                                  HEMI_PROGRAM)) == 0);
+    const int status = place.view("click 150 100\nshow row\nreport row.json\nscreenshot row.png\n"
+                                  "key H\nreport column.json\nkey L\nscreenshot linear.png\n"
+                                  "key H\nreport off.json\n",
+                                  small);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto factors = hemi::io::read_hff(place.path("room.hff")).factors;
+    const auto value = [&](std::uint32_t i, std::uint32_t j) {
+        const hemi::RowView row = factors.row(i);
+        const auto found = std::find(row.columns.begin(), row.columns.end(), j);
+        return found == row.columns.end()
+                   ? 0.0
+                   : static_cast<double>(row.values[static_cast<std::size_t>(found - row.columns.begin())]);
+    };
+    const auto row = place.json("row.json");
+    const auto column = place.json("column.json");
+    const std::uint32_t patch = picked(row);
+    REQUIRE(patch < factors.size());
+    REQUIRE(row["values"].size() == factors.size());
+    CHECK(column["quantity"] == "column");
+    CHECK(place.json("off.json")["quantity"] == "picture");
+    std::size_t wrong = 0;
+    for (std::uint32_t j = 0; j < factors.size(); ++j) {
+        const auto shown = [j](const nlohmann::json& report) {
+            return report["values"][j].is_null() ? 0.0 : report["values"][j].get<double>();
+        };
+        // The lamp's rows are not computed, since it reflects nothing.
+        const bool lamp = j >= 36 && j < 72;
+        wrong += (shown(row) != value(patch, j) ? 1U : 0U) +
+                 (shown(column) != (lamp ? 0.0 : value(j, patch)) ? 1U : 0U);
+    }
+    CHECK(wrong == 0);
+    CHECK(place.read("row.png") != place.read("linear.png"));
+    // The list of partners begins with the largest factor.
+    double largest = 0.0;
+    for (std::uint32_t j = 0; j < factors.size(); ++j) {
+        largest = std::max(largest, value(patch, j));
+    }
+    CHECK(value(patch, row["partners"][0]) == largest);
+}
+
+TEST_CASE("Viewer: the hemicube of the picked patch shows the patches of its row", "[viewer][gl]") {
+    const Workplace place;
+    REQUIRE(place.run(fmt::format("'{}' factors room.json --preset plain --resolution 32 --device osmesa -o "
+                                  "room.hff",
+                                  HEMI_PROGRAM)) == 0);
+    const int status = place.view("click 174 200\nwindowshot light.png\nreport seen.json\n"
+                                  "show items\nwindowshot items.png\nkey C\nwindowshot none.png\n"
+                                  "report none.json\n",
+                                  with_panel);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto report = place.json("seen.json");
+    const auto factors = hemi::io::read_hff(place.path("room.hff")).factors;
+    const hemi::RowView row = factors.row(picked(report));
+    REQUIRE(row.columns.size() > 50);
+    CHECK(report["hemicube"] == std::vector<std::uint32_t>(row.columns.begin(), row.columns.end()));
+    CHECK(place.json("none.json")["hemicube"].empty());
+    CHECK(place.read("items.png") != place.read("none.png"));
+}
+
+TEST_CASE("Viewer: light follows a change of materials as a fresh solution has it", "[viewer][gl]") {
+    const Workplace place;
+    const int status = place.view("set reflectance 0.3,0.5,0.6 white\nset exitance 30,5,12 lamp\n"
+                                  "set exitance 0.5 red\nreport changed.json\nscreenshot changed.png\n"
+                                  "set exitance 0 lamp\nset exitance 0 red\nreport dark.json\n",
+                                  small);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    std::string scene = place.read("room.json");
+    const auto replace = [&scene](const std::string& from, const std::string& to) {
+        REQUIRE(scene.find(from) != std::string::npos);
+        scene.replace(scene.find(from), from.size(), to);
+    };
+    replace("\"reflectance\": 0.7", "\"reflectance\": [0.3, 0.5, 0.6]");
+    replace("[20, 18, 12]", "[30, 5, 12]");
+    replace("[0.6, 0.1, 0.1]", "[0.6, 0.1, 0.1], \"exitance\": 0.5");
+    place.write("room.json", scene);
+    REQUIRE(place.view("report fresh.json\n", small) == 0);
+    const auto changed = place.json("changed.json")["radiosity"];
+    const auto fresh = place.json("fresh.json")["radiosity"];
+    REQUIRE(changed.size() == fresh.size());
+    double largest = 0.0;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double was = fresh[i][c];
+            const double is = changed[i][c];
+            largest = std::max(largest, std::abs(is - was) / was);
+        }
+    }
+    CHECK(largest < 2e-5); // both are solved to a residual of 1e-6
+    for (const auto& patch : place.json("dark.json")["radiosity"]) {
+        CHECK(patch == std::vector<double>(3, 0.0));
+    }
+    CHECK(place.view("set exitance 1 gold\n", small) == 2);
+    CHECK(place.view("set reflectance 1 white\n", small) == 3);
+}
+
+TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
+    const Workplace place;
+    const int status = place.view("windowshot start.png\nclick 150 200\nwindowshot picked.png\n"
+                                  "show outlines\nwindowshot outlines.png\nshow items\nwindowshot items.png\n"
+                                  "show radiosity\nwindowshot radiosity.png\nkey L\nwindowshot log.png\n"
+                                  "show reflectance\nwindowshot reflectance.png\n"
+                                  "show exitance\nwindowshot exitance.png\n"
+                                  "show row-error\nwindowshot row-error.png\n"
+                                  "show row\nwindowshot row.png\nshow column\nwindowshot column.png\n"
+                                  "key F1\nwindowshot help.png\nkey Escape\nkey Escape\n"
+                                  "show picture\nkey Tab\nwindowshot bare.png\nscreenshot bare_too.png\n",
+                                  with_panel);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    std::vector<std::string> seen;
+    for (const char* name : {"start", "picked", "outlines", "items", "radiosity", "log", "reflectance",
+                             "exitance", "row-error", "row", "column", "help", "bare"}) {
+        INFO(name);
+        const std::string content = place.read(std::string(name) + ".png");
+        CHECK_FALSE(content.empty());
+        CHECK(std::find(seen.begin(), seen.end(), content) == seen.end());
+        seen.push_back(content);
+    }
+    CHECK(place.read("bare.png") == place.read("bare_too.png"));
+}
+
+TEST_CASE("Viewer: what cannot be shown is refused with the reason", "[viewer][gl]") {
+    const Workplace place;
+    REQUIRE(place.view("show row\n", small) == 2);
+    CHECK(place.read("errors.txt").find("click a patch first") != std::string::npos);
+    REQUIRE(place.view("show colour\n", small) == 3);
+    CHECK(place.read("errors.txt").find("script.txt:1: quantity \"colour\"") != std::string::npos);
+    CHECK(place.view("windowshot a.hdr\n", small) == 3);
+    CHECK(place.view("report a.txt\n", small) == 3);
+    CHECK(place.view("click 3\n", small) == 3);
+}
+
+TEST_CASE("Viewer: some hundred random events leave no error behind", "[viewer][gl]") {
+    const Workplace place;
+    std::mt19937 random(7);
+    const auto below = [&random](std::uint32_t end) { return random() % end; };
+    std::string script;
+    for (int k = 0; k < 300; ++k) {
+        const std::string point = fmt::format("{} {}", below(680), below(420));
+        switch (below(8)) {
+        case 0:
+        case 1:
+            script += "click " + point + "\n";
+            break;
+        case 2:
+            script += fmt::format("drag {} {} {} {}\n", below(2) == 0 ? "left" : "right", point, below(700),
+                                  below(400));
+            break;
+        case 3:
+            script += fmt::format("scroll {} {}\n", point, static_cast<int>(below(7)) - 3);
+            break;
+        case 4:
+            script += "move " + point + "\n";
+            break;
+        case 5:
+            script += below(12) == 0 ? fmt::format("resize {} {}\n", 1 + below(800), 1 + below(500)) : "";
+            break;
+        default:
+            constexpr std::string_view keys = "FR137STEWLVH";
+            script += fmt::format("key {}{}\n", below(3) == 0 ? "shift+" : "", keys[below(keys.size())]);
+            script += below(6) == 0 ? "key Tab\n" : (below(6) == 0 ? "key F1\n" : "");
+        }
+    }
+    const int status = place.view(script + "windowshot end.png\n", with_panel);
+    INFO(place.read("errors.txt"));
+    CHECK(status == 0);
+}
