@@ -11,6 +11,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 
 namespace hemi::cli {
@@ -159,11 +160,16 @@ void add_rows(CLI::App& app, RowOptions& rows) {
                       (void)parse_choice("--preset", text, Words{"plain", "fast", "default", "exact"});
                       rows.preset = text;
                   });
-    options.value("--method", "NAME", "hemicube (the default)", [&rows](const std::string& text) {
-        (void)parse_choice("--method", text, Words{"hemicube"},
-                           Words{"montecarlo", "contour", "direct", "hemisphere"});
-        rows.method = text;
-    });
+    options.value("--method", "NAME",
+                  "hemicube (the default); direct, contour (both as if nothing lay between), montecarlo, "
+                  "hemisphere: slow yardsticks",
+                  [&rows](const std::string& text) {
+                      (void)parse_choice("--method", text,
+                                         Words{"hemicube", "direct", "contour", "montecarlo", "hemisphere"});
+                      rows.method = text;
+                  });
+    options.value("--rays", "N", "montecarlo: rays a patch, best a power of two (16384)",
+                  [&rows](const std::string& text) { rows.rays = to_index("--rays", text, 1, 1u << 31); });
     options.value("--eye-points", "K", "sample points per patch: 1, 4, 9 ... 64 (as the preset says)",
                   [&rows](const std::string& text) {
                       rows.eye_points = to_index("--eye-points", text, 1);
@@ -199,7 +205,8 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
     auto* target = options.value(
         "--error-target", "T", "find the cheapest settings by which the estimated error is T at most",
         [&rows](const std::string& text) { rows.error_target = parse_positive("--error-target", text); });
-    for (const char* name : {"--preset", "--method", "--eye-points", "--resolution", "--no-estimate"}) {
+    for (const char* name :
+         {"--preset", "--method", "--eye-points", "--resolution", "--rays", "--no-estimate"}) {
         target->excludes(app.get_option(name));
     }
 }
@@ -317,6 +324,24 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     row->excludes(file);
     row->excludes(app.get_option("--by-group"));
     row->excludes(app.get_option("--error-target"));
+    auto* point = output.value(
+        "--from-point", "X,Y,Z,NX,NY,NZ",
+        "factors from a surface element at a point with a normal to every patch, analytic, largest first",
+        [&a](const std::string& text) {
+            const std::vector<std::string> numbers = parse_list(text);
+            if (numbers.size() != 6) {
+                throw InvalidArgument(fmt::format("--from-point {}: {} numbers; it must be 6, such as "
+                                                  "0,0,0,0,0,1",
+                                                  text, numbers.size()));
+            }
+            std::array<double, 6>& at = a.from_point.emplace();
+            for (std::size_t k = 0; k < 6; ++k) {
+                at[k] = parse_number("--from-point", numbers[k]);
+            }
+        });
+    point->excludes(file);
+    point->excludes(row);
+    point->excludes(app.get_option("--by-group"));
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi factors scenes/cube.json --by-group\n"
@@ -486,6 +511,28 @@ Words option_names(const CLI::App& app) {
                           (nearest ? fmt::format("; did you mean {}?", *nearest) : std::string()) + see);
 }
 
+/// Options of RowOptions that say nothing to the method are refused, not ignored.
+void check_method(const RowOptions& rows, const std::vector<std::string>& given) {
+    const std::map<std::string, Words> methods_of{
+        {"--rays", {"montecarlo"}},
+        {"--resolution", {"hemicube", "hemisphere"}},
+        {"--seed", {"hemicube", "montecarlo", "hemisphere"}},
+        {"--preset", {"hemicube"}},
+        {"--eye-points", {"hemicube"}},
+        {"--no-merge", {"hemicube"}},
+        {"--jobs", {"hemicube"}},
+        {"--error-target", {"hemicube"}},
+    };
+    for (const std::string& option : given) {
+        const auto found = methods_of.find(option);
+        if (found != methods_of.end() &&
+            std::find(found->second.begin(), found->second.end(), rows.method) == found->second.end()) {
+            throw InvalidArgument(fmt::format("{} does not apply to --method {}; it belongs to {}", option,
+                                              rows.method, fmt::join(found->second, ", ")));
+        }
+    }
+}
+
 /// The command that was named, with what it was given.
 template <class A>
 void add_command(CLI::App& app, const std::string& name, const std::string& help, void (*add)(CLI::App&, A&),
@@ -499,6 +546,9 @@ void add_command(CLI::App& app, const std::string& name, const std::string& help
             if (option->count() > 0 && !option->get_lnames().empty()) {
                 values->common.given.push_back("--" + option->get_lnames().front());
             }
+        }
+        if constexpr (requires { values->rows.method; }) {
+            check_method(values->rows, values->common.given);
         }
         chosen = *values;
     });

@@ -42,6 +42,7 @@ struct RowOptions {
     std::string device = "auto";
     std::string preset = "default";
     std::string method = "hemicube";
+    std::optional<std::uint32_t> rays; ///< of montecarlo
     std::optional<std::uint32_t> eye_points;
     std::optional<std::uint32_t> resolution;
     std::optional<std::uint64_t> seed;
@@ -84,6 +85,7 @@ struct FactorsArguments {
     std::optional<std::filesystem::path> output;
     std::optional<std::filesystem::path> patches;
     std::optional<std::uint32_t> row;
+    std::optional<std::array<double, 6>> from_point; ///< position and normal
     bool by_group = false;
 };
 

@@ -7,6 +7,7 @@
 #include "cli/report.hpp"
 #include "cli/stored_factors.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/engine/yardsticks.hpp"
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
@@ -15,6 +16,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 
@@ -199,6 +202,52 @@ void show_row(const FactorsArguments& arguments, const Subject& subject) {
           table.text());
 }
 
+/// What leaves a surface element at a point, patch by patch.
+void show_point(const FactorsArguments& arguments, const Terminal& terminal) {
+    const LoadedScene loaded = load_scene(arguments.scene, terminal);
+    const std::array<double, 6>& at = *arguments.from_point;
+    const Vec3 point(at[0], at[1], at[2]);
+    const Vec3 normal(at[3], at[4], at[5]);
+    const double length = glm::length(normal);
+    if (!(length > 0.0) || !std::isfinite(length)) {
+        throw InvalidArgument("--from-point: the normal must have a length");
+    }
+    const std::vector<double> factors = point_factors(loaded.mesh, point, normal / length, true);
+    const PatchNames names = loaded.names();
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t patch = 0; patch < factors.size(); ++patch) {
+        if (factors[patch] > 0.0) {
+            order.push_back(patch);
+        }
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&factors](std::uint32_t a, std::uint32_t b) { return factors[a] > factors[b]; });
+    double sum = 0.0;
+    for (const std::uint32_t patch : order) {
+        sum += factors[patch];
+    }
+    if (arguments.common.json) {
+        Json entries = Json::array();
+        for (const std::uint32_t patch : order) {
+            entries.push_back({{"patch", patch}, {"group", names.group(patch)}, {"factor", factors[patch]}});
+        }
+        print_json({{"schema", "hemi/factors/1"},
+                    {"patches", factors.size()},
+                    {"point", {point.x, point.y, point.z}},
+                    {"normal", {normal.x / length, normal.y / length, normal.z / length}},
+                    {"entries", entries},
+                    {"sum", sum}});
+        return;
+    }
+    Table table({"group", "patch", "F"});
+    for (const std::uint32_t patch : order) {
+        table.add({names.group(patch), std::to_string(patch), fmt::format("{:.9f}", factors[patch])});
+    }
+    print(fmt::format("what leaves a surface element at {} {} {}\nsum {:.9f}\n\n", number_text(point.x),
+                      number_text(point.y), number_text(point.z), sum) +
+          table.text());
+}
+
 GroupFactors sum_groups(const io::FactorFile& file, const std::filesystem::path& path) {
     if (!file.factors.all_known()) {
         throw InputError(fmt::format("{}: some rows were not computed; --by-group needs all", path.string()));
@@ -353,6 +402,23 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     const Stopwatch total;
     const Outputs outputs = check_outputs(arguments);
     const bool is_scene = io::is_scene_file(arguments.scene.path);
+    if (arguments.from_point) {
+        if (!is_scene) {
+            throw InvalidArgument(fmt::format("--from-point does not apply to {}, which is not a scene",
+                                              arguments.scene.path.string()));
+        }
+        static const std::vector<std::string> allowed{
+            "--from-point", "--patch-size", "--patches-per-face", "--two-sided", "--skip-degenerate",
+            "--json",       "--quiet",      "--verbose",          "--color"};
+        for (const std::string& option : arguments.common.given) {
+            if (std::find(allowed.begin(), allowed.end(), option) == allowed.end()) {
+                throw InvalidArgument(
+                    fmt::format("{} does not apply to --from-point, which needs no rows", option));
+            }
+        }
+        show_point(arguments, terminal);
+        return ExitStatus::ok;
+    }
     Subject subject = is_scene ? from_scene(arguments, terminal) : from_file(arguments);
     io::FactorFile& file = subject.rows.file;
     if (arguments.row && is_scene) {

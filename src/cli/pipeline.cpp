@@ -7,6 +7,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/engine/contacts.hpp"
+#include "hemi/engine/yardsticks.hpp"
 #include "hemi/io/scene_reader.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace hemi::cli {
@@ -263,8 +265,44 @@ bool hybrid_fits(RowProvider& visibility, std::span<const std::uint32_t> patches
 
 } // namespace
 
+/// Rows by one of the slow methods.
+Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
+                            const RowOptions& options, const Terminal& terminal) {
+    static const std::map<std::string, Yardstick> methods{{"direct", Yardstick::direct},
+                                                          {"contour", Yardstick::contour},
+                                                          {"montecarlo", Yardstick::montecarlo},
+                                                          {"hemisphere", Yardstick::hemisphere}};
+    YardstickSettings settings;
+    settings.method = methods.at(options.method);
+    settings.rays = options.rays.value_or(settings.rays);
+    settings.resolution = options.resolution.value_or(settings.resolution);
+    settings.seed = options.seed.value_or(settings.seed);
+    StoppableEngine provider(make_yardstick(loaded.mesh, settings));
+    RowPlan plan;
+    plan.hemicube.seed = settings.seed;
+    plan.hemicube.resolution = settings.method == Yardstick::hemisphere ? settings.resolution : 0;
+    RowOptions named = options;
+    named.preset = "none";
+    Rows rows;
+    rows.file = describe(loaded, named, plan);
+    if (settings.method == Yardstick::direct || settings.method == Yardstick::contour) {
+        terminal.note(fmt::format("--method {} finds factors as if nothing lay between", options.method));
+    }
+    const Stopwatch watch;
+    ProgressBar bar(terminal, "form factors", "rows");
+    rows.file.factors = compute_matrix(provider, patches, bar.callback());
+    rows.seconds = watch.seconds();
+    rows.file.renderer = provider.renderer();
+    rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
+    stop_if_interrupted();
+    return rows;
+}
+
 Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
                   const RowOptions& options, const Terminal& terminal) {
+    if (options.method != "hemicube") {
+        return compute_yardstick_rows(loaded, patches, options, terminal);
+    }
     RowPlan plan = plan_rows(options, loaded.mesh.size());
     Rows rows;
     if (patches.empty()) {

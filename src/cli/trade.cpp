@@ -106,12 +106,12 @@ public:
     [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
     [[nodiscard]] const Reference& reference() const { return reference_; }
 
-    /// Of what `solve` can do: the least product of time and error.
+    /// Of what `solve` can do: the least product of time and error, as far as smaller errors are of use.
     [[nodiscard]] const Entry* best() const {
         const Entry* best = nullptr;
         for (const Entry& entry : entries_) {
-            if (entry.choice &&
-                (best == nullptr || entry.seconds() * entry.error() < best->seconds() * best->error())) {
+            const auto price = [](const Entry& of) { return of.seconds() * std::max(of.error(), 1e-6); };
+            if (entry.choice && (best == nullptr || price(entry) < price(*best))) {
                 best = &entry;
             }
         }
@@ -138,11 +138,12 @@ public:
             if (!entry.choice) {
                 continue;
             }
-            if (entry.seconds() < chosen->seconds() &&
+            // Only what makes a difference.
+            if (entry.seconds() < 0.7 * chosen->seconds() &&
                 (faster == nullptr || entry.seconds() > faster->seconds())) {
                 faster = &entry;
             }
-            if (entry.seconds() > chosen->seconds() &&
+            if (entry.error() < 0.6 * chosen->error() && chosen->error() > 1e-6 &&
                 (better == nullptr || entry.seconds() < better->seconds())) {
                 better = &entry;
             }
@@ -283,7 +284,7 @@ Json to_json(const Trade& trade, const LoadedScene& loaded, const TradeArguments
         const bool rays = contender.yardstick && contender.yardstick->method == Yardstick::montecarlo;
         measurements.push_back(
             {{"label", contender.label()},
-             {"method", contender.yardstick ? Json(contender.family) : Json("hemicube")},
+             {"method", contender.options.method},
              {"preset", contender.yardstick ? Json(nullptr) : Json(contender.options.preset)},
              {"eye_points", contender.yardstick ? Json(nullptr) : Json(hemicube.eye_points)},
              {"resolution", contender.yardstick ? Json(nullptr) : Json(hemicube.resolution)},

@@ -195,15 +195,11 @@ CameraOption parse_camera(std::string_view option, const std::string& text) {
     return camera;
 }
 
-std::size_t parse_choice(std::string_view option, const std::string& text, std::span<const std::string> known,
-                         std::span<const std::string> planned) {
+std::size_t parse_choice(std::string_view option, const std::string& text,
+                         std::span<const std::string> known) {
     const auto found = std::find(known.begin(), known.end(), text);
     if (found != known.end()) {
         return static_cast<std::size_t>(found - known.begin());
-    }
-    if (std::find(planned.begin(), planned.end(), text) != planned.end()) {
-        throw InvalidArgument(fmt::format("{} {}: does not exist yet; {} {}", option, text, join(known),
-                                          known.size() == 1 ? "is the only one" : "are there"));
     }
     std::string message = fmt::format("{} {}: must be {}", option, text.empty() ? "''" : text, join(known));
     if (const auto nearest = nearest_word(text, known)) {

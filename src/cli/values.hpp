@@ -41,10 +41,8 @@ struct CameraOption {
 /// EYE:TARGET[:UP][:FOV] — three numbers with commas for a point or direction, one number for the angle.
 [[nodiscard]] CameraOption parse_camera(std::string_view option, const std::string& text);
 
-/// Index of `text` in `known`. A word of `planned` is refused as not there yet, any other with the nearest
-/// known word.
+/// Index of `text` in `known`; any other word is refused with the nearest known one.
 [[nodiscard]] std::size_t parse_choice(std::string_view option, const std::string& text,
-                                       std::span<const std::string> known,
-                                       std::span<const std::string> planned = {});
+                                       std::span<const std::string> known);
 
 } // namespace hemi::cli

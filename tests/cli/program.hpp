@@ -191,7 +191,6 @@ inline Outcome run_hemi(const Words& arguments, const Words& environment) {
     return Run(arguments, environment).wait();
 }
 
-
 inline Words quick(Words words) {
     const bool chosen = std::any_of(words.begin(), words.end(), [](const std::string& word) {
         return word == "--preset" || word == "--method" || word == "--error-target";
