@@ -208,7 +208,8 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
     auto* target = options.value(
         "--error-target", "T", "find the cheapest settings by which the estimated error is T at most",
         [&rows](const std::string& text) { rows.error_target = parse_positive("--error-target", text); });
-    for (const char* name : {"--preset", "--method", "--eye-points", "--resolution", "--no-estimate"}) {
+    for (const char* name :
+         {"--preset", "--method", "--eye-points", "--resolution", "--rays", "--no-estimate"}) {
         target->excludes(app.get_option(name));
     }
 }

@@ -109,19 +109,25 @@ Contender yardstick_contender(const RowOptions& base, Yardstick method, std::uin
     contender.yardstick->seed = base.seed.value_or(0);
     switch (method) {
     case Yardstick::direct:
-        contender.family = "direct";
+        contender.family = contender.options.method = "direct";
         break;
     case Yardstick::contour:
-        contender.family = "contour";
+        contender.family = contender.options.method = "contour";
         break;
     case Yardstick::montecarlo:
         contender.family = "Monte Carlo";
+        contender.options.method = "montecarlo";
+        contender.options.rays = rays;
         contender.yardstick->rays = rays;
         contender.settings = fmt::format("{} rays", rays);
         break;
     case Yardstick::hemisphere:
-        contender.family = "hemisphere";
+        contender.family = contender.options.method = "hemisphere";
         break;
+    }
+    contender.command = "--method " + contender.options.method;
+    if (method == Yardstick::montecarlo) {
+        contender.command += fmt::format(" --rays {}", rays);
     }
     return contender;
 }

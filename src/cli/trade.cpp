@@ -28,7 +28,8 @@ struct Entry {
     Contender contender;
     std::optional<Measurement> measurement;
     std::string omitted; ///< why there is no measurement
-    bool front = false;
+    bool front = false;  ///< nothing is both faster and better
+    bool choice = false; ///< nothing that `solve` can do is
 
     [[nodiscard]] double seconds() const { return measurement->seconds; }
     [[nodiscard]] double error() const { return std::max(measurement->error.row_rms, least_error); }
@@ -38,7 +39,7 @@ struct Entry {
 std::vector<Entry> all_entries(const RowOptions& base, std::uint32_t patches) {
     std::vector<Entry> entries;
     const auto add = [&entries](Contender contender) {
-        entries.push_back({std::move(contender), {}, "", false});
+        entries.push_back({std::move(contender), {}, "", false, false});
     };
     const auto hemicube = [&](const std::string& preset, std::uint32_t eyes = 0,
                               std::uint32_t resolution = 0) {
@@ -105,16 +106,20 @@ public:
     [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
     [[nodiscard]] const Reference& reference() const { return reference_; }
 
-    /// What can be chosen, with the least product of time and error.
+    /// Of what `solve` can do: the least product of time and error, as far as smaller errors are of use.
     [[nodiscard]] const Entry* best() const {
         const Entry* best = nullptr;
         for (const Entry& entry : entries_) {
-            if (entry.front && !entry.contender.command.empty() &&
-                (best == nullptr || entry.seconds() * entry.error() < best->seconds() * best->error())) {
+            const auto price = [](const Entry& of) { return of.seconds() * std::max(of.error(), 1e-6); };
+            if (entry.choice && (best == nullptr || price(entry) < price(*best))) {
                 best = &entry;
             }
         }
         return best;
+    }
+    [[nodiscard]] bool measured_any() const {
+        return std::any_of(entries_.begin(), entries_.end(),
+                           [](const Entry& entry) { return entry.measurement.has_value(); });
     }
 
     [[nodiscard]] std::string advice() const {
@@ -130,14 +135,15 @@ public:
         const Entry* faster = nullptr;
         const Entry* better = nullptr;
         for (const Entry& entry : entries_) {
-            if (!entry.front || entry.contender.command.empty()) {
+            if (!entry.choice) {
                 continue;
             }
-            if (entry.seconds() < chosen->seconds() &&
+            // Only what makes a difference.
+            if (entry.seconds() < 0.7 * chosen->seconds() &&
                 (faster == nullptr || entry.seconds() > faster->seconds())) {
                 faster = &entry;
             }
-            if (entry.seconds() > chosen->seconds() &&
+            if (entry.error() < 0.6 * chosen->error() && chosen->error() > 1e-6 &&
                 (better == nullptr || entry.seconds() < better->seconds())) {
                 better = &entry;
             }
@@ -183,14 +189,22 @@ private:
         }
     }
 
+    /// Whether something that `counts` is as fast and as good, and faster or better.
+    template <class Counts>
+    [[nodiscard]] bool beaten(const Entry& entry, const Counts& counts) const {
+        return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& other) {
+            return &other != &entry && other.measurement && counts(other) &&
+                   other.seconds() <= entry.seconds() && other.error() <= entry.error() &&
+                   (other.seconds() < entry.seconds() || other.error() < entry.error());
+        });
+    }
+
     void find_front() {
+        const auto anything = [](const Entry&) { return true; };
+        const auto can_be_chosen = [](const Entry& entry) { return !entry.contender.command.empty(); };
         for (Entry& entry : entries_) {
-            entry.front = entry.measurement.has_value() &&
-                          std::none_of(entries_.begin(), entries_.end(), [&entry](const Entry& other) {
-                              return &other != &entry && other.measurement &&
-                                     other.seconds() <= entry.seconds() && other.error() <= entry.error() &&
-                                     (other.seconds() < entry.seconds() || other.error() < entry.error());
-                          });
+            entry.front = entry.measurement && !beaten(entry, anything);
+            entry.choice = entry.measurement && can_be_chosen(entry) && !beaten(entry, can_be_chosen);
         }
     }
 
@@ -270,7 +284,7 @@ Json to_json(const Trade& trade, const LoadedScene& loaded, const TradeArguments
         const bool rays = contender.yardstick && contender.yardstick->method == Yardstick::montecarlo;
         measurements.push_back(
             {{"label", contender.label()},
-             {"method", contender.yardstick ? Json(contender.family) : Json("hemicube")},
+             {"method", contender.options.method},
              {"preset", contender.yardstick ? Json(nullptr) : Json(contender.options.preset)},
              {"eye_points", contender.yardstick ? Json(nullptr) : Json(hemicube.eye_points)},
              {"resolution", contender.yardstick ? Json(nullptr) : Json(hemicube.resolution)},
@@ -345,7 +359,7 @@ ExitStatus run(const TradeArguments& arguments, const Terminal& terminal) {
     }
     Trade trade(arguments, loaded, terminal);
     trade.run();
-    if (arguments.output && trade.best() != nullptr) {
+    if (arguments.output && trade.measured_any()) {
         write_plot(*arguments.output, trade, loaded);
     }
     if (arguments.common.json) {

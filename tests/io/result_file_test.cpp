@@ -105,6 +105,8 @@ TEST_CASE("HRES: the patches are those that were solved, however they were asked
         a.row_sum.resize(mesh.size());
         a.environment.resize(mesh.size());
         a.blocked.resize(mesh.size());
+        a.factor_error->rows.resize(mesh.size());
+        a.radiosity_error->patches.resize(mesh.size() * 2);
         io::write_hres(folder / "a.hres", a);
         const io::ResultFile b = io::read_hres(folder / "a.hres");
         const PatchMesh again(b.scene, b.subdivision);
