@@ -108,6 +108,14 @@ struct ViewArguments {
     std::string script;     ///< file that drives the window in a test; empty: a person does
 };
 
+struct BakeArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    SolverSettings solver;
+    PictureOptions picture; ///< output, channels, exposure, flat
+};
+
 struct ConvertArguments {
     CommonOptions common;
     std::filesystem::path input;
@@ -128,8 +136,9 @@ struct DevicesArguments {
     CommonOptions common;
 };
 
-using Arguments = std::variant<SolveArguments, FactorsArguments, CheckArguments, RenderArguments,
-                               ViewArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+using Arguments =
+    std::variant<SolveArguments, FactorsArguments, CheckArguments, RenderArguments, ViewArguments,
+                 BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
 
 /// Text that was asked for instead of work: help or the version.
 struct Answer {
