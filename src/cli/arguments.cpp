@@ -252,18 +252,12 @@ void add_solver(CLI::App& app, SolverSettings& solver) {
                   });
 }
 
-/// @param output  the option without which these make no sense; may be none.
-void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
+/// Channels, shading and exposure of a solution that is shown.
+std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture) {
     Options options(app, "Picture");
     std::vector<CLI::Option*> added;
-    added.push_back(options.value(
-        "--size", "WxH", fmt::format("pixels ({}x{})", picture.size[0], picture.size[1]),
-        [&picture](const std::string& text) { picture.size = parse_picture_size("--size", text); }));
     added.push_back(options.value("--show", "A,B,C", "channels shown as red, green, blue; or one, as grey",
                                   [&picture](const std::string& text) { picture.show = parse_list(text); }));
-    added.push_back(options.value(
-        "--camera", "EYE:TARGET[:UP][:FOV]", "such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
-        [&picture](const std::string& text) { picture.camera = parse_camera("--camera", text); }));
     options.flag("--flat", picture.flat, "one colour a patch instead of smooth shading");
     added.push_back(app.get_option("--flat")->option_text(" "));
     added.push_back(options.value("--exposure", "X", "factor on radiosity, or auto (the default)",
@@ -273,6 +267,19 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
                                           picture.exposure = parse_positive("--exposure", text);
                                       }
                                   }));
+    return added;
+}
+
+/// @param output  the option without which these make no sense; may be none.
+void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
+    std::vector<CLI::Option*> added = add_shown(app, picture);
+    Options options(app, "Picture");
+    added.push_back(options.value(
+        "--size", "WxH", fmt::format("pixels ({}x{})", picture.size[0], picture.size[1]),
+        [&picture](const std::string& text) { picture.size = parse_picture_size("--size", text); }));
+    added.push_back(options.value(
+        "--camera", "EYE:TARGET[:UP][:FOV]", "such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
+        [&picture](const std::string& text) { picture.camera = parse_camera("--camera", text); }));
     added.push_back(options.value(
         "--tone-mapping", "NAME", "filmic (the default) or linear", [&picture](const std::string& text) {
             picture.tone_mapping =
@@ -422,6 +429,27 @@ void add_view(CLI::App& app, ViewArguments& a) {
                "  hemi view room.hres --flat");
 }
 
+void add_bake(CLI::App& app, BakeArguments& a) {
+    add_scene(app, a.scene, "SCENE|RESULT", ".hres");
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_repair(app, a.rows.repair);
+    add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
+    add_solver(app, a.solver);
+    Options(app, "Output")
+        .path("-o,--output", "OUT.glb", a.picture.output, "binary glTF with vertex colours; - for stdout")
+        ->required();
+    (void)add_shown(app, a.picture);
+    add_common(app, a.common);
+    app.footer("Colours (COLOR_0) are linear: exposure times radiosity, at most 1. The radiosity itself is "
+               "the vertex\n"
+               "attribute _RADIOSITY. Axes are those of the scene.\n\n"
+               "Examples:\n"
+               "  hemi bake scenes/cornell-box.json -o cornell-box.glb\n"
+               "  hemi bake room.hres -o room.glb --exposure 0.5 --flat");
+}
+
 void add_convert(CLI::App& app, ConvertArguments& a) {
     add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz; or a solution: .hres");
     add_positional(
@@ -491,9 +519,6 @@ Words option_names(const CLI::App& app) {
 }
 
 [[noreturn]] void refuse_command(const CLI::App& app, const std::string& word) {
-    if (word == "bake") {
-        throw InvalidArgument(fmt::format("this build does not have `hemi {}` yet", word));
-    }
     Words names;
     for (const CLI::App* command : app.get_subcommands({})) {
         names.push_back(command->get_name());
@@ -595,6 +620,7 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
     add_command(app, "trade", "Speed against accuracy, measured on a scene", add_trade, chosen);
     add_command(app, "render", "Picture of a stored solution", add_render, chosen);
     add_command(app, "view", "Window with an orbiting camera", add_view, chosen);
+    add_command(app, "bake", "Mesh with the solution as vertex colours, glTF", add_bake, chosen);
     add_command(app, "convert", "Form factors from one file format to another", add_convert, chosen);
     add_command(app, "info", "What a file holds and what it would cost", add_info, chosen);
     add_command(app, "devices", "OpenGL devices that can be used", add_devices, chosen);

@@ -119,6 +119,14 @@ struct ViewArguments {
     std::string script;     ///< file that drives the window in a test; empty: a person does
 };
 
+struct BakeArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    SolverSettings solver;
+    PictureOptions picture; ///< output, channels, exposure, flat
+};
+
 struct ConvertArguments {
     CommonOptions common;
     std::filesystem::path input;
@@ -141,7 +149,7 @@ struct DevicesArguments {
 
 using Arguments =
     std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments, RenderArguments,
-                 ViewArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+                 ViewArguments, BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
 
 /// Text that was asked for instead of work: help or the version.
 struct Answer {

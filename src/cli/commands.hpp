@@ -13,6 +13,7 @@ namespace hemi::cli {
 [[nodiscard]] ExitStatus run(const TradeArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const RenderArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ViewArguments& arguments, const Terminal& terminal);
+[[nodiscard]] ExitStatus run(const BakeArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const InfoArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const DevicesArguments& arguments, const Terminal& terminal);

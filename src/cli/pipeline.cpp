@@ -210,8 +210,8 @@ RowPlan plan_rows(const RowOptions& options, std::uint32_t patches) {
         hemicube.resolution = 64;
         hemicube.near_eye_points = 4;
     } else if (options.preset == "default") {
-        hemicube.eye_points = eye_points_for(6000, patches, 1, 16);
-        hemicube.resolution = hemicube.eye_points == 1 ? 128 : 64;
+        hemicube.eye_points = eye_points_for(6000, patches, 4, 16);
+        hemicube.resolution = 64;
         hemicube.near_eye_points = 16;
     } else if (options.preset == "exact") {
         hemicube.eye_points = eye_points_for(20000, patches, 4, 64);

@@ -119,3 +119,31 @@ TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]"
     refused({"convert", hres, vtp, "--factors", other, "--row", "1"}, 3,
             "other.hff: belongs to another geometry");
 }
+
+TEST_CASE("Bake: a scene and its stored solution give the same mesh, which hemi reads", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", open_cube(4, "open"));
+    const std::string hres = directory.path("cube.hres");
+    REQUIRE(run_hemi(quick({"solve", scene, "--result", hres})).status == 0);
+    const Outcome baked = run_hemi(quick({"bake", scene, "-o", directory.path("a.glb"), "--json"}));
+    INFO(baked.err);
+    REQUIRE(baked.status == 0);
+    CHECK(baked.json()["patches"] == 80);
+    const Outcome again = run_hemi({"bake", hres, "-o", directory.path("b.glb")});
+    REQUIRE(again.status == 0);
+    CHECK(again.out_has("80 patches, exposure"));
+    const bool same = directory.read("a.glb") == directory.read("b.glb"); // as text they are no use
+    CHECK(same);
+
+    const Json info = run_hemi({"info", directory.path("b.glb"), "--json"}).json();
+    CHECK(info["patches"] == 160);
+    REQUIRE(run_hemi({"bake", hres, "-o", directory.path("flat.glb"), "--flat", "--exposure", "2"}).status ==
+            0);
+    CHECK(directory.read("flat.glb").size() == directory.read("b.glb").size());
+    const bool differs = directory.read("flat.glb") != directory.read("b.glb");
+    CHECK(differs);
+
+    CHECK(run_hemi({"bake", hres, "-o", directory.path("x.gltf")}).status == 2);
+    CHECK(run_hemi({"bake", hres, "-o", directory.path("x.glb"), "--seed", "1"}).err_has("does not apply"));
+    CHECK(run_hemi({"bake", directory.path("cube.hff"), "-o", directory.path("x.glb")}).status == 2);
+}
