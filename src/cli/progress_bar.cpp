@@ -58,6 +58,9 @@ ProgressBar::~ProgressBar() {
 }
 
 bool ProgressBar::update(std::size_t done, std::size_t total) {
+    if (const auto& listener = terminal_.progress_listener()) {
+        return listener(title_, unit_, done, total) && !interrupted();
+    }
     if (total > 0 && !terminal_.quiet()) {
         const Clock::time_point now = Clock::now();
         if (!terminal_.can_redraw()) {

@@ -2,8 +2,11 @@
 
 #include "hemi/core/diagnostics.hpp"
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace hemi::cli {
 
@@ -23,6 +26,13 @@ public:
     /// Whether a line on stderr may be drawn again and again.
     [[nodiscard]] bool can_redraw() const noexcept { return can_redraw_; }
 
+    /// Hands progress to `listener` instead of showing it: what is done, what is counted, how much of how
+    /// much. The work stops where it returns false.
+    using ProgressListener = std::function<bool(std::string_view title, std::string_view unit,
+                                                std::size_t done, std::size_t total)>;
+    void set_progress_listener(ProgressListener listener) { progress_listener_ = std::move(listener); }
+    [[nodiscard]] const ProgressListener& progress_listener() const noexcept { return progress_listener_; }
+
     void error(std::string_view message) const;
     void warn(std::string_view message) const;
     void warn(const Diagnostics& diagnostics) const;
@@ -38,6 +48,7 @@ private:
     bool verbose_;
     bool colours_;
     bool can_redraw_;
+    ProgressListener progress_listener_;
 };
 
 } // namespace hemi::cli

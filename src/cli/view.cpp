@@ -12,6 +12,8 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <memory>
+#include <utility>
 
 namespace hemi::cli {
 
@@ -51,25 +53,36 @@ viewer::ViewerInput make_input(const ViewArguments& arguments, const Scene& scen
     return input;
 }
 
-void view_scene(const ViewArguments& arguments, const Terminal& terminal) {
-    const LoadedScene loaded = load_scene(arguments.scene, terminal);
-    viewer::ViewerInput input = make_input(arguments, loaded.scene, loaded.mesh);
+viewer::Solved solve_for_view(const LoadedScene& loaded, const ViewArguments& arguments,
+                              const Terminal& terminal) {
     Rows rows = compute_rows(loaded, reflecting_patches(loaded), arguments.rows, terminal);
     settle_contacts(rows.file);
     (void)repair_rows(rows.file, arguments.rows.repair);
-    const FormFactorMatrix& factors = rows.file.factors;
-    Solution solution = solve_scene(loaded, factors, arguments.solver, false, terminal);
-    input.factors = &factors;
-    input.solver = arguments.solver;
-    input.hemicube = plan_rows(arguments.rows, loaded.mesh.size()).hemicube;
-    input.radiosity = std::move(solution.radiosity);
-    input.exitance = std::move(solution.exitance);
+    viewer::Solved solved;
+    solved.factors = std::make_shared<const FormFactorMatrix>(std::move(rows.file.factors));
+    const FormFactorMatrix& factors = *solved.factors;
+    solved.radiosity = solve_scene(loaded, factors, arguments.solver, false, terminal).radiosity;
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
         const RowView row = factors.row(i);
-        input.row_sum.push_back(row.sum());
-        input.environment_share.push_back(row.environment);
-        input.blocked.push_back(row.blocked);
+        solved.row_sum.push_back(row.sum());
+        solved.environment_share.push_back(row.environment);
+        solved.blocked.push_back(row.blocked);
     }
+    return solved;
+}
+
+void view_scene(const ViewArguments& arguments, const Terminal& terminal) {
+    const LoadedScene loaded = load_scene(arguments.scene, terminal);
+    viewer::ViewerInput input = make_input(arguments, loaded.scene, loaded.mesh);
+    input.exitance = patch_exitance(loaded.scene, loaded.mesh);
+    input.radiosity = input.exitance;
+    input.hemicube = plan_rows(arguments.rows, loaded.mesh.size()).hemicube;
+    input.solver = arguments.solver;
+    input.solve = [&](const viewer::SolveProgress& progress) {
+        Terminal listening = terminal;
+        listening.set_progress_listener(progress);
+        return solve_for_view(loaded, arguments, listening);
+    };
     viewer::run_viewer(input);
 }
 

@@ -33,4 +33,12 @@ struct CloseEvent {};
 
 using Event = std::variant<CursorEvent, ButtonEvent, ScrollEvent, KeyEvent, RefreshEvent, CloseEvent>;
 
+/// Functions for std::visit, one an alternative.
+template <typename... Functions>
+struct Overloaded : Functions... {
+    using Functions::operator()...;
+};
+template <typename... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
 } // namespace hemi::viewer

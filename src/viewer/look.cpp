@@ -140,7 +140,8 @@ const char* why_not(Quantity quantity, const ViewerInput& input, std::optional<s
     }
     if (quantity == Quantity::row || quantity == Quantity::column) {
         if (input.factors == nullptr) {
-            return "a stored solution has no form factors: open the scene, or add --factors FILE.hff";
+            return input.solve ? "not computed"
+                               : "a stored solution has no form factors; open the scene instead";
         }
         if (!picked) {
             return "click a patch first";
@@ -285,6 +286,47 @@ std::vector<std::array<float, 3>> light_colours(const PictureMesh& mesh, double 
                 std::clamp(static_cast<double>(mesh.patches[i * 3 + c]) * exposure, 0.0, 1e6));
             const float filmic = x * (2.51F * x + 0.03F) / (x * (2.43F * x + 0.59F) + 0.14F);
             colours[i][c] = std::clamp(tone_mapping == ToneMapping::filmic ? filmic : x, 0.0F, 1.0F);
+        }
+    }
+    return colours;
+}
+
+PictureSettings picture_settings(const Look& look, const PictureSettings& first, double exposure,
+                                 std::array<std::uint32_t, 2> size) {
+    PictureSettings settings = first;
+    settings.width = std::max(size[0], 1U);
+    settings.height = std::max(size[1], 1U);
+    settings.shading = look.shading;
+    settings.tone_mapping = look.tone_mapping;
+    settings.exposure = exposure;
+    settings.outlines = look.outlines;
+    if (look.quantity != Quantity::picture) {
+        settings.shading = Shading::flat;
+        settings.tone_mapping = ToneMapping::linear;
+        settings.exposure = 1.0;
+        settings.outlines = look.outlines || look.quantity == Quantity::outlines;
+    }
+    return settings;
+}
+
+std::vector<bool> without_rows(const ViewerInput& input) {
+    std::vector<bool> result(input.scene->materials.size(), false);
+    for (std::uint32_t i = 0; input.factors != nullptr && i < input.mesh->size(); ++i) {
+        if (!input.factors->known(i)) {
+            result[input.mesh->material(i)] = true;
+        }
+    }
+    return result;
+}
+
+std::vector<std::array<float, 3>> lamp_colours(const PatchMesh& mesh, const PictureMesh& light,
+                                               double exposure, ToneMapping tone_mapping) {
+    constexpr float dim = 0.25F;
+    std::vector<std::array<float, 3>> colours = plain_colours(mesh);
+    const auto lamps = light_colours(light, exposure, tone_mapping);
+    for (std::size_t i = 0; i < colours.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            colours[i][c] = std::max(dim * colours[i][c], lamps[i][c]);
         }
     }
     return colours;

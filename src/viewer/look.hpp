@@ -98,4 +98,15 @@ struct Field {
 [[nodiscard]] std::vector<double> factors_from(const FormFactorMatrix& factors, std::uint32_t patch);
 [[nodiscard]] std::vector<double> factors_to(const FormFactorMatrix& factors, std::uint32_t patch);
 
+/// How a picture is drawn: false colours are not lit, exposed or tone-mapped.
+/// @param first  what the look does not say
+[[nodiscard]] PictureSettings picture_settings(const Look& look, const PictureSettings& first,
+                                               double exposure, std::array<std::uint32_t, 2> size);
+/// Of every material, whether a row of its patches is unknown: then it must not begin to reflect.
+[[nodiscard]] std::vector<bool> without_rows(const ViewerInput& input);
+
+/// Lamps as the picture shows them, all else in dim greys: a scene that is not solved yet.
+[[nodiscard]] std::vector<std::array<float, 3>> lamp_colours(const PatchMesh& mesh, const PictureMesh& light,
+                                                             double exposure, ToneMapping tone_mapping);
+
 } // namespace hemi::viewer

@@ -290,7 +290,10 @@ void material_section(const PanelContent& content, Choices& choices) {
     }
     const ViewerInput& input = content.input;
     if (input.factors == nullptr) {
-        faint("Light cannot follow a change without form factors: open the scene instead of its result.");
+        faint(input.solve
+                  ? "Light follows changes of materials once there are form factors."
+                  : "Light cannot follow a change without form factors: open the scene instead of its "
+                    "result.");
         return;
     }
     double brightest = 0.0;
@@ -336,6 +339,13 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     ImGui::SetNextWindowSize({width, static_cast<float>(window[1])});
     ImGui::Begin("panel", nullptr, fixed_window);
     const float foot = ImGui::GetTextLineHeightWithSpacing() * 2.0F + 6.0F;
+    if (!content.solving.empty()) {
+        ImGui::ProgressBar(static_cast<float>(content.solved_share), {-1.0F, 0.0F});
+        faint(content.solving);
+        ImGui::SameLine(width - 74.0F);
+        choices.cancel = ImGui::SmallButton("Cancel") || choices.cancel;
+        ImGui::Separator();
+    }
     ImGui::BeginChild("sections", {0.0F, -foot});
     show_section(content, choices);
     patch_section(content, choices);
@@ -429,12 +439,22 @@ void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2
     ImGui::End();
 }
 
-void mark_line(const std::array<double, 2>& from, const std::array<double, 2>& to, bool picked) {
-    const ImVec2 a{static_cast<float>(from[0]), static_cast<float>(from[1])};
-    const ImVec2 b{static_cast<float>(to[0]), static_cast<float>(to[1])};
+void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view, bool picked) {
     ImDrawList* list = ImGui::GetBackgroundDrawList();
-    list->AddLine(a, b, IM_COL32(0, 0, 0, 255), 4.0F);
-    list->AddLine(a, b, picked ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 80, 200, 255), 2.0F);
+    const auto pixel = [&view](const std::array<double, 2>& place) {
+        return ImVec2(static_cast<float>(0.5 * view[0] + place[0] * view[1]),
+                      static_cast<float>((0.5 - place[1]) * view[1]));
+    };
+    const PatchCorners corners = mesh.corners(patch);
+    for (std::size_t k = 0; k < corners.count; ++k) {
+        if (const auto line = orbit.line(corners.points[k], corners.points[(k + 1) % corners.count])) {
+            const ImVec2 a = pixel((*line)[0]);
+            const ImVec2 b = pixel((*line)[1]);
+            list->AddLine(a, b, IM_COL32(0, 0, 0, 255), 4.0F);
+            list->AddLine(a, b, picked ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 80, 200, 255), 2.0F);
+        }
+    }
 }
 
 void help_window(std::array<std::uint32_t, 2> view, bool& open) {

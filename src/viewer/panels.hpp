@@ -1,5 +1,6 @@
 #pragma once
 
+#include "display/orbit_camera.hpp"
 #include "viewer/look.hpp"
 
 #include <array>
@@ -34,8 +35,18 @@ struct Choices {
     bool hemicube_ids = false;               ///< coloured by item, else as the scene is
     std::uint32_t hemicube_eye = 0;
     std::vector<Material> materials; ///< as the light should be
+    bool cancel = false;             ///< what is being solved
     bool panel = true;
     bool help = false;
+};
+
+/// What a hemicube's picture depends on besides its patch.
+struct HemicubeChoice {
+    bool shown = true;
+    bool ids = false;
+    std::uint32_t eye = 0;
+
+    bool operator==(const HemicubeChoice&) const = default;
 };
 
 /// All that the panels show.
@@ -43,8 +54,10 @@ struct PanelContent {
     const ViewerInput& input;
     const Light& light;
     const std::optional<PickedPatch>& picked;
-    std::string status; ///< at the panel's foot
-    std::string relit;  ///< on the last change of materials
+    std::string status;        ///< at the panel's foot
+    std::string relit;         ///< on the last change of materials
+    std::string solving;       ///< what is under way; empty: nothing
+    double solved_share = 0.0; ///< of that
     /// Materials of which a row is unknown: they must not begin to reflect. One a material.
     const std::vector<bool>& without_rows;
 };
@@ -56,9 +69,10 @@ struct PanelContent {
 void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window, Choices& choices);
 /// The colours of a field, in the lower left of the view.
 void legend(const Field& field, std::array<std::uint32_t, 2> view);
-/// A line over the view, in pixels from the upper left.
+/// The outline of a patch, in front of everything.
 /// @param picked  else pointed at: another colour
-void mark_line(const std::array<double, 2>& from, const std::array<double, 2>& to, bool picked);
+void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view, bool picked);
 /// A hemicube unfolded, as a texture of the window's context.
 struct HemicubePicture {
     std::uint32_t texture;

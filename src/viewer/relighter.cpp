@@ -54,8 +54,8 @@ std::optional<Relit> Relighter::solve(Light wanted, const std::stop_token& stop)
     const auto start = std::chrono::steady_clock::now();
     Relit relit;
     try {
-        const RadiosityProblem problem{input_.factors,  input_.channels,           wanted.reflectance,
-                                       wanted.exitance, input_.scene->environment, input_.mesh->areas()};
+        const RadiosityProblem problem{input_.factors.get(), input_.channels,           wanted.reflectance,
+                                       wanted.exitance,      input_.scene->environment, input_.mesh->areas()};
         SolverSettings settings = input_.solver;
         settings.start = wanted.radiosity;
         RadiositySolution solution = solve_radiosity(problem, settings, [&](std::uint32_t, double) {

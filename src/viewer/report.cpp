@@ -2,6 +2,7 @@
 
 #include "hemi/io/output_file.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -57,6 +58,15 @@ void write_report(const std::filesystem::path& path, const Report& report) {
     io::OutputFile file(path);
     file.write(json.dump() + "\n");
     file.commit();
+}
+
+std::filesystem::path free_name(const std::string& stem) {
+    for (int number = 1;; ++number) {
+        std::filesystem::path path = fmt::format("{}-{:03}.png", stem, number);
+        if (!std::filesystem::exists(path)) {
+            return path;
+        }
+    }
 }
 
 } // namespace hemi::viewer

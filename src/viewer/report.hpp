@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace hemi::viewer {
@@ -25,5 +26,8 @@ struct Report {
 /// {"low", "high", "logarithmic"} or null, "radiosity": [[per channel] …]}.
 /// @throws IoError
 void write_report(const std::filesystem::path& path, const Report& report);
+
+/// The first of STEM-001.png, STEM-002.png … that is not there.
+[[nodiscard]] std::filesystem::path free_name(const std::string& stem);
 
 } // namespace hemi::viewer

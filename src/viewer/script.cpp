@@ -226,10 +226,16 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
     } else if (command == "resize") {
         const std::uint32_t width = line.size("the width");
         result.action = ResizeCommand{width, line.size("the height")};
+    } else if (command == "live") {
+        result.action = LiveCommand{};
+    } else if (command == "wait") {
+        result.action = WaitCommand{};
+    } else if (command == "cancel") {
+        result.action = CancelCommand{};
     } else if (command != "quit") {
         line.fail(fmt::format(
             "command \"{}\"; must be drag, click, move, scroll, key, show, set, resize, screenshot, "
-            "windowshot, report or quit",
+            "windowshot, report, live, wait, cancel or quit",
             command));
     }
     line.end();

@@ -58,12 +58,19 @@ struct WindowshotCommand {
 struct ReportCommand {
     std::string path;
 };
+/// As the first command: does not wait until the scene is solved.
+struct LiveCommand {};
+/// Until the scene is solved.
+struct WaitCommand {};
+/// Stops solving.
+struct CancelCommand {};
 struct QuitCommand {};
 
 struct ScriptCommand {
     std::size_t line;
     std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand, SetCommand,
-                 ResizeCommand, ScreenshotCommand, WindowshotCommand, ReportCommand, QuitCommand>
+                 ResizeCommand, ScreenshotCommand, WindowshotCommand, ReportCommand, LiveCommand, WaitCommand,
+                 CancelCommand, QuitCommand>
         action;
 };
 
@@ -83,6 +90,9 @@ struct ScriptCommand {
 /// screenshot FILE        .png or .hdr: the picture; the name is the rest of the line
 /// windowshot FILE        .png: the window with its panels
 /// report FILE            .json: picked patch, quantity shown and its values, radiosity
+/// live                   as the first command: the script does not wait until the scene is solved
+/// wait                   until it is
+/// cancel                 of what is being solved
 /// quit
 /// ```
 /// @param file  name for messages.

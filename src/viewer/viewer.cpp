@@ -5,7 +5,10 @@
 #include "display/visible_point.hpp"
 #include "viewer/gui.hpp"
 #include "viewer/hemicube_inset.hpp"
+#include "viewer/keys.hpp"
+#include "viewer/live_solver.hpp"
 #include "viewer/look.hpp"
+#include "viewer/material_change.hpp"
 #include "viewer/panels.hpp"
 #include "viewer/relighter.hpp"
 #include "viewer/report.hpp"
@@ -14,6 +17,7 @@
 #include "viewer/window.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 #include "hemi/io/image_file.hpp"
 #include "hemi/io/output_file.hpp"
 
@@ -37,29 +41,12 @@ constexpr double radians_per_height = std::numbers::pi;
 /// Change of the distance by one notch of the wheel, and by a right drag over the height of the picture.
 constexpr double zoom_per_notch = 0.85;
 constexpr double zoom_per_height = 0.05;
-/// One press of E, stops.
-constexpr double exposure_step = 1.0 / 3.0;
 /// A press and release with less way between is a click, pixels.
 constexpr double click_way = 4.0;
 /// Lines in the list of partners.
 constexpr std::size_t partner_count = 8;
 /// After so long without an event the picture is drawn in full quality, seconds.
 constexpr double rest = 0.2;
-
-template <typename... Functions>
-struct Overloaded : Functions... {
-    using Functions::operator()...;
-};
-template <typename... Functions>
-Overloaded(Functions...) -> Overloaded<Functions...>;
-
-struct HemicubeChoice {
-    bool shown = true;
-    bool ids = false;
-    std::uint32_t eye = 0;
-
-    bool operator==(const HemicubeChoice&) const = default;
-};
 
 /// The window's picture and what the user does to it. Real input and scripts come in by the same door,
 /// handle().
@@ -69,27 +56,18 @@ public:
         : input_(input), window_(input.title, input.picture.width, input.picture.height),
           orbit_(input.camera, input.mesh->bounds()), light_{input.reflectance, input.exitance,
                                                              input.radiosity},
-          exposure_(input.picture.exposure) {
+          exposure_(input.picture.exposure), lamps_only_(input.solve != nullptr) {
         choices_.look.shading = input.picture.shading;
         choices_.look.tone_mapping = input.picture.tone_mapping;
         choices_.look.outlines = input.picture.outlines;
         choices_.materials = asked_materials_ = input.scene->materials;
-        without_rows_.resize(choices_.materials.size(), false);
-        if (input.factors != nullptr) {
-            for (std::uint32_t i = 0; i < input.mesh->size(); ++i) {
-                if (!input.factors->known(i)) {
-                    without_rows_[input.mesh->material(i)] = true;
-                }
-            }
-            relighter_.emplace(input, Window::wake);
-            usual_factor_ = usual_largest_factor(*input.factors);
-        }
+        prepare_factors();
         prepare_light();
-        if (input.automatic_exposure) {
-            exposure_ =
-                automatic_exposure(*input.mesh, light_mesh_, input.blocked, input.exitance, input.channels);
-        }
+        choose_exposure();
         settle();
+        if (input_.solve) {
+            solver_.emplace(input_.solve, Window::wake);
+        }
     }
 
     void run() {
@@ -98,6 +76,7 @@ public:
             draw(preview);
             moving_ = button_.has_value() && dragging_;
             handle(window_.wait(preview && !button_ ? rest : 0.0));
+            take_solution();
             take_light();
             // Nothing came: the preview on the screen is drawn anew in full quality.
             picture_changed_ = picture_changed_ || (preview && !moving_);
@@ -105,6 +84,9 @@ public:
     }
 
     void run(const std::vector<ScriptCommand>& script, const std::string& file) {
+        if (script.empty() || !std::holds_alternative<LiveCommand>(script[0].action)) {
+            wait_for_solution();
+        }
         for (const ScriptCommand& command : script) {
             if (closing_) {
                 return;
@@ -114,13 +96,8 @@ public:
             } catch (const IoError& error) {
                 throw IoError(fmt::format("{}:{}: {}", file, command.line, error.what()));
             }
-            for (const Event& event : window_.poll()) {
-                // Whoever watches may close the window, but does not get in the script's way.
-                if (std::holds_alternative<CloseEvent>(event) ||
-                    std::holds_alternative<RefreshEvent>(event)) {
-                    handle(event);
-                }
-            }
+            watch(window_.poll());
+            take_solution();
             if (!closing_) {
                 draw(window_.software());
             }
@@ -132,6 +109,23 @@ private:
         double x;
         double y;
     };
+
+    /// Whoever watches a script may close the window, but does not get in the script's way.
+    void watch(const std::vector<Event>& events) {
+        for (const Event& event : events) {
+            if (std::holds_alternative<CloseEvent>(event) || std::holds_alternative<RefreshEvent>(event)) {
+                handle(event);
+            }
+        }
+    }
+
+    void wait_for_solution() {
+        while (solver_ && !closing_) {
+            draw(window_.software());
+            watch(window_.wait(0.05));
+            take_solution();
+        }
+    }
 
     /// Of cursor moves in a row only the last counts.
     void handle(const std::vector<Event>& events) {
@@ -252,53 +246,11 @@ private:
 
     void on_key(const KeyEvent& event) {
         button_.reset();
-        if (!camera_key(event.key) && !look_key(event)) {
+        if (apply_camera_key(event.key, aspect(), orbit_)) {
+            picture_changed_ = true;
+        } else if (!apply_look_key(event, input_, choices_)) {
             other_key(event);
         }
-    }
-
-    bool camera_key(char key) {
-        if (key == 'F') {
-            orbit_.frame_all(aspect());
-        } else if (key == 'R') {
-            orbit_.reset();
-        } else if (key == '1') {
-            orbit_.look_along(OrbitCamera::Axis::front, aspect());
-        } else if (key == '3') {
-            orbit_.look_along(OrbitCamera::Axis::right, aspect());
-        } else if (key == '7') {
-            orbit_.look_along(OrbitCamera::Axis::top, aspect());
-        } else {
-            return false;
-        }
-        picture_changed_ = true;
-        return true;
-    }
-
-    bool look_key(const KeyEvent& event) {
-        Look& look = choices_.look;
-        if (event.key == 'S') {
-            look.shading = look.shading == Shading::flat ? Shading::gouraud : Shading::flat;
-        } else if (event.key == 'T') {
-            look.tone_mapping =
-                look.tone_mapping == ToneMapping::filmic ? ToneMapping::linear : ToneMapping::filmic;
-        } else if (event.key == 'E') {
-            look.stops += event.shift ? -exposure_step : exposure_step;
-        } else if (event.key == 'W') {
-            look.outlines = !look.outlines;
-        } else if (event.key == 'L') {
-            bool& logarithmic = look.quantity == Quantity::row || look.quantity == Quantity::column
-                                    ? look.logarithmic_factors
-                                    : look.logarithmic;
-            logarithmic = !logarithmic;
-        } else if (event.key == 'V') {
-            next_quantity(event.shift);
-        } else if (event.key == 'H') {
-            next_heat_map();
-        } else {
-            return false;
-        }
-        return true;
     }
 
     void other_key(const KeyEvent& event) {
@@ -320,35 +272,13 @@ private:
         }
     }
 
-    void next_quantity(bool back) {
-        const auto names = quantity_names();
-        const auto now = std::find_if(names.begin(), names.end(), [this](const QuantityName& name) {
-            return name.quantity == choices_.look.quantity;
-        });
-        const std::size_t step = back ? names.size() - 1 : 1;
-        std::size_t next = static_cast<std::size_t>(now - names.begin());
-        do {
-            next = (next + step) % names.size();
-        } while (why_not(names[next].quantity, input_, choices_.picked) != nullptr);
-        choices_.look.quantity = names[next].quantity;
-    }
-
-    void next_heat_map() {
-        Quantity& quantity = choices_.look.quantity;
-        const Quantity next = quantity == Quantity::row
-                                  ? Quantity::column
-                                  : (quantity == Quantity::column ? Quantity::picture : Quantity::row);
-        quantity = why_not(next, input_, choices_.picked) == nullptr ? next : Quantity::picture;
-    }
-
     void pick(Point pixel) {
         const auto size = view_size();
         if (!(pixel.x >= 0.0 && pixel.x < size[0] && pixel.y >= 0.0 && pixel.y < size[1])) {
             return;
         }
-        choices_.picked =
-            renderer_.item(orbit_.camera(), picture_settings(size), static_cast<std::uint32_t>(pixel.x),
-                           static_cast<std::uint32_t>(pixel.y));
+        choices_.picked = renderer_.item(orbit_.camera(), settings(size), static_cast<std::uint32_t>(pixel.x),
+                                         static_cast<std::uint32_t>(pixel.y));
     }
 
     void moved() {
@@ -362,6 +292,55 @@ private:
             make_picture_mesh(*input_.mesh, input_.channels, light_.radiosity, input_.blocked, input_.show);
         light_mesh_.environment = input_.environment;
         shown_look_.reset();
+    }
+
+    void prepare_factors() {
+        without_rows_ = without_rows(input_);
+        if (input_.factors == nullptr) {
+            return;
+        }
+        usual_factor_ = usual_largest_factor(*input_.factors);
+        relighter_.emplace(input_, Window::wake);
+    }
+
+    void choose_exposure() {
+        if (input_.automatic_exposure) {
+            exposure_ = automatic_exposure(*input_.mesh, light_mesh_, input_.blocked, input_.exitance,
+                                           input_.channels);
+        }
+    }
+
+    /// How far the solution is, and the solution once it is there.
+    void take_solution() {
+        if (!solver_) {
+            return;
+        }
+        if (choices_.cancel) {
+            solver_->cancel();
+        }
+        solving_ = solver_->status(solved_share_);
+        if (!solver_->finished()) {
+            return;
+        }
+        std::optional<Solved> solved = solver_->take();
+        solver_.reset();
+        solving_.clear();
+        choices_.cancel = false;
+        if (!solved) {
+            stop_if_interrupted();
+            relit_ = "stopped: this is the light of the lamps alone";
+            return;
+        }
+        input_.factors = std::move(solved->factors);
+        input_.row_sum = std::move(solved->row_sum);
+        input_.environment_share = std::move(solved->environment_share);
+        input_.blocked = std::move(solved->blocked);
+        light_.radiosity = std::move(solved->radiosity);
+        lamps_only_ = false;
+        prepare_factors();
+        prepare_light();
+        choose_exposure();
+        settle();
     }
 
     /// What the relighter has found, on the screen.
@@ -435,6 +414,9 @@ private:
         } else if (choices_.look.quantity == Quantity::outlines) {
             colours_ = plain_colours(*input_.mesh);
         }
+        if (lamps_only_ && choices_.look.quantity == Quantity::picture) {
+            colours_ = lamp_colours(*input_.mesh, light_mesh_, exposure(), choices_.look.tone_mapping);
+        }
         renderer_.upload(colours_.empty() ? light_mesh_ : painted(light_mesh_, colours_));
         picture_changed_ = true;
     }
@@ -455,22 +437,12 @@ private:
 
     [[nodiscard]] double exposure() const { return exposure_ * std::exp2(choices_.look.stops); }
 
-    [[nodiscard]] PictureSettings picture_settings(std::array<std::uint32_t, 2> size) const {
-        PictureSettings settings = input_.picture;
-        const Look& look = choices_.look;
-        settings.width = std::max(size[0], 1U);
-        settings.height = std::max(size[1], 1U);
-        settings.shading = look.shading;
-        settings.tone_mapping = look.tone_mapping;
-        settings.exposure = exposure();
-        settings.outlines = look.outlines;
-        if (look.quantity != Quantity::picture) {
-            settings.shading = Shading::flat;
-            settings.tone_mapping = ToneMapping::linear;
-            settings.exposure = 1.0;
-            settings.outlines = look.outlines || look.quantity == Quantity::outlines;
+    [[nodiscard]] PictureSettings settings(std::array<std::uint32_t, 2> size) const {
+        Look look = choices_.look;
+        if (lamps_only_ && look.quantity == Quantity::picture) {
+            look.quantity = Quantity::items; // as other colours that are painted
         }
-        return settings;
+        return picture_settings(look, input_.picture, exposure(), size);
     }
 
     void update_title() {
@@ -488,11 +460,17 @@ private:
         const auto view = view_size();
         gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
         if (view[0] < size[0]) {
-            const PanelContent content{input_, light_, picked_, status_, relit_, without_rows_};
+            const PanelContent content{input_, light_,   picked_,       status_,
+                                       relit_, solving_, solved_share_, without_rows_};
             side_panel(content, size, choices_);
         }
         if (view[0] > 0 && view[1] > 0) {
-            draw_outlines();
+            if (choices_.pointed_at) {
+                mark_patch(*input_.mesh, *choices_.pointed_at, orbit_, view, false);
+            }
+            if (choices_.picked) {
+                mark_patch(*input_.mesh, *choices_.picked, orbit_, view, true);
+            }
             if (field_) {
                 legend(*field_, view);
             }
@@ -504,30 +482,6 @@ private:
             }
         }
         gui_.end();
-    }
-
-    /// Of the picked patch and of the one that is pointed at, in front of everything.
-    void draw_outlines() {
-        const auto size = view_size();
-        const auto outline = [&](std::uint32_t patch, bool picked) {
-            const PatchCorners corners = input_.mesh->corners(patch);
-            for (std::size_t k = 0; k < corners.count; ++k) {
-                const auto line = orbit_.line(corners.points[k], corners.points[(k + 1) % corners.count]);
-                if (line) {
-                    const auto pixel = [&](const std::array<double, 2>& place) {
-                        return std::array<double, 2>{0.5 * size[0] + place[0] * size[1],
-                                                     (0.5 - place[1]) * size[1]};
-                    };
-                    mark_line(pixel((*line)[0]), pixel((*line)[1]), picked);
-                }
-            }
-        };
-        if (choices_.pointed_at) {
-            outline(*choices_.pointed_at, false);
-        }
-        if (choices_.picked) {
-            outline(*choices_.picked, true);
-        }
     }
 
     /// Draws what has changed.
@@ -559,10 +513,10 @@ private:
 
     void draw_picture(SceneTarget& target, std::array<std::uint32_t, 2> size, bool preview) {
         const auto start = std::chrono::steady_clock::now();
-        PictureSettings settings = picture_settings(size);
-        settings.samples = preview ? 1 : settings.samples;
+        PictureSettings drawn = settings(size);
+        drawn.samples = preview ? 1 : drawn.samples;
         target.resize(size);
-        renderer_.draw(orbit_.camera(), settings, target.framebuffer());
+        renderer_.draw(orbit_.camera(), drawn, target.framebuffer());
         glFinish();
         const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
         status_ = fmt::format("{} patches, {:.0f} ms a picture{}", input_.mesh->size(), time.count(),
@@ -570,7 +524,7 @@ private:
     }
 
     void screenshot(const std::filesystem::path& path) {
-        const Picture picture = renderer_.picture(orbit_.camera(), picture_settings(window_.size()));
+        const Picture picture = renderer_.picture(orbit_.camera(), settings(window_.size()));
         if (path.extension() == ".hdr") {
             io::write_hdr(path, picture.width, picture.height, picture.linear);
         } else {
@@ -604,11 +558,7 @@ private:
 
     /// Under the first free number; a folder that cannot be written to is no reason to close the window.
     void numbered_screenshot(bool of_window) {
-        std::filesystem::path path;
-        int number = 1;
-        do {
-            path = fmt::format("{}-{:03}.png", input_.file_stem, number++);
-        } while (std::filesystem::exists(path));
+        const std::filesystem::path path = free_name(input_.file_stem);
         try {
             if (of_window) {
                 windowshot(path);
@@ -643,24 +593,7 @@ private:
         settle();
     }
     void perform(const SetCommand& set) {
-        std::vector<Material>& materials = choices_.materials;
-        const auto found = std::find_if(materials.begin(), materials.end(), [&set](const Material& material) {
-            return material.name == set.material;
-        });
-        if (!relighter_) {
-            throw InvalidArgument("set: a stored solution has no form factors; open the scene instead");
-        }
-        if (found == materials.end()) {
-            throw InvalidArgument(fmt::format("set: the scene has no material \"{}\"", set.material));
-        }
-        if (set.values.size() != 1 && set.values.size() != input_.channels) {
-            throw InvalidArgument(
-                fmt::format("set: {} values for {} channels", set.values.size(), input_.channels));
-        }
-        std::vector<double>& values = set.exitance ? found->exitance : found->reflectance;
-        for (std::size_t c = 0; c < values.size(); ++c) {
-            values[c] = set.values[set.values.size() == 1 ? 0 : c];
-        }
+        apply_set(set, input_, choices_);
         settle();
         while (relighter_->busy()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -694,9 +627,15 @@ private:
              inset_ && choices_.picked && choices_.hemicube ? inset_->seen() : std::vector<std::uint32_t>()});
     }
     void perform(const ScreenshotCommand& command) { screenshot(command.path); }
+    void perform(const LiveCommand&) {}
+    void perform(const WaitCommand&) { wait_for_solution(); }
+    void perform(const CancelCommand&) {
+        choices_.cancel = true;
+        wait_for_solution();
+    }
     void perform(const QuitCommand&) { closing_ = true; }
 
-    const ViewerInput& input_;
+    ViewerInput input_;
     Window window_; // before everything that lives in its context
     PictureRenderer renderer_;
     SceneTarget target_;
@@ -719,6 +658,9 @@ private:
     std::optional<PickedPatch> picked_;
     std::string status_;
     std::string relit_;
+    std::string solving_;
+    double solved_share_ = 0.0;
+    bool lamps_only_; ///< there is no solution yet
     std::vector<Material> asked_materials_;
     std::vector<bool> without_rows_; ///< by material
     std::string title_;
@@ -733,7 +675,8 @@ private:
     bool lost_ = true; ///< what the window holds is not what was drawn last
     bool closing_ = false;
 
-    std::optional<Relighter> relighter_; ///< where there are form factors; the first to go
+    std::optional<Relighter> relighter_; ///< where there are form factors
+    std::optional<LiveSolver> solver_;   ///< while it is at work
 };
 
 } // namespace

@@ -10,18 +10,37 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hemi::viewer {
 
-/// A solved scene to look at, and how to begin.
+/// What is being done, what is counted (plural, or nothing), how much of how much; false stops the work.
+using SolveProgress =
+    std::function<bool(std::string_view title, std::string_view unit, std::size_t done, std::size_t total)>;
+
+/// Form factors and light of a scene; arrays as in ViewerInput.
+struct Solved {
+    std::shared_ptr<const FormFactorMatrix> factors;
+    std::vector<double> radiosity;
+    std::vector<double> row_sum;
+    std::vector<double> environment_share;
+    std::vector<double> blocked;
+};
+
+/// A scene to look at, solved or to be solved, and how to begin.
 struct ViewerInput {
-    std::string file_stem = "hemi";            ///< how the names of screenshots begin
-    std::string title;                         ///< name of the scene, in the window's title
-    const Scene* scene = nullptr;              ///< names, materials, channels; must outlive run_viewer()
-    const PatchMesh* mesh = nullptr;           ///< must outlive run_viewer()
-    const FormFactorMatrix* factors = nullptr; ///< must outlive run_viewer(); null: there are none
+    std::string file_stem = "hemi";  ///< how the names of screenshots begin
+    std::string title;               ///< name of the scene, in the window's title
+    const Scene* scene = nullptr;    ///< names, materials, channels; must outlive run_viewer()
+    const PatchMesh* mesh = nullptr; ///< must outlive run_viewer()
+    std::shared_ptr<const FormFactorMatrix> factors; ///< null: there are none
+    /// Finds what is not here yet, called once on a thread of its own. Until it has, the radiosity is what
+    /// the lamps have by themselves. May throw Cancelled when it was stopped. Empty: all is here.
+    std::function<Solved(const SolveProgress&)> solve;
     std::uint32_t channels = 1;
     std::array<std::uint32_t, 3> show{0, 0, 0}; ///< channels shown as red, green, blue
     std::vector<double> radiosity;              ///< N·channels

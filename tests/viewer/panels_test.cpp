@@ -155,6 +155,30 @@ TEST_CASE("Viewer: light follows a change of materials as a fresh solution has i
     CHECK(place.view("set reflectance 1 white\n", small) == 3);
 }
 
+TEST_CASE("Viewer: while a scene is solved, it is shown by the light of its lamps", "[viewer][gl]") {
+    const Workplace place;
+    const int status =
+        place.view("live\nreport lamps.json\nwindowshot lamps.png\nkey 7\ndrag left 90 90 120 90\n"
+                   "wait\nreport solved.json\nwindowshot solved.png\n",
+                   with_panel);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto lamps = place.json("lamps.json")["radiosity"];
+    const auto solved = place.json("solved.json")["radiosity"];
+    CHECK(lamps[0] == std::vector<double>(3, 0.0));
+    CHECK(lamps[36] == std::vector<double>{20.0, 18.0, 12.0});
+    CHECK(solved[0][0].get<double>() > 1.0);
+}
+
+TEST_CASE("Viewer: solving can be stopped, by hand and by closing the window", "[viewer][gl]") {
+    const Workplace place;
+    const std::string slow = "--size 660x400 --patches-per-face 200 --preset exact";
+    REQUIRE(place.view("live\ncancel\nreport stopped.json\nwindowshot stopped.png\n", slow) == 0);
+    CHECK(place.json("stopped.json")["radiosity"][0] == std::vector<double>(3, 0.0));
+    REQUIRE(place.view("live\nwindowshot open.png\nquit\n", slow) == 0);
+    CHECK(place.read("errors.txt").find("error") == std::string::npos);
+}
+
 TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
     const Workplace place;
     const int status = place.view("windowshot start.png\nclick 150 200\nwindowshot picked.png\n"

@@ -1,0 +1,78 @@
+#include "viewer/keys.hpp"
+
+#include <algorithm>
+
+namespace hemi::viewer {
+
+namespace {
+
+/// One press of E, stops.
+constexpr double exposure_step = 1.0 / 3.0;
+
+void next_quantity(bool back, const ViewerInput& input, Choices& choices) {
+    const auto names = quantity_names();
+    const auto now = std::find_if(names.begin(), names.end(), [&choices](const QuantityName& name) {
+        return name.quantity == choices.look.quantity;
+    });
+    const std::size_t step = back ? names.size() - 1 : 1;
+    std::size_t next = static_cast<std::size_t>(now - names.begin());
+    do {
+        next = (next + step) % names.size();
+    } while (why_not(names[next].quantity, input, choices.picked) != nullptr);
+    choices.look.quantity = names[next].quantity;
+}
+
+void next_heat_map(const ViewerInput& input, Choices& choices) {
+    Quantity& quantity = choices.look.quantity;
+    const Quantity next = quantity == Quantity::row
+                              ? Quantity::column
+                              : (quantity == Quantity::column ? Quantity::picture : Quantity::row);
+    quantity = why_not(next, input, choices.picked) == nullptr ? next : Quantity::picture;
+}
+
+} // namespace
+
+bool apply_camera_key(char key, double aspect, OrbitCamera& orbit) {
+    if (key == 'F') {
+        orbit.frame_all(aspect);
+    } else if (key == 'R') {
+        orbit.reset();
+    } else if (key == '1') {
+        orbit.look_along(OrbitCamera::Axis::front, aspect);
+    } else if (key == '3') {
+        orbit.look_along(OrbitCamera::Axis::right, aspect);
+    } else if (key == '7') {
+        orbit.look_along(OrbitCamera::Axis::top, aspect);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+bool apply_look_key(const KeyEvent& event, const ViewerInput& input, Choices& choices) {
+    Look& look = choices.look;
+    if (event.key == 'S') {
+        look.shading = look.shading == Shading::flat ? Shading::gouraud : Shading::flat;
+    } else if (event.key == 'T') {
+        look.tone_mapping =
+            look.tone_mapping == ToneMapping::filmic ? ToneMapping::linear : ToneMapping::filmic;
+    } else if (event.key == 'E') {
+        look.stops += event.shift ? -exposure_step : exposure_step;
+    } else if (event.key == 'W') {
+        look.outlines = !look.outlines;
+    } else if (event.key == 'L') {
+        bool& logarithmic = look.quantity == Quantity::row || look.quantity == Quantity::column
+                                ? look.logarithmic_factors
+                                : look.logarithmic;
+        logarithmic = !logarithmic;
+    } else if (event.key == 'V') {
+        next_quantity(event.shift, input, choices);
+    } else if (event.key == 'H') {
+        next_heat_map(input, choices);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+} // namespace hemi::viewer

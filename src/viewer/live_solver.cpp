@@ -1,0 +1,90 @@
+#include "viewer/live_solver.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+
+namespace hemi::viewer {
+
+LiveSolver::LiveSolver(std::function<Solved(const SolveProgress&)> solve, std::function<void()> changed)
+    : solve_(std::move(solve)), changed_(std::move(changed)),
+      thread_([this](const std::stop_token& stop) { work(stop); }) {}
+
+LiveSolver::~LiveSolver() = default;
+
+std::string LiveSolver::status(double& share) const {
+    if (thread_.get_stop_token().stop_requested()) {
+        return "stopping";
+    }
+    const std::lock_guard lock(mutex_);
+    const Progress& now = progress_;
+    share = now.total > 0 ? static_cast<double>(now.done) / static_cast<double>(now.total) : 0.0;
+    std::string text = now.title.empty() ? "starting" : now.title;
+    if (!now.unit.empty() && now.seconds > 0.5) {
+        text += fmt::format(", {:.0f} {}/s", static_cast<double>(now.done) / now.seconds, now.unit);
+    }
+    return text;
+}
+
+void LiveSolver::cancel() {
+    thread_.request_stop();
+}
+
+bool LiveSolver::finished() const {
+    const std::lock_guard lock(mutex_);
+    return finished_;
+}
+
+std::optional<Solved> LiveSolver::take() {
+    const std::lock_guard lock(mutex_);
+    if (problem_) {
+        std::rethrow_exception(std::exchange(problem_, nullptr));
+    }
+    return std::exchange(result_, std::nullopt);
+}
+
+void LiveSolver::work(const std::stop_token& stop) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds interval{100};
+    Clock::time_point began;
+    Clock::time_point told;
+    const SolveProgress progress = [&](std::string_view title, std::string_view unit, std::size_t done,
+                                       std::size_t total) {
+        const Clock::time_point now = Clock::now();
+        bool tell = now - told >= interval;
+        {
+            const std::lock_guard lock(mutex_);
+            if (progress_.title != title) {
+                began = now;
+                tell = true;
+            }
+            progress_ = {std::string(title), std::string(unit), done, total,
+                         std::chrono::duration<double>(now - began).count()};
+        }
+        if (tell) {
+            told = now;
+            changed_();
+        }
+        return !stop.stop_requested();
+    };
+    std::optional<Solved> solved;
+    std::exception_ptr problem;
+    try {
+        solved = solve_(progress);
+    } catch (const Cancelled&) { // as was asked for
+    } catch (...) {
+        problem = std::current_exception();
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        result_ = std::move(solved);
+        problem_ = problem;
+        finished_ = true;
+    }
+    changed_();
+}
+
+} // namespace hemi::viewer
