@@ -21,14 +21,14 @@ const std::string view3d_cube = "T A simple cube\nC encl=1 list=3\nF 3\n"
 TEST_CASE("View3D input: the manual's cube gives the manual's factors", "[cli]") {
     const Directory directory;
     const std::string path = directory.write("cube.vs3", view3d_cube);
-    const Outcome run =
-        run_hemi(quick({"factors", path, "--by-group", "--json", "--patches-per-face", "64"}));
+    const Outcome run = run_hemi(
+        quick({"factors", path, "--by-group", "--json", "--patches-per-face", "64", "--preset", "default"}));
     INFO(run.err);
     REQUIRE(run.status == 0);
     const Json json = run.json();
     CHECK(json["groups"] == Json({"zeq0", "xeq0", "yeq0", "zeq1", "xeq1", "yeq1"}));
-    CHECK(json["factors"][0][3].get<double>() == Approx(0.199825).margin(1e-4));
-    CHECK(json["factors"][0][1].get<double>() == Approx(0.200044).margin(1e-4));
+    CHECK(json["factors"][0][3].get<double>() == Approx(0.199825).margin(1e-6));
+    CHECK(json["factors"][0][1].get<double>() == Approx(0.200044).margin(1e-6));
     CHECK(run_hemi({"info", path, "--json"}).json()["enclosure"] == "closed");
 }
 

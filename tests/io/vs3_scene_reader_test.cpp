@@ -32,7 +32,8 @@ Scene read(const Folder& folder, const std::string& text, Diagnostics* diagnosti
 
 } // namespace
 
-TEST_CASE("View3D reader: surfaces keep order, name and orientation; reflectance is 1 - emissivity", "[io]") {
+TEST_CASE("View3D reader: surfaces keep order, name and orientation, and reflectance is 1 - emissivity",
+          "[io]") {
     const Folder folder;
     const Scene scene = read(folder, obstructed);
     REQUIRE(scene.name == "Two squares with an obstruction");
