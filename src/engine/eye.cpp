@@ -1,6 +1,7 @@
 #include "engine/eye.hpp"
 
 #include "core/gauss_rule.hpp"
+#include "core/splitmix.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
 #include "hemi/scene/near_surface.hpp"
@@ -16,13 +17,6 @@
 namespace hemi {
 
 namespace {
-
-std::uint64_t splitmix(std::uint64_t value) {
-    value += 0x9E3779B97F4A7C15u;
-    value = (value ^ (value >> 30)) * 0xBF58476D1CE4E5B9u;
-    value = (value ^ (value >> 27)) * 0x94D049BB133111EBu;
-    return value ^ (value >> 31);
-}
 
 constexpr std::uint32_t most_eyes_a_side = 8;
 
