@@ -190,7 +190,10 @@ RowView NaiveRows::take_row() {
             sums_[item] = 0;
         }
     }
-    RowView row{columns_, values_, sums_[item_nothing] * unit, sums_[item_blocked] * unit};
+    const RowView row{.columns = columns_,
+                      .values = values_,
+                      .environment = sums_[item_nothing] * unit,
+                      .blocked = sums_[item_blocked] * unit};
     sums_[item_nothing] = sums_[item_blocked] = 0;
     return row;
 }
