@@ -1,5 +1,6 @@
 #include "benchmark/measurements.hpp"
 
+#include "benchmark/embree_rows.hpp"
 #include "benchmark/naive_rows.hpp"
 #include "benchmark/program.hpp"
 #include "hemi/core/error.hpp"
@@ -80,12 +81,19 @@ void Measurements::compare_rows(const Case& scene) {
     const HemicubeSettings compared = settings(usual_resolution);
     const auto ours = engine(scene, compared, 0);
     NaiveRows naive(scene.mesh, compared, setup_.device);
-    const double difference = row_difference(naive, *ours, spread_rows(scene.mesh.size(), compared_rows, 1));
-    report_.scene(scene.name, scene.mesh.size(), scene.mesh.surfaces().size(), difference);
-    if (difference > most_difference) {
-        throw Error(fmt::format("{}: naive and engine rows differ by {:.1e} of a row, more than {:g}: they "
-                                "do not do the same work, so their times cannot be compared",
-                                scene.name, difference, most_difference));
+    EmbreeRows embree(scene.mesh, compared, EmbreeRows::Rays::texels);
+    const auto rows = spread_rows(scene.mesh.size(), compared_rows, 1);
+    const double naive_difference = row_difference(naive, *ours, rows);
+    const double embree_difference = row_difference(embree, *ours, rows);
+    report_.scene(scene.name, scene.mesh.size(), scene.mesh.surfaces().size(), naive_difference,
+                  embree_difference);
+    for (const double difference : {naive_difference, embree_difference}) {
+        if (difference > most_difference) {
+            throw Error(
+                fmt::format("{}: rows differ by {:.1e} of a row from the engine's, more than {:g}: they "
+                            "are not the same work, so their times cannot be compared",
+                            scene.name, difference, most_difference));
+        }
     }
 }
 
@@ -94,10 +102,16 @@ Cell Measurements::cell(const Case& scene, std::uint32_t resolution) const {
     const auto single = engine(scene, timed, 0);
     NaiveRows naive(scene.mesh, timed, setup_.device);
     const auto rows = rows_for(*single, few_blocks);
-    const std::uint32_t naive_rows = rows_within(naive, setup_.effort.seconds);
-
-    std::vector<Subject> subjects{subject(*single, rows),
-                                  subject(naive, spread_rows(naive.size(), naive_rows, 1))};
+    EmbreeRows embree(scene.mesh, timed, EmbreeRows::Rays::texels);
+    EmbreeRows monte_carlo(scene.mesh, timed, EmbreeRows::Rays::monte_carlo);
+    std::vector<Subject> subjects{subject(*single, rows)};
+    const auto add_slow = [&](RowProvider& provider) {
+        subjects.push_back(
+            subject(provider, spread_rows(provider.size(), rows_within(provider, setup_.effort.seconds), 1)));
+    };
+    add_slow(naive);
+    add_slow(embree);
+    add_slow(monte_carlo);
     std::vector<std::unique_ptr<RowProvider>> pools;
     if (setup_.workers > 0) {
         for (const std::uint32_t workers : {1u, setup_.workers}) {
@@ -108,12 +122,14 @@ Cell Measurements::cell(const Case& scene, std::uint32_t resolution) const {
     }
     const auto series = time_interleaved(subjects, setup_.effort.rounds);
 
-    Cell result{scene.name, scene.mesh.size(), resolution, per_second(series[0]), {}, {}, 0.0, 0.0};
+    Cell result{scene.name, scene.mesh.size(), resolution, per_second(series[0]), {}, {}, 0.0, 0.0, 0.0, 0.0};
     result.naive = per_second(series[1]);
     result.ratio = median_ratio(series[1], series[0]);
+    result.embree = per_second(series[2]);
+    result.monte_carlo = per_second(series[3]);
     if (setup_.workers > 0) {
-        result.one_worker = per_second(series[2]);
-        result.all_workers = per_second(series[3]);
+        result.one_worker = per_second(series[4]);
+        result.all_workers = per_second(series[5]);
     }
     return result;
 }
