@@ -1,16 +1,14 @@
 #include "benchmark/embree_rows.hpp"
 
 #include "benchmark/naive_rows.hpp"
-#include "engine/sobol.hpp"
+#include "engine/patch_rays.hpp"
 #include "hemi/core/error.hpp"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -180,33 +178,14 @@ void EmbreeRows::trace_texels(std::uint32_t patch) {
 }
 
 void EmbreeRows::trace_random(std::uint32_t patch) {
-    constexpr double unit = 1.0 / 4294967296.0;
-    const EyeFrame frame(mesh_.normal(patch), patch, 0, settings_.seed);
-    const PatchCorners corners = mesh_.corners(patch);
-    const Vec3& a = corners.points[0];
+    const PatchRays sequence(mesh_, patch, settings_.seed);
     RTCRayHit16 rays;
     std::array<Vec3, packet> directions;
-    // Another part of the sequence for every patch.
-    const auto count = static_cast<std::uint32_t>(items_.size());
-    std::uint32_t index = patch * count;
-    for (std::uint32_t traced = 0; traced < count; traced += packet) {
+    for (std::uint32_t index = 0; index < items_.size();) {
         for (std::uint32_t k = 0; k < packet; ++k) {
-            const auto sample = sobol_point(index++);
-            double u = sample[0] * unit;
-            double v = sample[1] * unit;
-            if (corners.count == 3 && u + v > 1.0) {
-                u = 1.0 - u;
-                v = 1.0 - v;
-            }
-            const Vec3 origin = corners.count == 3
-                                    ? a + u * (corners.points[1] - a) + v * (corners.points[2] - a)
-                                    : (1.0 - v) * ((1.0 - u) * a + u * corners.points[1]) +
-                                          v * ((1.0 - u) * corners.points[3] + u * corners.points[2]);
-            const double radius = std::sqrt(sample[2] * unit);
-            const double angle = 2.0 * std::numbers::pi * sample[3] * unit;
-            directions[k] = radius * std::cos(angle) * frame.x + radius * std::sin(angle) * frame.y +
-                            std::sqrt(std::max(0.0, 1.0 - radius * radius)) * frame.z;
-            set_ray(rays, static_cast<int>(k), origin, directions[k], near_);
+            const PatchRays::Ray ray = sequence[index++];
+            directions[k] = ray.direction;
+            set_ray(rays, static_cast<int>(k), ray.origin, ray.direction, near_);
         }
         scene_->trace(rays, false);
         for (std::uint32_t k = 0; k < packet; ++k) {
