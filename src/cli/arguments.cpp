@@ -187,6 +187,10 @@ void add_rows(CLI::App& app, RowOptions& rows) {
                                                             text, *rows.resolution + 1));
                       }
                   });
+    options.value(
+        "--shadow-rays", "N",
+        "rays between patches that partly see each other, 0 to 4096 (as the preset says)",
+        [&rows](const std::string& text) { rows.shadow_rays = to_index("--shadow-rays", text, 0, 4096); });
     add_drawing(app, rows);
 }
 
@@ -208,8 +212,8 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
     auto* target = options.value(
         "--error-target", "T", "find the cheapest settings by which the estimated error is T at most",
         [&rows](const std::string& text) { rows.error_target = parse_positive("--error-target", text); });
-    for (const char* name :
-         {"--preset", "--method", "--eye-points", "--resolution", "--rays", "--no-estimate"}) {
+    for (const char* name : {"--preset", "--method", "--eye-points", "--resolution", "--shadow-rays",
+                             "--rays", "--no-estimate"}) {
         target->excludes(app.get_option(name));
     }
 }
@@ -566,6 +570,7 @@ void check_method(const RowOptions& rows, const std::vector<std::string>& given)
         {"--seed", {"hemicube", "montecarlo", "hemisphere"}},
         {"--preset", {"hemicube"}},
         {"--eye-points", {"hemicube"}},
+        {"--shadow-rays", {"hemicube"}},
         {"--no-merge", {"hemicube"}},
         {"--jobs", {"hemicube"}},
         {"--error-target", {"hemicube"}},
@@ -577,6 +582,10 @@ void check_method(const RowOptions& rows, const std::vector<std::string>& given)
             throw InvalidArgument(fmt::format("{} does not apply to --method {}; it belongs to {}", option,
                                               rows.method, fmt::join(found->second, ", ")));
         }
+    }
+    if (rows.shadow_rays && rows.preset == "plain") {
+        throw InvalidArgument("--shadow-rays does not apply to --preset plain, which knows no visibility; it "
+                              "belongs to fast, default, exact");
     }
 }
 

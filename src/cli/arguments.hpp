@@ -45,6 +45,7 @@ struct RowOptions {
     std::optional<std::uint32_t> rays; ///< of montecarlo
     std::optional<std::uint32_t> eye_points;
     std::optional<std::uint32_t> resolution;
+    std::optional<std::uint32_t> shadow_rays; ///< of a hybrid, a partly hidden pair
     std::optional<std::uint64_t> seed;
     bool merge = true;
     std::uint32_t jobs = 0;                  ///< 0: one per core

@@ -68,6 +68,8 @@ TEST_CASE("Command line: options that do not apply are refused", "[cli]") {
     refuses({"solve", "x.json", "--patch-size", "1", "--patches-per-face", "4"}, "--patch");
     refuses({"factors", "x.json", "--row", "1", "--by-group"}, "--by-group");
     refuses({"view", "x.json", "--json"}, "--json");
+    refuses({"solve", "x.json", "--preset", "plain", "--shadow-rays", "4"}, "--preset plain");
+    refuses({"factors", "x.json", "--method", "direct", "--shadow-rays", "4"}, "--method direct");
     refuses({"devices", "more"}, "unexpected argument 'more'");
 }
 

@@ -25,6 +25,7 @@ struct FactorFile {
     std::string method = "hemicube";
     std::uint32_t resolution = 0;
     std::uint32_t eye_points = 1;
+    std::uint32_t shadow_rays = 0; ///< for each pair that is partly hidden
     std::uint64_t seed = 0;
     std::string renderer;           ///< what computed the rows
     std::string enclosure = "auto"; ///< auto, closed or open, as the scene said
