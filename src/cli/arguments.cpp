@@ -290,6 +290,15 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
                 static_cast<ToneMapping>(parse_choice("--tone-mapping", text, Words{"filmic", "linear"}));
             picture.tone_mapping_given = true;
         }));
+    options.flag("--orthographic", picture.orthographic, "parallel rays, at the scale of the target's depth");
+    options.flag("--outlines", picture.outlines, "outlines of patches");
+    options.flag("--backs", picture.backs, "show the backs of one-sided surfaces, striped");
+    for (const char* name : {"--orthographic", "--outlines", "--backs"}) {
+        added.push_back(app.get_option(name));
+    }
+    added.push_back(options.value(
+        "--samples", "N", "supersamples along each edge of a pixel, 1 to 8 (4)",
+        [&picture](const std::string& text) { picture.samples = to_index("--samples", text, 1, 8); }));
     for (CLI::Option* option : added) {
         if (output != nullptr) {
             option->needs(output);
@@ -424,9 +433,15 @@ void add_view(CLI::App& app, ViewArguments& a) {
     add_solver(app, a.solver);
     a.picture.size = {1280, 720};
     add_picture(app, a.picture, nullptr);
-    Options(app, "Window")
-        .value("--script", "FILE", "keys, drags and screenshots from a file, for tests",
-               [&a](const std::string& text) { a.script = text; });
+    Options window(app, "Window");
+    window.value("--controls", "NAME", "standard (the default) or blender: what the mouse does",
+                 [&a](const std::string& text) {
+                     a.controls = static_cast<viewer::Controls>(
+                         parse_choice("--controls", text, Words{"standard", "blender"}));
+                 });
+    window.value("--script", "FILE",
+                 "drags, keys, screenshots and more from a file, for demonstrations and tests",
+                 [&a](const std::string& text) { a.script = text; });
     add_common(app, a.common, false);
     app.footer("Examples:\n"
                "  hemi view scenes/cornell-box.json\n"
@@ -600,7 +615,11 @@ void add_command(CLI::App& app, const std::string& name, const std::string& help
     command->final_callback([command, values, &chosen] {
         for (const CLI::Option* option : command->get_options()) {
             if (option->count() > 0 && !option->get_lnames().empty()) {
-                values->common.given.push_back("--" + option->get_lnames().front());
+                const std::string& spelling =
+                    values->common.given.emplace_back("--" + option->get_lnames().front());
+                const bool flag = option->get_expected_max() == 0;
+                values->common.words.emplace_back(spelling,
+                                                  flag ? std::vector<std::string>() : option->results());
             }
         }
         if constexpr (requires { values->rows.method; }) {

@@ -7,12 +7,14 @@
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 #include "hemi/solver/solver.hpp"
+#include "viewer/viewer.hpp"
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -26,6 +28,8 @@ struct CommonOptions {
     ColourChoice colour = ColourChoice::automatic;
     bool json = false;
     std::vector<std::string> given; ///< names of all options on the command line, "--resolution"
+    /// The same with their values, none for flags.
+    std::vector<std::pair<std::string, std::vector<std::string>>> words;
 };
 
 struct SceneOptions {
@@ -63,6 +67,10 @@ struct PictureOptions {
     ToneMapping tone_mapping = ToneMapping::filmic;
     bool tone_mapping_given = false;
     bool flat = false;
+    bool outlines = false;
+    bool backs = false;
+    bool orthographic = false;
+    std::uint32_t samples = 4;
     std::vector<std::string> show; ///< channel names; empty: all of one or three channels
     std::optional<CameraOption> camera;
 };
@@ -117,7 +125,8 @@ struct ViewArguments {
     RowOptions rows;
     SolverSettings solver;
     PictureOptions picture; ///< to start with; its output is not used
-    std::string script;     ///< file that drives the window in a test; empty: a person does
+    std::string script;     ///< file that drives the window; empty: a person does
+    viewer::Controls controls = viewer::Controls::standard;
 };
 
 struct BakeArguments {

@@ -58,7 +58,7 @@ Grid read_grid(const JsonNode& node) {
 }
 
 Camera read_camera(const JsonNode& node) {
-    node.check_keys({"eye", "target", "up", "fov"});
+    node.check_keys({"eye", "target", "up", "fov", "orthographic"});
     Camera camera;
     camera.eye = node.member("eye").point();
     camera.target = node.member("target").point();
@@ -72,6 +72,7 @@ Camera read_camera(const JsonNode& node) {
             fov.fail(fmt::format("{}; must be between 0 and 180 degrees", camera.fov));
         }
     }
+    camera.orthographic = node.has("orthographic") && node.member("orthographic").boolean();
     const Vec3 view = camera.target - camera.eye;
     if (!(glm::length(view) > 0.0)) {
         node.fail("eye and target are the same point");

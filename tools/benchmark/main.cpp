@@ -1,5 +1,6 @@
 // Times hemicube rows against the naive design. Run by tools/bench.
 
+#include "benchmark/frames.hpp"
 #include "benchmark/measurements.hpp"
 #include "benchmark/program.hpp"
 #include "gl/context.hpp"
@@ -42,7 +43,7 @@ void print_table(Measurements& measurements, const Report& report, const Case& o
     measurements.table(city);
 }
 
-void print_findings(Measurements& measurements, const Report& report, const Case& office, const Case& city,
+void print_findings(Measurements& measurements, Report& report, const Case& office, const Case& city,
                     const Options& options) {
     report.findings_head();
     measurements.naive_target(10000, 20.0);
@@ -53,6 +54,7 @@ void print_findings(Measurements& measurements, const Report& report, const Case
     measurements.solve_target(this_program().parent_path() / "hemi",
                               std::filesystem::path(options.scenes) / "cornell-box.json",
                               options.quick ? 3 : 5, 3.0);
+    frame_target(this_program(), options.device, report);
 }
 
 Setup make_setup(const Options& options, unsigned workers) {
@@ -98,6 +100,9 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == worker_argument) {
         return run_hemicube_worker();
+    }
+    if (argc == 3 && std::string_view(argv[1]) == frames_argument) {
+        return run_frames(argv[2]);
     }
     // One thread a context, naive or not; read when the first context is made.
     setenv("LP_NUM_THREADS", "0", 1);
