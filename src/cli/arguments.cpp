@@ -102,6 +102,8 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
                })
         ->excludes(size);
     options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
+    options.flag("--allow-outside", scene.allow_outside,
+                 "open files outside the scene's folder that the scene names");
     app.add_option("--two-sided", scene.two_sided,
                    "faces of GROUP radiate on both sides (not for .json); repeatable")
         ->allow_extra_args(false)
