@@ -64,15 +64,10 @@ void convert_result(const ConvertArguments& arguments) {
     }
 }
 
-} // namespace
-
-ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
-    Outputs outputs;
-    outputs.add("OUT", arguments.output, {".hff", ".mtx", ".csv", ".npz", ".txt", ".vf", ".vtp"}, true);
-    if (outputs.uses_standard_output() && arguments.common.json) {
-        throw InvalidArgument("--json and an output to - cannot both go to standard output");
-    }
-    const bool from_result = extension_of(arguments.input) == ".hres";
+/// Whether IN and OUT go together.
+void check_formats(const ConvertArguments& arguments) {
+    const std::string input = extension_of(arguments.input);
+    const bool from_result = input == ".hres";
     if (from_result != (extension_of(arguments.output) == ".vtp")) {
         throw InvalidArgument(
             from_result
@@ -82,54 +77,70 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
                               arguments.output.string(), arguments.input.string()));
     }
     if (from_result) {
-        convert_result(arguments);
-        return ExitStatus::ok;
+        return;
     }
     if (arguments.factors) {
         throw InvalidArgument("--factors and --row are for a .hres that becomes a .vtp");
     }
-    const bool from_hff = extension_of(arguments.input) == ".hff";
-    const bool to_hff = extension_of(arguments.output) == ".hff";
-    if (to_hff && !from_hff && is_bare_factor_file(arguments.input)) {
+    const FactorFormat& format = factor_format(arguments.output);
+    if (!format.needs.empty() && is_bare_factor_file(arguments.input)) {
         throw InvalidArgument(
-            fmt::format("{}: a .hff holds areas, names, row balance and the geometry's hash, which "
-                        "{} does not have; `hemi factors SCENE -o FILE.hff` makes one",
-                        arguments.output.string(), arguments.input.string()));
+            fmt::format("{}: a {} holds {}, which {} does not have; `hemi factors SCENE -o FILE{}` "
+                        "makes one",
+                        arguments.output.string(), format.extension, format.needs, arguments.input.string(),
+                        format.extension));
     }
-    const bool to_view3d = is_view3d_factor_file(arguments.output);
-    if (to_view3d && !from_hff && is_bare_factor_file(arguments.input)) {
-        throw InvalidArgument(
-            fmt::format("{}: View3D's files hold areas, which {} does not have; a .hff does",
-                        arguments.output.string(), arguments.input.string()));
-    }
-    if (arguments.repair && (to_hff || !from_hff)) {
+    const bool to_hff = format.extension == ".hff";
+    if (arguments.repair && (to_hff || input != ".hff")) {
         throw InvalidArgument(to_hff ? "--repair: a .hff holds the rows before the repair, which is redone "
                                        "when it is read"
                                      : "--repair needs areas and row balance, which only a .hff has");
     }
-    io::FactorFile file = read_input(arguments.input);
-    Repair repaired = Repair::none;
-    if (from_hff && !to_hff) {
-        settle_contacts(file);
-        repaired = repair_rows(file, arguments.repair).report.repair;
-    }
-    write_factors(arguments.output, file);
+}
+
+/// What `file`, from a .hff, is in the other format, and what is left behind.
+void tell_losses(const ConvertArguments& arguments, const FactorFormat& format, Repair repaired,
+                 const Terminal& terminal) {
     if (repaired != Repair::none) {
         terminal.note(fmt::format("written are the rows after the repair ({})", repair_name(repaired)));
     }
-    if (from_hff && !to_hff) {
-        terminal.note(
-            fmt::format("not in {}: {}group names, row balance (environment, blocked), settings and the "
-                        "geometry's hash",
-                        is_standard_output(arguments.output) ? "a .csv" : arguments.output.string(),
-                        to_view3d ? "" : "areas, "));
-        if (to_view3d) {
-            terminal.note("emissivities are not in a .hff and are written as 0.999; `hemi factors SCENE -o "
-                          "FILE` writes the scene's");
-        }
-        if (!file.factors.all_known()) {
-            terminal.warn("rows that were not computed become empty rows");
-        }
+    terminal.note(fmt::format("not in {}: {}",
+                              is_standard_output(arguments.output) ? "a .csv" : arguments.output.string(),
+                              format.lost));
+    if (format.extension == ".txt" || format.extension == ".vf") {
+        terminal.note("emissivities are not in a .hff and are written as 0.999; `hemi factors SCENE -o "
+                      "FILE` writes the scene's");
+    }
+}
+
+} // namespace
+
+ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
+    Outputs outputs;
+    std::vector<std::string_view> extensions = factor_extensions();
+    extensions.push_back(".vtp");
+    outputs.add("OUT", arguments.output, extensions, true);
+    if (outputs.uses_standard_output() && arguments.common.json) {
+        throw InvalidArgument("--json and an output to - cannot both go to standard output");
+    }
+    check_formats(arguments);
+    if (extension_of(arguments.input) == ".hres") {
+        convert_result(arguments);
+        return ExitStatus::ok;
+    }
+    const FactorFormat& format = factor_format(arguments.output);
+    io::FactorFile file = read_input(arguments.input);
+    const bool changes = extension_of(arguments.input) == ".hff" && format.extension != ".hff";
+    Repair repaired = Repair::none;
+    if (changes) {
+        settle_contacts(file);
+        repaired = repair_rows(file, arguments.repair).report.repair;
+    }
+    Diagnostics diagnostics;
+    write_factors(arguments.output, file, {{}, repaired}, diagnostics);
+    terminal.warn(diagnostics);
+    if (changes) {
+        tell_losses(arguments, format, repaired, terminal);
     }
     if (arguments.common.json) {
         print_json({{"schema", "hemi/convert/1"},

@@ -22,8 +22,8 @@ bool is_standard_output(const fs::path& path) {
     return path == "-";
 }
 
-void Outputs::add(std::string_view option, const fs::path& path,
-                  std::initializer_list<std::string_view> extensions, bool allow_standard_output) {
+void Outputs::add(std::string_view option, const fs::path& path, std::span<const std::string_view> extensions,
+                  bool allow_standard_output) {
     if (is_standard_output(path)) {
         if (!allow_standard_output) {
             throw InvalidArgument(fmt::format("{} -: this cannot be written to standard output", option));

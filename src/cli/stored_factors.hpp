@@ -1,21 +1,43 @@
 #pragma once
 
+#include "hemi/core/diagnostics.hpp"
 #include "hemi/io/factor_file.hpp"
+#include "hemi/matrix/repair.hpp"
 
 #include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 /// Form factors in files, by extension.
 namespace hemi::cli {
 
-/// Writes `.hff`, `.mtx`, `.csv`, `.npz`, or View3D's `.txt` (text) and `.vf` (binary); "-" is `.csv` on
-/// standard output.
-/// @param emissivity  of every patch, for View3D's formats; empty where it is not known
-void write_factors(const std::filesystem::path& path, const io::FactorFile& file,
-                   std::span<const double> emissivity = {});
+/// What write_factors knows beside the rows.
+struct FactorContext {
+    std::span<const double> emissivity = {}; ///< of every patch; empty where it is not known
+    Repair repair = Repair::none;            ///< what was done to the rows
+};
 
-/// Whether the extension is one of View3D's factor files.
-[[nodiscard]] bool is_view3d_factor_file(const std::filesystem::path& path);
+/// A format that holds form factors without the patches' geometry.
+struct FactorFormat {
+    std::string_view extension;
+    /// What of a .hff it needs that other files do not have; empty: nothing but F.
+    std::string_view needs;
+    /// What of a .hff it does not hold.
+    std::string_view lost;
+    void (*write)(const std::filesystem::path&, const io::FactorFile&, const FactorContext&, Diagnostics&);
+};
+
+/// Extensions of all formats that write_factors writes.
+[[nodiscard]] std::vector<std::string_view> factor_extensions();
+
+/// The format of a path with one of these extensions; "-" is `.csv` on standard output.
+[[nodiscard]] const FactorFormat& factor_format(const std::filesystem::path& path);
+
+/// Writes form factors in the format of the path.
+void write_factors(const std::filesystem::path& path, const io::FactorFile& file,
+                   const FactorContext& context, Diagnostics& diagnostics);
 
 /// Reads `.mtx`, `.csv` or `.npz`: F and nothing else.
 /// @throws InvalidArgument for another extension; InputError.

@@ -50,7 +50,7 @@ public:
         faces_.add(corners_, group_, material_, {lines_.line(), 0});
     }
 
-    void reserve(std::uint64_t faces) { faces_.reserve(faces, faces); }
+    void reserve(std::uint64_t faces, std::uint64_t most) { faces_.reserve(faces, most); }
 
     FaceMesh finish(Diagnostics& diagnostics) {
         FaceMesh mesh = faces_.finish("f lines", diagnostics);
@@ -106,7 +106,7 @@ FaceMesh read_obj_mesh(const std::filesystem::path& path, bool skip_degenerate, 
     const std::string text = read_file(path);
     ObjLines lines(path.string(), text, diagnostics);
     MeshBuilder mesh(path, lines, skip_degenerate);
-    mesh.reserve(count_faces(text));
+    mesh.reserve(count_faces(text), text.size() / 8); // f 1 2 3
     std::istream stream(&lines);
     stream.exceptions(std::ios::badbit); // lets errors of ObjLines through as they are
     tinyobj::LoadObjWithCallback(stream, callbacks(), &mesh);

@@ -268,7 +268,7 @@ private:
             if (element.name == "vertex") {
                 vertices_.reserve(element.count);
             } else if (element.name == "face") {
-                faces_.reserve(element.count, element.count);
+                faces_.reserve(element.count, bytes_.size() / 8); // 3 0 1 2
                 group_ = faces_.group("default");
                 material_ = faces_.material("", 0);
             }

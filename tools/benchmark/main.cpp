@@ -1,5 +1,6 @@
 // Times hemicube rows against the naive design. Run by tools/bench.
 
+#include "benchmark/files.hpp"
 #include "benchmark/measurements.hpp"
 #include "benchmark/program.hpp"
 #include "gl/context.hpp"
@@ -24,6 +25,7 @@ struct Options {
     std::string scenes = "scenes";
     std::string json;
     bool quick = false;
+    bool files = false;
 };
 
 void declare(CLI::App& app, Options& options) {
@@ -31,6 +33,7 @@ void declare(CLI::App& app, Options& options) {
     app.add_option("--scenes", options.scenes, "folder of the scene files (default scenes)");
     app.add_option("--json", options.json, "write the figures to this file too");
     app.add_flag("--quick", options.quick, "no table, small samples");
+    app.add_flag("--files", options.files, "only writers and readers of files");
 }
 
 void print_table(Measurements& measurements, const Report& report, const Case& office, const Case& city) {
@@ -42,9 +45,8 @@ void print_table(Measurements& measurements, const Report& report, const Case& o
     measurements.table(city);
 }
 
-void print_findings(Measurements& measurements, const Report& report, const Case& office, const Case& city,
+void print_findings(Measurements& measurements, const Case& office, const Case& city,
                     const Options& options) {
-    report.findings_head();
     measurements.naive_target(10000, 20.0);
     measurements.growth_target(2000, 50000, 1.5);
     measurements.workers_target(10000, 1.8);
@@ -86,10 +88,14 @@ void run(const Options& options) {
     };
     write_json(); // a file that cannot be written is told now, not after minutes
     Measurements measurements(setup, report);
-    if (!options.quick) {
+    if (!options.quick && !options.files) {
         print_table(measurements, report, office, city);
     }
-    print_findings(measurements, report, office, city, options);
+    report.findings_head();
+    if (!options.files) {
+        print_findings(measurements, office, city, options);
+    }
+    measure_files(report, setup.effort.rounds);
     write_json();
 }
 
