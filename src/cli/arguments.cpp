@@ -455,11 +455,12 @@ void add_bake(CLI::App& app, BakeArguments& a) {
 }
 
 void add_convert(CLI::App& app, ConvertArguments& a) {
-    add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz; or a solution: .hres");
+    add_positional(
+        app, "IN", a.input,
+        "form factors: .hff .mtx .csv .npz, View3D's .txt .vf, Elmer's .dat .bin; a solution: .hres");
     add_positional(app, "OUT", a.output,
-                   "form factors: .mtx .csv .npz .h5, Elmer's .dat .bin; from .hff also .hff, View3D's .txt "
-                   ".vf, EnergyPlus' "
-                   ".idf; - for .csv on stdout; from .hres: .vtp");
+                   "form factors: .mtx .csv .npz .h5 .dat .bin; from .hff also .hff .txt .vf and EnergyPlus' "
+                   ".idf; - for .csv on stdout; from .hres: .vtp, or .csv with the radiosity of every patch");
     add_repair(app, a.repair);
     Options paraview(app, "ParaView");
     auto* factors =

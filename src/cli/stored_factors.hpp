@@ -5,6 +5,7 @@
 #include "hemi/matrix/repair.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,11 +20,14 @@ struct FactorContext {
     Repair repair = Repair::none;            ///< what was done to the rows
 };
 
+/// What a file knows: of each, all of those before.
+enum class FactorContent { factors, areas, all };
+
 /// A format that holds form factors without the patches' geometry.
 struct FactorFormat {
     std::string_view extension;
-    /// What of a .hff it needs that other files do not have; empty: nothing but F.
-    std::string_view needs;
+    FactorContent needs;    ///< what it cannot be written without
+    std::string_view holds; ///< what that is, for messages
     /// What of a .hff it does not hold.
     std::string_view lost;
     void (*write)(const std::filesystem::path&, const io::FactorFile&, const FactorContext&, Diagnostics&);
@@ -39,11 +43,15 @@ struct FactorFormat {
 void write_factors(const std::filesystem::path& path, const io::FactorFile& file,
                    const FactorContext& context, Diagnostics& diagnostics);
 
-/// Reads `.mtx`, `.csv` or `.npz`: F and nothing else.
-/// @throws InvalidArgument for another extension; InputError.
-[[nodiscard]] FormFactorMatrix read_bare_factors(const std::filesystem::path& path);
+/// Reads a file of form factors by its extension.
+/// @throws InvalidArgument for an extension that is not read; InputError.
+[[nodiscard]] io::FactorFile read_factors(const std::filesystem::path& path);
 
-/// Whether the extension is one of those that read_bare_factors reads.
-[[nodiscard]] bool is_bare_factor_file(const std::filesystem::path& path);
+/// What a file of that extension knows, if it is read: all of it a `.hff`, areas View3D's, F alone the
+/// others.
+[[nodiscard]] std::optional<FactorContent> factor_content(const std::filesystem::path& path);
+
+/// Whether it is a file that read_factors reads, but no `.hff`.
+[[nodiscard]] bool is_foreign_factor_file(const std::filesystem::path& path);
 
 } // namespace hemi::cli

@@ -34,9 +34,8 @@ public:
     std::uint32_t material(const std::string& name, std::size_t line);
 
     /// Adds a face. Corners that are repeated in a row count once.
-    /// @throws ParseError or InputError for a face that is not planar, not convex or without area; those
-    /// without
-    ///   area are left out instead where degenerate faces are to be skipped.
+    /// @throws ParseError or InputError for a face that is not planar, not convex or without area; where
+    ///   degenerate faces are to be skipped, those without area are left out instead.
     void add(std::span<const Vec3> corners, std::uint32_t group, std::uint32_t material, FacePlace place);
 
     /// Faces added so far, those left out included.

@@ -111,7 +111,7 @@ private:
              "patch j; "
              "sum_j F(i, j) + environment(i) + blocked(i) = 1");
         text(at, "repair", repair_);
-        if (file_.areas.empty()) {
+        if (file_.group_of.empty()) {
             return; // rows from a file that knew no more
         }
         text(at, "preset", file_.preset);
@@ -148,13 +148,11 @@ private:
     }
 
     void write_groups(hid_t at) {
-        if (file_.areas.empty()) {
+        if (file_.group_of.empty()) {
             return;
         }
         const Handle group = make_group(at, "groups");
-        const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-        check(H5Tset_size(check(type.id()), H5T_VARIABLE));
-        check(H5Tset_cset(type.id(), H5T_CSET_UTF8));
+        const Handle type = string_type();
         std::vector<const char*> names;
         for (const std::string& name : file_.groups) {
             names.push_back(name.c_str());
@@ -188,6 +186,9 @@ private:
             known.push_back(factors.known(i) ? 1 : 0);
         }
         column<double>(group.id(), "area", H5T_IEEE_F64LE, "scene unit^2", file_.areas);
+        if (file_.group_of.empty()) {
+            return;
+        }
         column<std::uint32_t>(group.id(), "group", H5T_STD_U32LE, "", file_.group_of);
         column<double>(group.id(), "row_sum", H5T_IEEE_F64LE, "1", sums);
         column<double>(group.id(), "environment", H5T_IEEE_F64LE, "1", environment);
@@ -271,13 +272,20 @@ private:
     }
 
     void text(hid_t at, const char* name, const std::string& value) const {
-        const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-        check(H5Tset_size(check(type.id()), std::max<std::size_t>(value.size(), 1)));
-        check(H5Tset_cset(type.id(), H5T_CSET_UTF8));
+        const Handle type = string_type();
         const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
         const Handle attribute(H5Acreate2(at, name, type.id(), check(space.id()), H5P_DEFAULT, H5P_DEFAULT),
                                H5Aclose);
-        check(H5Awrite(check(attribute.id()), type.id(), value.c_str()));
+        const char* const words = value.c_str();
+        check(H5Awrite(check(attribute.id()), type.id(), &words));
+    }
+
+    /// UTF-8 of any length.
+    [[nodiscard]] Handle string_type() const {
+        const hid_t type = check(H5Tcopy(H5T_C_S1));
+        check(H5Tset_size(type, H5T_VARIABLE));
+        check(H5Tset_cset(type, H5T_CSET_UTF8));
+        return {type, H5Tclose};
     }
 
     void number(hid_t at, const char* name, std::uint64_t value) const {
@@ -321,9 +329,9 @@ private:
 
 void write_h5(const std::filesystem::path& path, const FactorFile& file, const std::string& repair) {
     const std::size_t size = file.factors.size();
-    const bool bare = file.areas.empty() && file.group_of.empty();
-    const bool error_fits = !file.error || file.error->rows.size() == size;
-    if (!bare && (file.areas.size() != size || file.group_of.size() != size || !error_fits)) {
+    const auto fits = [size](std::size_t length) { return length == 0 || length == size; };
+    if (!fits(file.areas.size()) || !fits(file.group_of.size()) ||
+        (file.error && file.error->rows.size() != size)) {
         throw InvalidArgument(fmt::format("{} areas and {} groups of patches for {} rows", file.areas.size(),
                                           file.group_of.size(), size));
     }

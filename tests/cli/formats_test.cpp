@@ -73,12 +73,12 @@ TEST_CASE("View3D output: from a scene with its emissivities, from a .hff with a
     REQUIRE(run_hemi(quick({"factors", scene, "-o", directory.path("F.hff")})).status == 0);
     const Outcome convert = run_hemi({"convert", directory.path("F.hff"), directory.path("F.vf")});
     REQUIRE(convert.status == 0);
-    CHECK(convert.err_has("emissivities are not in a .hff"));
+    CHECK(convert.err_has("emissivities are written as 0.999"));
     CHECK(directory.read("F.vf").size() == 32 + 4 * (6 + 36 + 6));
     REQUIRE(run_hemi({"convert", directory.path("F.hff"), directory.path("F.npz")}).status == 0);
     const Outcome bare = run_hemi({"convert", directory.path("F.npz"), directory.path("G.txt")});
     CHECK(bare.status == 2);
-    CHECK(bare.err_has("a .txt holds areas, which"));
+    CHECK(bare.err_has(".txt files hold areas, which"));
 }
 
 TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]") {
@@ -109,6 +109,12 @@ TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]"
         CHECK(outcome.status == status);
         CHECK(outcome.err_has(text));
     };
+    const Outcome table = run_hemi({"convert", hres, directory.path("B.csv")});
+    CHECK(table.status == 0);
+    CHECK(table.err_has("not in "));
+    CHECK(directory.read("B.csv").starts_with("index,group,area,cx,cy,cz,nx,ny,nz,exitance_"));
+    refused({"convert", hres, directory.path("B.csv"), "--factors", hff, "--row", "1"}, 2,
+            "are for a .hres that");
     refused({"convert", hff, vtp}, 2, "a .vtp needs the patches");
     refused({"convert", hres, directory.path("x.npz")}, 2, "can be written as .vtp");
     refused({"convert", hff, directory.path("x.npz"), "--factors", hff, "--row", "1"}, 2, "are for a .hres");
@@ -173,7 +179,24 @@ TEST_CASE("Convert: to every format that can hold the content, told what it does
         INFO(name << ": " << run.err);
         CHECK(run.status == 0);
     }
-    CHECK(directory.read("a.bin") == directory.read("b.bin"));
+    const auto same = [&directory](const char* a_name, const char* b_name) { // as text they are no use
+        return directory.read(a_name) == directory.read(b_name);
+    };
+    CHECK(same("a.bin", "b.bin"));
+    for (const char* name : {"a.txt", "a.vf", "a.dat", "a.bin"}) { // and back again
+        const Outcome run = run_hemi({"convert", directory.path(name), directory.path("d.mtx")});
+        INFO(name << ": " << run.err);
+        CHECK(run.status == 0);
+        CHECK(same("a.mtx", "d.mtx"));
+        CHECK(run_hemi({"info", directory.path(name)}).out_has("24"));
+    }
+    const Outcome kept = run_hemi({"convert", directory.path("a.vf"), directory.path("d.txt")});
+    CHECK(kept.status == 0);
+    CHECK(kept.err_has("d.txt: emissivities"));
+    CHECK(same("a.txt", "d.txt"));
+    CHECK(run_hemi({"convert", directory.path("a.vf"), directory.path("d.h5")}).status == 0);
+    CHECK(run_hemi({"convert", directory.path("a.vf"), directory.path("d.idf")})
+              .err_has("hold areas and group names"));
     for (const char* name : {"c.hff", "c.txt", "c.vf", "c.idf"}) {
         const Outcome run = run_hemi({"convert", npz, directory.path(name)});
         INFO(name << ": " << run.err);

@@ -6,8 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdlib>
-#include <cstring>
-#include <sstream>
+#include <utility>
 
 namespace hemi::io_test {
 
@@ -44,37 +43,6 @@ Json entries_of(const FormFactorMatrix& factors) {
     return entries;
 }
 
-/// A reader of Elmer's binary files, written after the format's description.
-FormFactorMatrix read_elmer_binary(const std::string& bytes) {
-    std::size_t at = 0;
-    const auto take = [&](auto number) {
-        REQUIRE(at + sizeof number <= bytes.size());
-        std::memcpy(&number, bytes.data() + at, sizeof number);
-        at += sizeof number;
-        return number;
-    };
-    const auto size = static_cast<std::uint32_t>(take(std::int32_t{}));
-    FormFactorMatrix matrix(size);
-    for (std::uint32_t first = 0; first < size; first += FormFactorMatrix::block_rows) {
-        RowBlock block;
-        block.first_row = first;
-        block.begin = {0};
-        for (std::uint32_t i = first; i < std::min(size, first + FormFactorMatrix::block_rows); ++i) {
-            for (std::int32_t k = take(std::int32_t{}); k > 0; --k) {
-                block.columns.push_back(static_cast<std::uint32_t>(take(std::int32_t{}) - 1));
-                block.values.push_back(static_cast<float>(take(double{})));
-            }
-            block.begin.push_back(block.columns.size());
-            block.known.push_back(1);
-            block.environment.push_back(0.0);
-            block.blocked.push_back(0.0);
-        }
-        matrix.set_block(std::move(block));
-    }
-    REQUIRE(at == bytes.size());
-    return matrix;
-}
-
 } // namespace
 
 TEST_CASE("Elmer: rows with their counts, from 1, empty rows included", "[io]") {
@@ -83,33 +51,148 @@ TEST_CASE("Elmer: rows with their counts, from 1, empty rows included", "[io]") 
     REQUIRE(io::read_file(folder / "ViewFactors.dat") == "2\n1 2 0.333333343\n1 3 0.5\n0\n1\n3 2 1\n");
 }
 
+TEST_CASE("Elmer: the binary file is 32-bit counts and columns and 64-bit factors", "[io]") {
+    const Folder folder;
+    io::write_elmer(folder / "a.bin", small_file().factors, io::ElmerFormat::binary);
+    std::string expected;
+    const auto put = [&expected](auto number) {
+        expected.append(reinterpret_cast<const char*>(&number), sizeof number);
+    };
+    put(std::int32_t{3});
+    put(std::int32_t{2});
+    put(std::int32_t{2});
+    put(static_cast<double>(1.0f / 3.0f));
+    put(std::int32_t{3});
+    put(0.5);
+    put(std::int32_t{0});
+    put(std::int32_t{1});
+    put(std::int32_t{2});
+    put(1.0);
+    const bool same = io::read_file(folder / "a.bin") == expected;
+    REQUIRE(same);
+}
+
 TEST_CASE("Elmer: every factor reads back from both kinds of file", "[io]") {
     const Folder folder;
     const FormFactorMatrix matrix = random_matrix(150, true);
-    io::write_elmer(folder / "a.bin", matrix, io::ElmerFormat::binary);
-    require_same_entries(matrix, read_elmer_binary(io::read_file(folder / "a.bin")));
-
-    io::write_elmer(folder / "a.dat", matrix, io::ElmerFormat::text);
-    std::istringstream stream(io::read_file(folder / "a.dat"));
-    for (std::uint32_t i = 0; i < 150; ++i) {
-        const RowView row = matrix.row(i);
-        std::size_t count = 0;
-        REQUIRE((stream >> count && count == row.columns.size()));
-        for (std::size_t k = 0; k < count; ++k) {
-            std::uint32_t from = 0;
-            std::uint32_t to = 0;
-            float value = 0.0f;
-            stream >> from >> to >> value;
-            REQUIRE((from == i + 1 && to == row.columns[k] + 1 && value == row.values[k]));
-        }
-    }
     for (const io::ElmerFormat format : {io::ElmerFormat::text, io::ElmerFormat::binary}) {
+        io::write_elmer(folder / "a.dat", matrix, format);
+        require_same_entries(matrix, io::read_elmer(folder / "a.dat", format));
         REQUIRE_THROWS_AS(io::write_elmer("/dev/full", matrix, format), IoError);
         require_parts(message_of<InvalidArgument>(
                           [&] { io::write_elmer(folder / "x.dat", random_matrix(9, false), format); }),
                       {"not computed", "use .hff"});
     }
-    REQUIRE(folder.files() == 2);
+    REQUIRE(folder.files() == 1);
+}
+
+TEST_CASE("Elmer: what is wrong is named with its place, its value and what would be right", "[io]") {
+    const Folder folder;
+    const std::vector<std::pair<std::string, std::string>> texts{
+        {"", "a.dat: no rows"},
+        {"x\n", ":1: \"x\"; must be the number of entries of row 1"},
+        {"1\n", ":1: cut short in row 1"},
+        {"1\n2 1 0.5\n", ":2: row \"2\"; must be 1, the row of its place"},
+        {"1\n1 0 0.5\n", ":2: column \"0\"; must be a whole number from 1"},
+        {"1\n1 1 -0.5\n", ":2: value \"-0.5\"; a form factor must be"},
+        {"1\n1 1 nan\n", ":2: value \"nan\""},
+        {"1\n1 1 0.5 1\n", ":2: \"1\" after the factor"},
+        {"1\n1 2 0.5\n", "a.dat: column 2; there are 1 rows"},
+        {"2\n1 1 0.5\n1 1 0.5\n", ":3: the entry of line 2 again"},
+        {"18446744073709551615\n1 1 0.5\n", ":2: cut short in row 1"},
+    };
+    for (const auto& [text, part] : texts) {
+        INFO(text);
+        const auto path = folder.write("a.dat", text);
+        require_parts(message_of<InputError>([&] { (void)io::read_elmer(path, io::ElmerFormat::text); }),
+                      {part});
+    }
+    const auto words = [](const std::vector<std::int32_t>& numbers, const std::vector<double>& doubles = {}) {
+        std::string bytes(reinterpret_cast<const char*>(numbers.data()), 4 * numbers.size());
+        return bytes + std::string(reinterpret_cast<const char*>(doubles.data()), 8 * doubles.size());
+    };
+    const std::vector<std::pair<std::string, std::string>> binaries{
+        {"", "a.bin: byte 0: cut short"},
+        {words({0}), "0 rows in a file of 4 bytes; that cannot be"},
+        {words({-1}), "-1 rows in a file"},
+        {words({2147483647}), "2147483647 rows in a file of 4 bytes; that cannot be"},
+        {words({1, 2}), "row 1 of 2 entries; must be 0 to 1"},
+        {words({1, -1}), "row 1 of -1 entries"},
+        {words({1, 1, 2}, {0.5}), "row 1: column 2; must be from 1 to 1"},
+        {words({1, 1, 1}, {-0.5}), "F(1, 1) = -0.5; must be finite and not negative"},
+        {words({1, 1, 1}, {0.5, 0.5}), "8 bytes after the last row"},
+        {words({1, 1, 1}), "byte 12: cut short"},
+        {words({2, 2, 1}, {0.5}) + words({1}, {0.5}) + words({0}), "row 1: column 1 is there twice"},
+    };
+    for (const auto& [bytes, part] : binaries) {
+        INFO(part);
+        const auto path = folder.write("a.bin", bytes);
+        require_parts(message_of<InputError>([&] { (void)io::read_elmer(path, io::ElmerFormat::binary); }),
+                      {part});
+    }
+}
+
+TEST_CASE("View3D factors: text and binary read back, with areas and enclosure", "[io]") {
+    const Folder folder;
+    io::FactorFile file;
+    file.factors = random_matrix(150, true);
+    for (int i = 0; i < 150; ++i) {
+        file.areas.push_back(0.125 * (i + 1));
+    }
+    file.enclosure = "closed";
+    for (const io::View3dFormat format : {io::View3dFormat::text, io::View3dFormat::binary}) {
+        io::write_view3d(folder / "a", file, format);
+        const io::FactorFile back = io::read_view3d(folder / "a", format);
+        require_same_entries(file.factors, back.factors);
+        REQUIRE(back.areas == file.areas);
+        REQUIRE(back.enclosure == "closed");
+    }
+}
+
+TEST_CASE("View3D factors: what is wrong is named with its place, its value and what would be right",
+          "[io]") {
+    const Folder folder;
+    const std::string head = "View3D 3.3 0 0 0 2\n";
+    REQUIRE(
+        io::read_view3d(folder.write("a.txt", head + "1 2\n0 0.5\n0.25 0\n0.9 0.9\n"), io::View3dFormat::text)
+            .factors.entries() == 2);
+    const std::vector<std::pair<std::string, std::string>> texts{
+        {"", ":1: \"\"; must be program, version, format"},
+        {"View3D 3.3 0 0 2\n", ":1: \"View3D 3.3 0 0 2\"; must be program"},
+        {"View3D 3.3 1 0 0 2\n", ":1: format 1; must be 0, as the name's extension says"},
+        {"View3D 3.3 0 0 1 2\n", ":1: the factors include reflection"},
+        {"View3D 3.3 0 0 0 4000000000\n", ":1: 4000000000 surfaces in a file of 28 bytes; that cannot be"},
+        {"View3D 3.3 0 0 0 18446744073709551615\n", "surfaces in a file of"},
+        {head + "1 0\n0 0.5\n0.25 0\n0.9 0.9\n", ":2: area 0; must be positive"},
+        {head + "1 2\n0 -0.5\n0.25 0\n0.9 0.9\n", ":3: factor -0.5; must be finite and not negative"},
+        {head + "1 2\n0 x\n0.25 0\n0.9 0.9\n", ":3: factor \"x\"; must be a number"},
+        {head + "1 2\n0 0.5\n0.25 0\n0.9\n", ":5: cut short: emissivity is missing"},
+        {head + "1 2\n0 0.5\n0.25 0\n0.9 0.9 1\n", ":5: \"1\" after the emissivities"},
+    };
+    for (const auto& [text, part] : texts) {
+        INFO(text);
+        const auto path = folder.write("a.txt", text);
+        require_parts(message_of<InputError>([&] { (void)io::read_view3d(path, io::View3dFormat::text); }),
+                      {part});
+    }
+    const std::string binary_head = "View3D 3.3 1 0 0 1            \r\n";
+    const std::vector<std::pair<std::string, std::string>> binaries{
+        {"", "a.vf: 0 bytes; View3D's binary files begin"},
+        {binary_head, ":1: 1 surfaces in a file of 32 bytes; that cannot be"},
+        {binary_head + std::string(12, '\0'), "a.vf: byte 36: area 0; must be positive"},
+        {binary_head + std::string("\0\0\x80?\0\0\xc0\x7f\0\0\0\0", 12),
+         "byte 40: factor nan; must be finite"},
+        {std::string(binary_head).replace(11, 1, "0") + std::string(12, '\0'), ":1: format 0; must be 1"},
+        {binary_head + std::string("\0\0\x80?\0\0\0\0\0\0\x80?abc", 15),
+         "byte 44: 3 bytes after the emissivities"},
+        {std::string(40, 'x'), "a.vf: 40 bytes; View3D's binary files begin with a line of 32"},
+    };
+    for (const auto& [bytes, part] : binaries) {
+        INFO(part);
+        const auto path = folder.write("a.vf", bytes);
+        require_parts(message_of<InputError>([&] { (void)io::read_view3d(path, io::View3dFormat::binary); }),
+                      {part});
+    }
 }
 
 TEST_CASE("EnergyPlus: a triple for every pair of groups, by name, area-weighted", "[io]") {

@@ -65,9 +65,8 @@ void write_view3d(const std::filesystem::path& path, const FactorFile& file, Vie
 /// EnergyPlus' ZoneProperty:UserViewFactors:BySurfaceName (.idf): a triple from, to, F for every pair of
 /// groups, which are the surfaces. The zone has the name of the file; 9 significant digits.
 /// @param diagnostics  warned of rows that do not sum to 1, which EnergyPlus changes
-/// @throws InvalidArgument for unknown rows, areas or groups that do not fit, and for names that EnergyPlus
-/// cannot
-///   hold: with `,` `;` `!` or a line end, of more than 100 characters, or equal but for their case; IoError
+/// @throws InvalidArgument for unknown rows, areas or groups that do not fit, names that EnergyPlus has not
+///   (with `,` `;` `!` or a line end, of more than 100 characters, equal but for their case); IoError
 void write_energyplus(const std::filesystem::path& path, const FactorFile& file, Diagnostics& diagnostics);
 
 enum class ElmerFormat { text, binary };
@@ -86,10 +85,14 @@ void write_elmer(const std::filesystem::path& path, const FormFactorMatrix& fact
 /// @throws InvalidArgument if areas or groups do not fit the rows; IoError
 void write_h5(const std::filesystem::path& path, const FactorFile& file, const std::string& repair);
 
-/// The readers of the first three formats. Row balance is not in these files: environment and blocked are 0.
-/// .csv needs the matrix' size: one more than the largest index.
+/// Readers. Row balance is not in these files: environment and blocked are 0. .csv and Elmer's text do not
+/// say the size: it is one more than the largest index, or the number of rows.
+/// @throws ParseError or InputError with file, place and value
 [[nodiscard]] FormFactorMatrix read_mtx(const std::filesystem::path& path);
 [[nodiscard]] FormFactorMatrix read_csv(const std::filesystem::path& path);
 [[nodiscard]] FormFactorMatrix read_npz(const std::filesystem::path& path);
+[[nodiscard]] FormFactorMatrix read_elmer(const std::filesystem::path& path, ElmerFormat format);
+/// Factors, areas and enclosure, nothing else; factors that include reflection are refused.
+[[nodiscard]] FactorFile read_view3d(const std::filesystem::path& path, View3dFormat format);
 
 } // namespace hemi::io
