@@ -85,7 +85,7 @@ TEST_CASE("Gmsh reader: points, lines, volumes and other sections are left out w
     require_parts(diagnostics.warnings()[3], {"room.msh:20: 1 volume elements left out"});
 }
 
-TEST_CASE("Gmsh reader: blank lines and line ends of CR LF do not matter; faces without area can be skipped",
+TEST_CASE("Gmsh reader: blank lines and line ends of CR LF do not matter, faces without area can be skipped",
           "[io]") {
     const Folder folder;
     std::string text = "\r\n";

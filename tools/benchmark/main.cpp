@@ -45,8 +45,9 @@ void print_table(Measurements& measurements, const Report& report, const Case& o
     measurements.table(city);
 }
 
-void print_findings(Measurements& measurements, const Case& office, const Case& city,
+void print_findings(Measurements& measurements, const Report& report, const Case& office, const Case& city,
                     const Options& options) {
+    report.findings_head();
     measurements.naive_target(10000, 20.0);
     measurements.growth_target(2000, 50000, 1.5);
     measurements.workers_target(10000, 1.8);
@@ -91,9 +92,8 @@ void run(const Options& options) {
     if (!options.quick && !options.files) {
         print_table(measurements, report, office, city);
     }
-    report.findings_head();
     if (!options.files) {
-        print_findings(measurements, office, city, options);
+        print_findings(measurements, report, office, city, options);
     }
     measure_files(report, setup.effort.rounds);
     write_json();
