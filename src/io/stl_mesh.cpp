@@ -31,11 +31,12 @@ std::uint64_t binary_bytes(std::string_view bytes) {
            triangle_bytes * std::uint64_t{load<std::uint32_t>(bytes.data() + 80, std::endian::little)};
 }
 
-/// Text, if it begins like text; but many binary files begin with the word, too, and have the right size.
+/// Text, if it begins like text; but many binary files begin with the word, too.
 bool is_text(std::string_view bytes) {
     std::string_view start = bytes.substr(0, 100);
     start.remove_prefix(std::min(start.find_first_not_of(" \t\r\n"), start.size()));
     return same_word(start.substr(0, 5), "solid") &&
+           bytes.substr(0, 1000).find('\0') == std::string_view::npos &&
            (bytes.size() < head_bytes || bytes.size() != binary_bytes(bytes));
 }
 

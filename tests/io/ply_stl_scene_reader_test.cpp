@@ -282,6 +282,7 @@ TEST_CASE("STL reader: what is wrong is named with its place, its value and what
         {"", {"a.stl: 0 bytes; an STL file begins with \"solid\", or, binary, has at least 84 bytes"}},
         {"facet\n", {"a.stl: 6 bytes; an STL file begins"}},
         {binary_stl(2, {upwards}), {"a.stl: cut short, or not STL: 134 bytes; its 2 triangles need 184"}},
+        {binary_stl(2, {upwards}, "solid but binary"), {"a.stl: cut short, or not STL: 134 bytes"}},
         {binary_stl(4294967295u, {upwards}), {"its 4294967295 triangles need 214748364834"}},
         {binary_stl(0, {}), {"a.stl: no faces; a scene needs at least one (triangles)"}},
         {binary_stl(2, {upwards, far}), {"a.stl: face 1: coordinate inf; must be finite"}},
