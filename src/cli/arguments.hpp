@@ -40,6 +40,7 @@ struct SceneOptions {
         environment; ///< `--environment`: one value for all channels or one for each; empty: the scene's
     std::vector<std::string> two_sided;
     bool skip_degenerate = false;
+    bool allow_outside = false;
 };
 
 struct RowOptions {

@@ -283,8 +283,8 @@ void show_factors(const InfoArguments& arguments) {
     print(text + "\n" + groups.text());
 }
 
-void show_bare_factors(const InfoArguments& arguments) {
-    const FormFactorMatrix factors = read_bare_factors(arguments.scene.path);
+void show_foreign_factors(const InfoArguments& arguments) {
+    const FormFactorMatrix factors = read_factors(arguments.scene.path).factors;
     const RowSums sums = row_sums(factors);
     if (arguments.common.json) {
         print_json(with_head("factors", {{"patches", factors.size()},
@@ -314,11 +314,12 @@ ExitStatus run(const InfoArguments& arguments, const Terminal& terminal) {
         show_result(arguments);
     } else if (extension == ".hff") {
         show_factors(arguments);
-    } else if (is_bare_factor_file(path)) {
-        show_bare_factors(arguments);
+    } else if (is_foreign_factor_file(path)) {
+        show_foreign_factors(arguments);
     } else {
-        throw InvalidArgument(fmt::format("{}: info reads {}, .hff, .hres, .mtx, .csv and .npz",
-                                          path.string(), io::scene_extensions()));
+        throw InvalidArgument(
+            fmt::format("{}: info reads {}, .hres, .hff, .mtx, .csv, .npz, .txt, .vf, .dat and .bin",
+                        path.string(), io::scene_extensions()));
     }
     return ExitStatus::ok;
 }

@@ -131,7 +131,8 @@ std::string enclosure_name(Enclosure enclosure) {
 LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     const Stopwatch watch;
     Diagnostics diagnostics;
-    Scene scene = io::read_scene(options.path, {options.two_sided, options.skip_degenerate}, diagnostics);
+    Scene scene = io::read_scene(
+        options.path, {options.two_sided, options.skip_degenerate, options.allow_outside}, diagnostics);
     terminal.warn(diagnostics);
     check_two_sided_groups(scene, options);
     if (options.enclosure) {
