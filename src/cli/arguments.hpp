@@ -40,6 +40,7 @@ struct SceneOptions {
         environment; ///< `--environment`: one value for all channels or one for each; empty: the scene's
     std::vector<std::string> two_sided;
     bool skip_degenerate = false;
+    bool allow_outside = false;
 };
 
 struct RowOptions {
@@ -49,6 +50,7 @@ struct RowOptions {
     std::optional<std::uint32_t> rays; ///< of montecarlo
     std::optional<std::uint32_t> eye_points;
     std::optional<std::uint32_t> resolution;
+    std::optional<std::uint32_t> shadow_rays; ///< of a hybrid, a partly hidden pair
     std::optional<std::uint64_t> seed;
     bool merge = true;
     std::uint32_t jobs = 0;                  ///< 0: one per core

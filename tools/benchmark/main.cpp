@@ -1,5 +1,6 @@
 // Times hemicube rows against the naive design. Run by tools/bench.
 
+#include "benchmark/files.hpp"
 #include "benchmark/frames.hpp"
 #include "benchmark/measurements.hpp"
 #include "benchmark/program.hpp"
@@ -25,6 +26,7 @@ struct Options {
     std::string scenes = "scenes";
     std::string json;
     bool quick = false;
+    bool files = false;
 };
 
 void declare(CLI::App& app, Options& options) {
@@ -32,6 +34,7 @@ void declare(CLI::App& app, Options& options) {
     app.add_option("--scenes", options.scenes, "folder of the scene files (default scenes)");
     app.add_option("--json", options.json, "write the figures to this file too");
     app.add_flag("--quick", options.quick, "no table, small samples");
+    app.add_flag("--files", options.files, "only writers and readers of files");
 }
 
 void print_table(Measurements& measurements, const Report& report, const Case& office, const Case& city) {
@@ -88,10 +91,13 @@ void run(const Options& options) {
     };
     write_json(); // a file that cannot be written is told now, not after minutes
     Measurements measurements(setup, report);
-    if (!options.quick) {
+    if (!options.quick && !options.files) {
         print_table(measurements, report, office, city);
     }
-    print_findings(measurements, report, office, city, options);
+    if (!options.files) {
+        print_findings(measurements, report, office, city, options);
+    }
+    measure_files(report, setup.effort.rounds);
     write_json();
 }
 
