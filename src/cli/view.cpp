@@ -52,9 +52,11 @@ std::string given_options(const CommonOptions& common) {
         if (std::find(window_options().begin(), window_options().end(), name) != window_options().end()) {
             continue;
         }
-        text += " " + name;
+        text += ' ';
+        text += name;
         for (const std::string& value : values) {
-            text += " " + viewer::quoted(value);
+            text += ' ';
+            text += viewer::quoted(value);
         }
     }
     return text;

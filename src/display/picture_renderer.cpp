@@ -20,7 +20,7 @@ namespace hemi {
 namespace {
 
 /// Samples along an edge of a tile. Small tiles are quicker, since their memory is used again and again; but
-/// every tile draws the whole mesh anew.
+/// every tile draws the whole mesh anew, which is more than the pixels cost where each is one sample.
 constexpr std::uint32_t small_tile = 1024;
 constexpr std::uint32_t large_tile = 4096;
 constexpr GLsizei many_indices = 12 * 20000;
@@ -229,7 +229,8 @@ void PictureRenderer::upload(const PictureMesh& mesh) {
 }
 
 std::vector<PictureRenderer::Tile> PictureRenderer::tiles(const PictureSettings& settings) const {
-    const std::uint32_t wanted = index_count_ < many_indices ? small_tile : large_tile;
+    const bool small = index_count_ < many_indices && settings.samples > 1;
+    const std::uint32_t wanted = small ? small_tile : large_tile;
     const std::uint32_t samples = std::min(wanted, static_cast<std::uint32_t>(max_texture_));
     const std::uint32_t edge = std::max(1U, samples / settings.samples);
     std::vector<Tile> result;

@@ -58,7 +58,6 @@ void Application::exchange(ViewerInput input) {
     }
     if (!again || !same_patches) {
         choices_.picked.reset();
-        choices_.look.channel.reset();
     }
     choices_.pointed_at.reset();
     choices_.materials = input.scene->materials;
@@ -288,6 +287,7 @@ void Application::update() {
     const bool changed = document_->update();
     if (changed) {
         saved_result_.clear();
+        note_.clear();
         shown_look_.reset();
         settle();
     }
@@ -416,6 +416,9 @@ void Application::draw() {
     grant_wishes();
     settle();
     window_.check_debug_messages();
+    if (picture_changed_) { // by a button: once more
+        Window::wake();
+    }
     if (!lost_ && !gui_.changed()) {
         return;
     }

@@ -35,7 +35,6 @@ void Document::show_light(std::vector<double> radiosity, State state) {
 }
 
 bool Document::update() {
-    changed_ = false;
     if (finder_) {
         take_rows();
     }

@@ -231,7 +231,7 @@ void partner_list(const PanelContent& content, Choices& choices) {
         ImGui::TableNextColumn();
         text(fmt::format("{:.2e}", partner.factor));
         ImGui::TableNextColumn();
-        text(fmt::format("{:4.1f} %", 100.0 * partner.share));
+        text(fmt::format("{:4.1f} % ", 100.0 * partner.share));
     }
     ImGui::EndTable();
 }
@@ -315,6 +315,8 @@ void material_section(const PanelContent& content, Choices& choices) {
     }
 }
 
+constexpr float plot_height = 54.0F;
+
 /// The residual after every sweep, on a logarithmic scale.
 void residual_plot(const std::vector<double>& residuals) {
     std::vector<float> decades;
@@ -325,9 +327,9 @@ void residual_plot(const std::vector<double>& residuals) {
     const auto [least, most] = std::minmax_element(decades.begin(), decades.end());
     const float low = std::floor(*least);
     const float high = std::max(std::ceil(*most), low + 1.0F);
-    const std::string words = fmt::format("residual, 1e{:+.0f} to 1e{:+.0f}", high, low);
+    const std::string words = fmt::format("residual, 1e{:.0f} to 1e{:.0f}", high, low);
     ImGui::PlotLines("##residuals", decades.data(), static_cast<int>(decades.size()), 0, words.c_str(), low,
-                     high, {ImGui::GetContentRegionAvail().x, 54.0F});
+                     high, {ImGui::GetContentRegionAvail().x, plot_height});
 }
 
 void solution_section(const PanelContent& content, Choices& choices) {
@@ -342,7 +344,9 @@ void solution_section(const PanelContent& content, Choices& choices) {
         return;
     }
     faint(work.light.empty() ? "solving" : work.light);
-    if (!work.residuals.empty()) {
+    if (work.residuals.empty()) {
+        ImGui::Dummy({0.0F, plot_height}); // buttons stay where they are
+    } else {
         residual_plot(work.residuals);
     }
     if (ImGui::Button("Start over")) {
@@ -365,7 +369,7 @@ void camera_section(const PanelContent& content, Choices& choices) {
         return;
     }
     auto fov = static_cast<float>(content.camera.fov);
-    ImGui::SetNextItemWidth(-96.0F);
+    ImGui::SetNextItemWidth(-102.0F);
     if (ImGui::SliderFloat("field of view", &fov, static_cast<float>(OrbitCamera::smallest_fov),
                            static_cast<float>(OrbitCamera::largest_fov), "%.0f degrees",
                            ImGuiSliderFlags_NoInput)) {
@@ -462,7 +466,7 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     file_section(choices);
     ImGui::EndChild();
     ImGui::Separator();
-    text(content.note);
+    text(content.note.empty() ? work.light : content.note);
     faint(content.status);
     faint("F1 help   Tab panel");
     ImGui::End();

@@ -70,7 +70,7 @@ struct PanelContent {
     const Document& document;
     const std::optional<PickedPatch>& picked;
     const Camera& camera;
-    std::string note;   ///< on what was done last
+    std::string note;   ///< on what was done last; empty: on the light
     std::string status; ///< at the panel's foot
 };
 
