@@ -476,7 +476,11 @@ void report_covered(const RowSums& sums, const Terminal& terminal) {
 std::string rows_summary(const Rows& rows, const RowSums& sums, const EnclosureFinding& enclosure) {
     const FormFactorMatrix& factors = rows.file.factors;
     std::string text = summary_line("renderer", rows.file.renderer);
-    std::string cubes = fmt::format("resolution {}, seed {}", rows.file.resolution, rows.file.seed);
+    const std::string rays =
+        rows.file.shadow_rays > 0 ? ", " + plural(rows.file.shadow_rays, "shadow ray", "shadow rays") : "";
+    std::string cubes =
+        fmt::format("resolution {}, {}{}, seed {}", rows.file.resolution,
+                    plural(rows.file.eye_points, "eye point", "eye points"), rays, rows.file.seed);
     if (rows.reused) {
         cubes += ", rows from a file";
     } else if (rows.computed > 0) {

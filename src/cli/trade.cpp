@@ -46,7 +46,9 @@ std::vector<Entry> all_entries(const RowOptions& base, std::uint32_t patches) {
         Contender contender = hemicube_contender(base, preset, patches, eyes, resolution, rays);
         const bool known = std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) {
             const RowPlan a = plan_rows(entry.contender.options, patches);
-            const RowPlan b = plan_rows(contender.options, patches);
+            RowPlan b = plan_rows(contender.options, patches);
+            // More points near surfaces are no reason to try the same eyes twice.
+            b.hemicube.near_eye_points = a.hemicube.near_eye_points;
             return !entry.contender.yardstick && a.hemicube == b.hemicube && a.hybrid == b.hybrid;
         });
         if (!known) {
