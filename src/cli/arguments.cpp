@@ -220,6 +220,13 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
     }
 }
 
+/// @param output  the file of form factors beside which rows are kept
+void add_resume(CLI::App& app, RowOptions& rows, CLI::Option* output) {
+    Options(app, "Output")
+        .flag("--resume", rows.resume, "go on from the rows that an interrupted run left in FILE.rows");
+    app.get_option("--resume")->needs(output)->excludes(app.get_option("--error-target"));
+}
+
 void add_max_memory(CLI::App& app, RowOptions& rows) {
     Options(app, "Computing")
         .value("--max-memory", "SIZE", "such as 512M or 2G (80 % of what is free)",
@@ -320,8 +327,9 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     Options output(app, "Output");
     auto* picture = output.path("-o,--output", "PICTURE", a.picture.output,
                                 "picture: .png or .hdr; - for .png on stdout");
-    output.path("--factors", "FILE.hff", a.factors,
-                "use these form factors if the file exists, else write them there");
+    auto* factors = output.path("--factors", "FILE.hff", a.factors,
+                                "use these form factors if the file exists, else write them there");
+    add_resume(app, a.rows, factors);
     output.path("--result", "FILE.hres", a.result, "the whole solution, for `hemi render` and `hemi view`");
     output.path("--radiosity", "FILE.csv", a.radiosity, "exitance, irradiance and radiosity of every patch");
     output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
@@ -344,6 +352,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
         "-o,--output", "FILE", a.output,
         "form factors: .hff .mtx .csv .npz .h5, View3D's .txt .vf, Elmer's .dat .bin, EnergyPlus' .idf, "
         "ParaView's .vtp; - for .csv on stdout");
+    add_resume(app, a.rows, file);
     output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
     auto* row = output.value("--row", "I", "print one row, largest first, with names",
                              [&a](const std::string& text) { a.row = to_index("--row", text, 0); });

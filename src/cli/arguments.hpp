@@ -59,6 +59,7 @@ struct RowOptions {
     std::optional<Repair> repair;       ///< none: what suits the rows
     bool estimate = true;               ///< of errors, from a sample of better rows
     std::optional<double> error_target; ///< the program chooses the settings
+    bool resume = false;                ///< take up the rows that an interrupted run left
 };
 
 struct PictureOptions {

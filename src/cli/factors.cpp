@@ -119,7 +119,20 @@ void compute_to_target(const FactorsArguments& arguments, Subject& subject, cons
     subject.seconds.factors = search_watch.seconds() - subject.seconds.search;
 }
 
-Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal) {
+/// The file of all rows, if one is to be written; rows are kept beside it meanwhile.
+std::optional<std::filesystem::path> factor_file(const FactorsArguments& arguments) {
+    const bool writes = arguments.output && !table_goes_to_file(arguments) &&
+                        !is_standard_output(*arguments.output) && !arguments.rows.error_target &&
+                        io::is_scene_file(arguments.scene.path);
+    if (arguments.rows.resume && !writes) {
+        throw InvalidArgument(
+            "--resume needs a file of form factors to go on with (-o FILE.hff), made from a "
+            "scene");
+    }
+    return writes ? arguments.output : std::nullopt;
+}
+
+Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal, KeptRows& kept) {
     Subject subject;
     subject.loaded = load_scene(arguments.scene, terminal);
     const PatchMesh& mesh = subject.loaded->mesh;
@@ -138,7 +151,7 @@ Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal) 
     if (arguments.rows.error_target) {
         compute_to_target(arguments, subject, terminal);
     } else {
-        subject.rows = compute_rows(*subject.loaded, patches, arguments.rows, terminal);
+        subject.rows = compute_rows(*subject.loaded, patches, arguments.rows, terminal, &kept);
         subject.seconds.factors = watch.seconds();
     }
     if (!arguments.row && !arguments.rows.error_target) {
@@ -404,11 +417,9 @@ Json summary_json(const Subject& subject, const RowSums& sums) {
               {"total", subject.seconds.total}}}};
 }
 
-} // namespace
-
-ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
+ExitStatus run(const FactorsArguments& arguments, const Outputs& outputs, const Terminal& terminal,
+               KeptRows& kept) {
     const Stopwatch total;
-    const Outputs outputs = check_outputs(arguments);
     const bool is_scene = io::is_scene_file(arguments.scene.path);
     if (arguments.from_point) {
         if (!is_scene) {
@@ -427,7 +438,7 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
         show_point(arguments, terminal);
         return ExitStatus::ok;
     }
-    Subject subject = is_scene ? from_scene(arguments, terminal) : from_file(arguments);
+    Subject subject = is_scene ? from_scene(arguments, terminal, kept) : from_file(arguments);
     io::FactorFile& file = subject.rows.file;
     if (arguments.row && is_scene) {
         show_row(arguments, subject);
@@ -438,6 +449,7 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     if (writes && holds_raw_rows(*arguments.output)) {
         estimate_rows(file);
         write_factors(*arguments.output, file, {}, diagnostics);
+        kept.discard();
     }
     settle_contacts(file);
     subject.repair = repair_rows(file, arguments.rows.repair);
@@ -454,6 +466,7 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
         }
     }
     terminal.warn(diagnostics);
+    kept.discard();
     if (arguments.row) {
         show_row(arguments, subject);
         return ExitStatus::ok;
@@ -490,6 +503,14 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     report_leaks(enclosure, file.factors, subject.names(), subject.loaded ? &subject.loaded->mesh : nullptr,
                  arguments.rows.max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
+}
+
+} // namespace
+
+ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
+    const Outputs outputs = check_outputs(arguments);
+    return keeping_rows(factor_file(arguments), arguments.rows.resume, terminal,
+                        [&](KeptRows& kept) { return run(arguments, outputs, terminal, kept); });
 }
 
 } // namespace hemi::cli

@@ -275,9 +275,32 @@ bool hybrid_fits(RowProvider& visibility, std::span<const std::uint32_t> patches
 
 } // namespace
 
+/// What the raw rows depend on, besides the renderer.
+io::JournalKey journal_key(const io::FactorFile& file, const HemicubeSettings& hemicube) {
+    return {{"hemi", HEMI_VERSION},
+            {"geometry", fmt::format("{:016x}", file.geometry_hash)},
+            {"method", file.method},
+            {"rows of", hemicube.quantity == RowQuantity::visibility ? "visibility" : "form factors"},
+            {"resolution", std::to_string(hemicube.resolution)},
+            {"seed", std::to_string(hemicube.seed)},
+            {"eye points", std::to_string(hemicube.eye_points)},
+            {"eye points near surfaces", std::to_string(hemicube.near_eye_points)},
+            {"merging", hemicube.merge_lattices ? "on" : "off"}};
+}
+
+/// The provider itself, or one that keeps its rows.
+struct MaybeKept {
+    std::unique_ptr<RowProvider> keeping;
+    RowProvider& provider;
+
+    MaybeKept(RowProvider& bare, KeptRows* kept, io::JournalKey key)
+        : keeping(kept != nullptr && kept->active() ? kept->keep(bare, std::move(key)) : nullptr),
+          provider(keeping ? *keeping : bare) {}
+};
+
 /// Rows by one of the slow methods.
 Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
-                            const RowOptions& options, const Terminal& terminal) {
+                            const RowOptions& options, const Terminal& terminal, KeptRows* kept) {
     static const std::map<std::string, Yardstick> methods{{"direct", Yardstick::direct},
                                                           {"contour", Yardstick::contour},
                                                           {"montecarlo", Yardstick::montecarlo},
@@ -298,9 +321,12 @@ Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint
     if (settings.method == Yardstick::direct || settings.method == Yardstick::contour) {
         terminal.note(fmt::format("--method {} finds factors as if nothing lay between", options.method));
     }
+    io::JournalKey key = journal_key(rows.file, plan.hemicube);
+    key["rays"] = std::to_string(settings.rays);
+    const MaybeKept source(provider, kept, std::move(key));
     const Stopwatch watch;
     ProgressBar bar(terminal, "form factors", "rows");
-    rows.file.factors = compute_matrix(provider, patches, bar.callback());
+    rows.file.factors = compute_matrix(source.provider, patches, bar.callback());
     rows.seconds = watch.seconds();
     rows.file.renderer = provider.renderer();
     rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
@@ -309,9 +335,9 @@ Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint
 }
 
 Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
-                  const RowOptions& options, const Terminal& terminal) {
+                  const RowOptions& options, const Terminal& terminal, KeptRows* kept) {
     if (options.method != "hemicube") {
-        return compute_yardstick_rows(loaded, patches, options, terminal);
+        return compute_yardstick_rows(loaded, patches, options, terminal, kept);
     }
     RowPlan plan = plan_rows(options, loaded.mesh.size());
     Rows rows;
@@ -325,7 +351,7 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
     if (plan.hybrid && !hybrid_fits(*engine, patches, options, terminal)) {
         RowOptions plain = options;
         plain.preset = "plain";
-        return compute_rows(loaded, patches, plain, terminal);
+        return compute_rows(loaded, patches, plain, terminal, kept);
     }
     if (!plan.hybrid && patches.size() > sample_above) {
         const MatrixEstimate estimate = estimate_matrix(*engine, patches, sample_rows);
@@ -335,6 +361,7 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
     }
     stop_if_interrupted();
     rows.file = describe(loaded, options, plan);
+    const MaybeKept source(*engine, kept, journal_key(rows.file, plan.hemicube));
     const Stopwatch watch;
     if (plan.hybrid) {
         ProgressBar seen(terminal, "visibility", "rows");
@@ -350,14 +377,14 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
             };
         };
         rows.file.factors =
-            compute_hybrid(*engine, loaded.mesh, patches, *plan.hybrid, loaded.scene.enclosure,
+            compute_hybrid(source.provider, loaded.mesh, patches, *plan.hybrid, loaded.scene.enclosure,
                            seen.callback(), in_turn(traced, "shadow rays"), in_turn(paired, "form factors"));
     } else {
         ProgressBar bar(terminal, "form factors", "rows");
-        rows.file.factors = compute_matrix(*engine, patches, bar.callback());
+        rows.file.factors = compute_matrix(source.provider, patches, bar.callback());
     }
     rows.seconds = watch.seconds();
-    rows.computed = patches.size() * plan.hemicube.eye_points;
+    rows.computed = (patches.size() - (kept != nullptr ? kept->reused() : 0)) * plan.hemicube.eye_points;
     rows.file.renderer = engine->renderer();
     rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
     stop_if_interrupted();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/arguments.hpp"
+#include "cli/kept_rows.hpp"
 #include "cli/report.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/engine/engine.hpp"
@@ -74,9 +75,11 @@ struct Rows {
 
 /// Computes the rows of `patches` with a progress bar. Above 256 rows a sample of 64 tells first what the
 /// matrix will need.
+/// @param kept  where rows are kept until the file of form factors is written; only for all patches
 /// @throws OutOfMemory with figures and advice; Cancelled.
 [[nodiscard]] Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
-                                const RowOptions& options, const Terminal& terminal);
+                                const RowOptions& options, const Terminal& terminal,
+                                KeptRows* kept = nullptr);
 
 /// Rows from a `.hff` that was made for the same geometry.
 /// @throws InputError if it belongs to another geometry; InvalidArgument if a setting that was given on the

@@ -77,7 +77,8 @@ std::vector<std::uint32_t> needed_patches(const SolveArguments& arguments, const
     return all ? all_patches(loaded.mesh.size()) : reflecting_patches(loaded);
 }
 
-Rows find_rows(const SolveArguments& arguments, const LoadedScene& loaded, const Terminal& terminal) {
+Rows find_rows(const SolveArguments& arguments, const LoadedScene& loaded, const Terminal& terminal,
+               KeptRows& kept) {
     if (arguments.factors && fs::is_regular_file(*arguments.factors)) {
         Rows rows = reuse_rows(*arguments.factors, loaded, arguments.rows, arguments.common);
         terminal.detail(fmt::format("form factors from {}: no rows to compute", arguments.factors->string()));
@@ -85,11 +86,13 @@ Rows find_rows(const SolveArguments& arguments, const LoadedScene& loaded, const
             throw InputError(fmt::format("{}: rows are missing that --result and --radiosity need",
                                          arguments.factors->string()));
         }
+        kept.discard(); // of a run that was killed when the file was complete
         return rows;
     }
-    Rows rows = compute_rows(loaded, needed_patches(arguments, loaded), arguments.rows, terminal);
+    Rows rows = compute_rows(loaded, needed_patches(arguments, loaded), arguments.rows, terminal, &kept);
     add_reference(rows, loaded, arguments.rows, terminal);
     store_rows(arguments, rows, terminal);
+    kept.discard();
     return rows;
 }
 
@@ -311,7 +314,9 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         solved = solve_to_target(arguments, loaded, seconds, terminal);
     } else {
         const Stopwatch watch;
-        Rows found = find_rows(arguments, loaded, terminal);
+        Rows found = keeping_rows(arguments.factors, arguments.rows.resume, terminal, [&](KeptRows& kept) {
+            return find_rows(arguments, loaded, terminal, kept);
+        });
         seconds.estimate = found.reference_seconds;
         seconds.factors = watch.seconds() - seconds.estimate;
         solved = solve_rows(arguments, loaded, std::move(found), seconds, terminal);

@@ -44,13 +44,14 @@ std::uint32_t header_crc(const ChunkHeader& header) {
 
 } // namespace
 
-ChunkWriter::ChunkWriter(const std::filesystem::path& path, const ChunkFormat& format) : file_(path) {
-    file_.write(format.magic);
+void write_start(const ByteSink& sink, const ChunkFormat& format) {
+    sink(format.magic.data(), format.magic.size());
     const std::array<std::uint32_t, 2> version{format.version, 0};
-    file_.write(version.data(), sizeof version);
+    sink(version.data(), sizeof version);
 }
 
-void ChunkWriter::chunk(std::string_view tag, std::initializer_list<std::span<const std::byte>> parts) {
+void write_chunk(const ByteSink& sink, std::string_view tag,
+                 std::initializer_list<std::span<const std::byte>> parts) {
     ChunkHeader header;
     tag.copy(header.tag.data(), header.tag.size());
     for (const auto& part : parts) {
@@ -62,12 +63,21 @@ void ChunkWriter::chunk(std::string_view tag, std::initializer_list<std::span<co
             header.crc = add_crc(header.crc, part);
         }
     }
-    file_.write(&header, sizeof header);
+    sink(&header, sizeof header);
     for (const auto& part : parts) {
-        file_.write(part.data(), part.size());
+        sink(part.data(), part.size());
     }
     constexpr std::array<char, alignment> zeros{};
-    file_.write(zeros.data(), padding(header.length));
+    sink(zeros.data(), padding(header.length));
+}
+
+ChunkWriter::ChunkWriter(const std::filesystem::path& path, const ChunkFormat& format)
+    : file_(path), sink_([this](const void* data, std::size_t bytes) { file_.write(data, bytes); }) {
+    write_start(sink_, format);
+}
+
+void ChunkWriter::chunk(std::string_view tag, std::initializer_list<std::span<const std::byte>> parts) {
+    write_chunk(sink_, tag, parts);
 }
 
 void ChunkWriter::finish() {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -39,20 +40,33 @@ template <class T>
     return std::as_bytes(std::span(text));
 }
 
+/// Takes what a chunk file is made of, front to back.
+using ByteSink = std::function<void(const void* data, std::size_t bytes)>;
+/// The first 16 bytes.
+void write_start(const ByteSink& sink, const ChunkFormat& format);
+/// One chunk whose payload is the parts one after another.
+void write_chunk(const ByteSink& sink, std::string_view tag,
+                 std::initializer_list<std::span<const std::byte>> parts);
+
 /// Writes hemi's binary container: after the 16 bytes, chunks of a 4-byte tag, a CRC-32 (over tag, length and
 /// payload), the payload's length in 64 bits, the payload, zeros up to a multiple of 8 bytes. The last
 /// one is an empty `END `. Little endian.
 class ChunkWriter {
 public:
     ChunkWriter(const std::filesystem::path& path, const ChunkFormat& format);
+    ChunkWriter(const ChunkWriter&) = delete;
+    ChunkWriter& operator=(const ChunkWriter&) = delete;
 
     /// One chunk whose payload is the parts one after another.
     void chunk(std::string_view tag, std::initializer_list<std::span<const std::byte>> parts);
+    /// For those who write a chunk by other means.
+    [[nodiscard]] const ByteSink& sink() const noexcept { return sink_; }
     /// Writes the end; the file appears under its name.
     void finish();
 
 private:
     OutputFile file_;
+    ByteSink sink_;
 };
 
 /// A chunk's payload, taken apart from front to back.
@@ -112,6 +126,8 @@ public:
     void finish();
 
     [[nodiscard]] std::uint64_t file_size() const noexcept { return size_; }
+    /// Where the next chunk starts.
+    [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
     [[nodiscard]] const std::string& file() const noexcept { return file_; }
     /// @throws InputError "file: message"
     [[noreturn]] void fail(const std::string& message) const;

@@ -2,6 +2,7 @@
 #include "hemi/io/factor_file.hpp"
 #include "io/chunk_file.hpp"
 #include "io/json_node.hpp"
+#include "io/row_block_chunk.hpp"
 #include "io/text_scan.hpp"
 
 #include <fmt/format.h>
@@ -70,16 +71,6 @@ void check(const FactorFile& file) {
                                           file.reference.size(), file.error ? file.error->rows.size() : 0,
                                           size));
     }
-}
-
-void write_block(ChunkWriter& writer, std::string_view tag, const RowBlock& block) {
-    const std::uint32_t rows = block.rows();
-    const std::uint64_t entries = block.columns.size();
-    const std::uint64_t visibilities = block.visibility.size();
-    writer.chunk(tag, {bytes_of(block.first_row), bytes_of(rows), bytes_of(entries), bytes_of(visibilities),
-                       bytes_of(block.begin), bytes_of(block.environment), bytes_of(block.blocked),
-                       bytes_of(block.columns), bytes_of(block.values), bytes_of(block.visibility),
-                       bytes_of(block.known)});
 }
 
 std::uint32_t integer32(const JsonNode& node) {
@@ -191,24 +182,9 @@ void read_contacts(ChunkReader& reader, FactorFile& file) {
 void read_block(ChunkReader& reader, std::string_view tag, FormFactorMatrix& factors,
                 std::uint32_t first_row) {
     Payload payload = reader.chunk(tag);
-    RowBlock block;
-    block.first_row = payload.take<std::uint32_t>();
-    const auto rows = payload.take<std::uint32_t>();
-    const auto entries = payload.take<std::uint64_t>();
-    const auto visibilities = payload.take<std::uint64_t>();
+    RowBlock block = take_row_block(payload);
     if (block.first_row != first_row) {
         payload.fail(fmt::format("starts at row {}, where row {} must come", block.first_row, first_row));
-    }
-    block.begin = payload.take_array<std::uint64_t>(std::uint64_t{rows} + 1);
-    block.environment = payload.take_array<double>(rows);
-    block.blocked = payload.take_array<double>(rows);
-    block.columns = payload.take_array<std::uint32_t>(entries);
-    block.values = payload.take_array<float>(entries);
-    block.visibility = payload.take_array<std::uint8_t>(visibilities);
-    block.known = payload.take_array<std::uint8_t>(rows);
-    payload.expect_end();
-    if (std::any_of(block.known.begin(), block.known.end(), [](std::uint8_t known) { return known > 1; })) {
-        payload.fail(fmt::format("rows from {}: marks of known rows other than 0 and 1", first_row));
     }
     try {
         factors.set_block(std::move(block));
@@ -239,10 +215,11 @@ void write_hff(const std::filesystem::path& path, const FactorFile& file) {
     const auto contacts = static_cast<std::uint32_t>(file.contacts.size());
     writer.chunk("CONT", {bytes_of(contacts), bytes_of(file.contacts)});
     for (const RowBlock& block : file.factors.blocks()) {
-        write_block(writer, "ROWS", block);
+        write_row_block(writer.sink(), "ROWS", block);
     }
     for (const std::uint32_t first_row : known_blocks(file.reference)) {
-        write_block(writer, "REFR", file.reference.blocks()[first_row / FormFactorMatrix::block_rows]);
+        write_row_block(writer.sink(), "REFR",
+                        file.reference.blocks()[first_row / FormFactorMatrix::block_rows]);
     }
     if (file.error) {
         writer.chunk("RERR", {bytes_of(file.error->rows)});

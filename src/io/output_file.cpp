@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <tuple>
 #include <unistd.h>
@@ -25,19 +26,51 @@ namespace {
     throw IoError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
 }
 
-/// A new file beside `path`, opened for writing.
+/// What the names of temporary files of `path` begin with; a number and ".tmp" follow. Names may have 255
+/// bytes: that leaves room for what is added.
+std::string temporary_prefix(const fs::path& path) {
+    return fmt::format(".{}.", path.filename().string().substr(0, 200));
+}
+
+/// A new file beside `path`, opened for writing and locked: a lock goes when its process does, however that
+/// ends, so that what is left behind can be told from what is being written.
 std::pair<int, fs::path> open_beside(const fs::path& path, mode_t mode) {
-    // Names may have 255 bytes; leave room for what is added.
-    const std::string name = path.filename().string().substr(0, 200);
     for (int attempt = 0;; ++attempt) {
         const std::string number = attempt == 0 ? "" : fmt::format(".{}", attempt);
-        fs::path temporary = path.parent_path() / fmt::format(".{}.{}{}.tmp", name, ::getpid(), number);
+        fs::path temporary =
+            path.parent_path() / fmt::format("{}{}{}.tmp", temporary_prefix(path), ::getpid(), number);
         const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
         if (descriptor >= 0) {
-            return {descriptor, std::move(temporary)};
-        }
-        if (errno != EEXIST || attempt == 100) {
+            ::flock(descriptor, LOCK_EX); // not every file system can; nothing is removed there
+            struct stat status {};
+            if (::fstat(descriptor, &status) == 0 && status.st_nlink > 0) {
+                return {descriptor, std::move(temporary)};
+            }
+            ::close(descriptor); // another run took it for left behind, before it was locked
+        } else if (errno != EEXIST || attempt >= 100) {
             fail(path, errno);
+        }
+    }
+}
+
+/// Removes temporary files of `path` that a run left which was killed while it wrote.
+void remove_left_behind(const fs::path& path) {
+    const std::string prefix = temporary_prefix(path);
+    std::error_code ignored;
+    const fs::path directory = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    for (fs::directory_iterator entry(directory, ignored), end; !ignored && entry != end;
+         entry.increment(ignored)) {
+        const std::string name = entry->path().filename().string();
+        if (name.size() <= prefix.size() + 4 || !name.starts_with(prefix) || !name.ends_with(".tmp") ||
+            name.find_first_not_of("0123456789.", prefix.size()) != name.size() - 3) {
+            continue;
+        }
+        const int descriptor = ::open(entry->path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+        if (descriptor >= 0) {
+            if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+                ::unlink(entry->path().c_str());
+            }
+            ::close(descriptor);
         }
     }
 }
@@ -91,16 +124,17 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
         }
         return;
     }
-    int descriptor = -1;
-    std::tie(descriptor, temporary_) = open_beside(path_, 0666);
+    remove_left_behind(path_);
+    std::tie(lock_, temporary_) = open_beside(path_, 0666);
     if (exists) {
-        ::fchmod(descriptor, status.st_mode & 07777);
+        ::fchmod(lock_, status.st_mode & 07777);
     }
-    stream_ = ::fdopen(descriptor, "wb");
+    const int descriptor = ::fcntl(lock_, F_DUPFD_CLOEXEC, 0); // the lock must outlive the stream
+    stream_ = descriptor < 0 ? nullptr : ::fdopen(descriptor, "wb");
     if (stream_ == nullptr) {
         const int error = errno;
         ::close(descriptor);
-        ::unlink(temporary_.c_str());
+        release();
         fail(path_, error);
     }
 }
@@ -109,8 +143,16 @@ OutputFile::~OutputFile() {
     if (stream_ != nullptr && stream_ != stdout) {
         std::fclose(stream_);
     }
+    release();
+}
+
+void OutputFile::release() noexcept {
     if (!temporary_.empty()) {
         ::unlink(temporary_.c_str());
+        temporary_.clear();
+    }
+    if (lock_ >= 0) {
+        ::close(std::exchange(lock_, -1));
     }
 }
 
@@ -154,7 +196,8 @@ void OutputFile::commit() {
     if (!sync(temporary_) || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
         fail(path_, errno);
     }
-    temporary_.clear();
+    temporary_.clear(); // it has the final name now
+    release();
     sync(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
 }
 

@@ -43,7 +43,7 @@ bool becomes_true(Condition condition) {
 
 } // namespace
 
-TEST_CASE("Ctrl-C: ends with 130 and leaves no file and no worker", "[cli]") {
+TEST_CASE("Ctrl-C: ends with 130 and leaves no worker, and no file but rows to go on from", "[cli]") {
     const bool whole_group = GENERATE(false, true); // a terminal signals the workers, too
     const int signal = whole_group ? SIGINT : SIGTERM;
     const Directory directory;
@@ -59,6 +59,8 @@ TEST_CASE("Ctrl-C: ends with 130 and leaves no file and no worker", "[cli]") {
     CHECK(outcome.status == 130);
     CHECK(outcome.err_has("interrupted"));
     CHECK(outcome.out.empty());
-    CHECK(directory.names() == Words{"cube.json"});
+    const bool kept = directory.has("a.hff.rows");
+    CHECK(directory.names() == (kept ? Words{"a.hff.rows", "cube.json"} : Words{"cube.json"}));
+    CHECK(outcome.err_has("--resume") == kept);
     CHECK(becomes_true([&mark] { return processes_with(mark).empty(); }));
 }

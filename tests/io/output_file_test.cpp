@@ -80,6 +80,24 @@ TEST_CASE("OutputFile: two writers of one name do not disturb each other, the la
     REQUIRE(folder.files() == 1);
 }
 
+TEST_CASE("OutputFile: what a killed writer left goes, what others are writing or have written stays",
+          "[io]") {
+    const Folder folder;
+    io::OutputFile other(folder / "a.txt");
+    folder.write(".a.txt.999999.tmp", "left behind");
+    folder.write(".a.txt.999999.1.tmp", "left behind");
+    folder.write(".a.txt.mine.tmp", "no number");
+    folder.write(".b.txt.999999.tmp", "of another file");
+    write_all(folder / "a.txt", "one");
+    REQUIRE_FALSE(fs::exists(folder / ".a.txt.999999.tmp"));
+    REQUIRE_FALSE(fs::exists(folder / ".a.txt.999999.1.tmp"));
+    REQUIRE(fs::exists(other.temporary()));
+    REQUIRE(folder.files() == 4);
+    other.write("two");
+    other.commit();
+    REQUIRE(io::read_file(folder / "a.txt") == "two");
+}
+
 TEST_CASE("OutputFile: a full disk is an error with path and reason, and leaves nothing behind", "[io]") {
     const Folder folder;
     const SmallDisk disk(10'000);

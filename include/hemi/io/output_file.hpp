@@ -10,8 +10,9 @@
 namespace hemi::io {
 
 /// A file that appears under its name only when it is complete: writes go to a temporary name beside it,
-/// commit() flushes, syncs and renames. Destroyed without commit(), nothing is left behind.
-/// The path "-" writes to standard output.
+/// commit() flushes, syncs and renames. Destroyed without commit(), nothing is left behind; what a process
+/// left that was killed meanwhile is removed by the next one that writes a file of that name. The path "-"
+/// writes to standard output.
 class OutputFile {
 public:
     /// @throws IoError naming the path and the system's reason.
@@ -29,8 +30,11 @@ public:
     [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
 
 private:
+    void release() noexcept;
+
     std::filesystem::path path_;
     std::filesystem::path temporary_;
+    int lock_ = -1; ///< descriptor of the temporary file, locked as long as it is there
     std::FILE* stream_ = nullptr;
 };
 

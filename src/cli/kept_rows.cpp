@@ -1,0 +1,102 @@
+#include "cli/kept_rows.hpp"
+
+#include "cli/report.hpp"
+#include "engine/open_block.hpp"
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace hemi::cli {
+
+/// Rows of another provider, those that are kept from the journal.
+class KeptRows::Provider : public RowProvider {
+public:
+    Provider(KeptRows& kept, RowProvider& provider, io::JournalKey key)
+        : kept_(kept), provider_(provider), key_(std::move(key)) {}
+
+    [[nodiscard]] std::uint32_t size() const override { return provider_.size(); }
+    [[nodiscard]] std::string renderer() const override { return provider_.renderer(); }
+
+    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
+        std::vector<bool> there(size(), false);
+        io::RowJournal& journal = *kept_.journal_;
+        key_["renderer"] = renderer(); // others give other bits
+        journal.start(key_, size(), [&](std::uint32_t patch, const RowView& row) {
+            there[patch] = true;
+            ++kept_.reused_;
+            sink(patch, row);
+        });
+        if (kept_.reused_ > 0) {
+            kept_.terminal_.note(fmt::format("{} of {} from {}", count_text(kept_.reused_),
+                                             plural(size(), "row", "rows"), journal.path().string()));
+        }
+        std::vector<std::uint32_t> missing;
+        std::copy_if(patches.begin(), patches.end(), std::back_inserter(missing),
+                     [&there](std::uint32_t patch) { return !there[patch]; });
+        if (!missing.empty()) {
+            compute(missing, sink);
+        }
+    }
+
+private:
+    void compute(std::span<const std::uint32_t> missing, const RowSink& sink) {
+        std::map<std::uint32_t, OpenBlock> open;
+        provider_.rows(missing, [&](std::uint32_t patch, const RowView& row) {
+            const std::uint32_t first = patch - patch % FormFactorMatrix::block_rows;
+            const std::uint32_t count = std::min(FormFactorMatrix::block_rows, size() - first);
+            OpenBlock& block =
+                open.try_emplace(first, first, count, rows_of_block(missing, first), 0).first->second;
+            block.add(patch, row);
+            if (block.complete()) {
+                append(block.finish());
+                open.erase(first);
+            }
+            sink(patch, row);
+        });
+    }
+
+    void append(const RowBlock& block) {
+        try {
+            kept_.journal_->append(block);
+        } catch (const IoError& error) {
+            kept_.terminal_.warn(fmt::format("{}; this run cannot be resumed", error.what()));
+        }
+    }
+
+    KeptRows& kept_;
+    RowProvider& provider_;
+    io::JournalKey key_;
+};
+
+KeptRows::KeptRows(const std::optional<std::filesystem::path>& output, bool resume, const Terminal& terminal)
+    : terminal_(terminal) {
+    if (output) {
+        journal_.emplace(*output, resume);
+    }
+}
+
+std::unique_ptr<RowProvider> KeptRows::keep(RowProvider& provider, io::JournalKey key) {
+    size_ = provider.size();
+    return std::make_unique<Provider>(*this, provider, std::move(key));
+}
+
+void KeptRows::discard() noexcept {
+    if (journal_) {
+        journal_->remove();
+    }
+}
+
+void KeptRows::tell() const {
+    if (journal_ && journal_->rows() > 0) {
+        terminal_.note(fmt::format(
+            "{} of {} are kept in {}; the same command with --resume goes on from there",
+            count_text(journal_->rows()), plural(size_, "row", "rows"), journal_->path().string()));
+    }
+}
+
+} // namespace hemi::cli
