@@ -442,3 +442,16 @@ TEST_CASE("PictureRenderer: an item is what the item buffer holds there", "[disp
     CHECK(renderer.item(from_above(), settings, 30, 20).value() >= 6); // the triangle hides the square
     CHECK_THROWS_AS(renderer.item(from_above(), settings, 60, 0), InvalidArgument);
 }
+
+TEST_CASE("PictureRenderer: backs are items where they are shown", "[display][gl]") {
+    SceneBuilder builder;
+    builder.add("faces down", {{-1, -1, 0}, {-1, 1, 0}, {1, 1, 0}, {1, -1, 0}});
+    const PatchMesh mesh = builder.mesh();
+    const auto context = gl::make_context("osmesa");
+    PictureRenderer renderer;
+    renderer.upload(make_picture_mesh(mesh, 1, std::vector<double>{0.3}, {}, {0, 0, 0}));
+    PictureSettings settings = plain(16, 16);
+    CHECK_FALSE(renderer.item(from_above(), settings, 8, 8));
+    settings.backs = true;
+    CHECK(renderer.item(from_above(), settings, 8, 8) == 0U);
+}

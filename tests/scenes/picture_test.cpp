@@ -1,15 +1,11 @@
 #include "cli/program.hpp"
 #include "support/picture_difference.hpp"
+#include "support/png.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <functional>
-
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#define STBI_ONLY_PNG
-#include <stb_image.h>
 
 // The reference was made by
 //     hemi solve scenes/cornell-box.json --device osmesa --size 200x200 -o
@@ -31,20 +27,6 @@ constexpr double cell_limit = 1.5;
 bool looks_like(const PictureDifference& difference) {
     return difference.mean < mean_limit && difference.percentile_99 < percentile_limit &&
            difference.worst_cell < cell_limit;
-}
-
-SrgbPicture read_png(const std::string& path) {
-    int width = 0;
-    int height = 0;
-    int channels = 0;
-    stbi_uc* data = stbi_load(path.c_str(), &width, &height, &channels, 3);
-    if (data == nullptr) {
-        throw std::runtime_error(path + ": not a picture");
-    }
-    SrgbPicture picture{static_cast<std::size_t>(width), static_cast<std::size_t>(height), {}};
-    picture.pixels.assign(data, data + picture.width * picture.height * 3);
-    stbi_image_free(data);
-    return picture;
 }
 
 SrgbPicture reference() {

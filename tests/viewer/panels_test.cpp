@@ -1,6 +1,7 @@
 #include "viewer/workplace.hpp"
 
 #include "hemi/io/factor_file.hpp"
+#include "support/png.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -210,4 +211,25 @@ TEST_CASE("Viewer: what cannot be shown is refused with the reason", "[viewer][g
     CHECK(place.view("windowshot a.hdr\n", small) == 3);
     CHECK(place.view("report a.txt\n", small) == 3);
     CHECK(place.view("click 3\n", small) == 3);
+}
+
+TEST_CASE("Viewer: the window shows the pixels of the screenshot beside its panel", "[viewer][gl]") {
+    const Workplace place;
+    REQUIRE(place.view("drag left 150 200 190 180\nwindowshot window.png\nscreenshot picture.png\n",
+                       with_panel) == 0);
+    const hemi::test::SrgbPicture window = hemi::test::read_png(place.path("window.png"));
+    const hemi::test::SrgbPicture picture = hemi::test::read_png(place.path("picture.png"));
+    REQUIRE(window.width == 660);
+    REQUIRE(window.height == 400);
+    REQUIRE(picture.height == 400);
+    REQUIRE(picture.width > 300);
+    REQUIRE(picture.width < 400);
+    std::size_t wrong = 0;
+    for (std::size_t y = 0; y < picture.height; ++y) {
+        const auto shown = window.pixels.begin() + static_cast<std::ptrdiff_t>(y * window.width * 3);
+        const auto drawn = picture.pixels.begin() + static_cast<std::ptrdiff_t>(y * picture.width * 3);
+        const auto end = drawn + static_cast<std::ptrdiff_t>(picture.width * 3);
+        wrong += std::equal(drawn, end, shown) ? 0 : 1;
+    }
+    CHECK(wrong == 0);
 }

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "cli/arguments.hpp"
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+/// What stands on the command line and cannot be understood. All throw InvalidArgument that names the word,
+/// and the nearest right one where there is one.
+namespace hemi::cli {
+
+/// A word that is no command.
+[[noreturn]] void refuse_command(const CLI::App& app, const std::string& word);
+
+/// A word that no option of `command` takes: does another command have it, or is it mistyped?
+[[noreturn]] void refuse_word(const CLI::App& app, const CLI::App& command, const std::string& word);
+
+/// Options of RowOptions that say nothing to the method are refused, not ignored.
+void check_method(const RowOptions& rows, const std::vector<std::string>& given);
+
+} // namespace hemi::cli
