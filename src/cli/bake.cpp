@@ -75,7 +75,8 @@ ExitStatus bake_scene(const BakeArguments& arguments, const Terminal& terminal) 
     write_baked(arguments,
                 {loaded.scene, loaded.mesh, solution.radiosity, solution.exitance, solution.blocked},
                 terminal);
-    report_leaks(enclosure, rows.file.factors, loaded.names(), arguments.rows.max_row_error, terminal);
+    report_leaks(enclosure, rows.file.factors, loaded.names(), &loaded.mesh, arguments.rows.max_row_error,
+                 terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }
 

@@ -16,8 +16,6 @@ namespace hemi::cli {
 
 namespace {
 
-constexpr std::size_t listed = 10;
-
 std::string verdict_name(EnclosureVerdict verdict) {
     switch (verdict) {
     case EnclosureVerdict::closed:
@@ -49,12 +47,13 @@ std::string section(std::string_view name, const std::vector<PatchFinding>& find
     }
     std::string text =
         summary_line(name, fmt::format("{}: {}", plural(findings.size(), "patch", "patches"), why));
-    for (std::size_t k = 0; k < std::min(listed, findings.size()); ++k) {
+    for (std::size_t k = 0; k < std::min(findings_shown, findings.size()); ++k) {
         text += "    " + names.describe(findings[k].patch);
-        text += with_share ? ": " + number_text(findings[k].share) + "\n" : "\n";
+        text += with_share ? ": " + number_text(findings[k].share) : "";
+        text += towards_text(findings[k].towards) + "\n";
     }
-    if (findings.size() > listed) {
-        text += fmt::format("    and {} more\n", count_text(findings.size() - listed));
+    if (findings.size() > findings_shown) {
+        text += fmt::format("    and {} more\n", count_text(findings.size() - findings_shown));
     }
     return text;
 }
@@ -66,14 +65,14 @@ std::string turned_text(const Findings& findings, const PatchNames& names) {
     std::string text =
         summary_line("turned round", "fronts that nobody sees while others meet back faces; reverse "
                                      "their vertices, or make them two-sided");
-    for (std::size_t k = 0; k < std::min(listed, findings.turned.size()); ++k) {
+    for (std::size_t k = 0; k < std::min(findings_shown, findings.turned.size()); ++k) {
         const TurnedGroup& group = findings.turned[k];
         text += fmt::format("    {}: {}{}\n", names.groups[group.group],
                             group.surfaces > 0 ? plural(group.surfaces, "surface", "surfaces") + ", " : "",
                             plural(group.patches, "patch", "patches"));
     }
-    if (findings.turned.size() > listed) {
-        text += fmt::format("    and {} more groups\n", count_text(findings.turned.size() - listed));
+    if (findings.turned.size() > findings_shown) {
+        text += fmt::format("    and {} more groups\n", count_text(findings.turned.size() - findings_shown));
     }
     return text;
 }
@@ -152,10 +151,13 @@ std::string to_text(const Findings& findings, const RowRepair& repair, const Pat
 
 Json section_json(const std::vector<PatchFinding>& findings, const PatchNames& names, bool with_share) {
     Json worst = Json::array();
-    for (std::size_t k = 0; k < std::min(listed, findings.size()); ++k) {
+    for (std::size_t k = 0; k < std::min(findings_shown, findings.size()); ++k) {
         Json patch = names.json(findings[k].patch);
         if (with_share) {
             patch["share"] = findings[k].share;
+        }
+        if (const auto& towards = findings[k].towards) {
+            patch["towards"] = {towards->x, towards->y, towards->z};
         }
         worst.push_back(patch);
     }

@@ -505,7 +505,8 @@ ExitStatus run(const FactorsArguments& arguments, const Outputs& outputs, const 
     if (is_scene) {
         report_covered(sums, terminal);
     }
-    report_leaks(enclosure, file.factors, subject.names(), arguments.rows.max_row_error, terminal);
+    report_leaks(enclosure, file.factors, subject.names(), subject.loaded ? &subject.loaded->mesh : nullptr,
+                 arguments.rows.max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }
 

@@ -1,6 +1,7 @@
 #include "cli/findings.hpp"
 
 #include "cli/report.hpp"
+#include "hemi/engine/leaks.hpp"
 #include "hemi/scene/near_surface.hpp"
 
 #include <fmt/format.h>
@@ -146,6 +147,17 @@ void look_at_near_surfaces(Findings& findings, const PatchMesh& mesh) {
                      [](const PatchFinding& a, const PatchFinding& b) { return a.share < b.share; });
 }
 
+void look_where_leaks_go(Findings& findings, const PatchMesh& mesh) {
+    std::vector<std::uint32_t> shown;
+    for (std::size_t k = 0; k < std::min(findings_shown, findings.leaks.size()); ++k) {
+        shown.push_back(findings.leaks[k].patch);
+    }
+    const auto directions = leak_directions(mesh, shown);
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+        findings.leaks[k].towards = directions[k];
+    }
+}
+
 void judge(Findings& findings, double max_row_error) {
     const auto fail = [&findings](std::size_t count, std::string_view one, std::string_view many) {
         if (count > 0) {
@@ -178,6 +190,7 @@ Findings find_defects(const io::FactorFile& file, const PatchMesh* mesh, double 
     }
     if (mesh != nullptr) {
         look_at_near_surfaces(findings, *mesh);
+        look_where_leaks_go(findings, *mesh);
     }
     judge(findings, max_row_error);
     return findings;

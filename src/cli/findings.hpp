@@ -16,7 +16,10 @@ namespace hemi::cli {
 struct PatchFinding {
     std::uint32_t patch = 0;
     double share = 0.0;
+    std::optional<Vec3> towards = {}; ///< of the first findings_shown leaks: where it goes
 };
+/// Of a kind of finding so many are shown.
+inline constexpr std::size_t findings_shown = 10;
 
 /// Surfaces (of a stored file: whole groups) whose front no patch sees, while other patches meet enough back
 /// faces to have met theirs.

@@ -7,6 +7,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/engine/contacts.hpp"
+#include "hemi/engine/leaks.hpp"
 #include "hemi/engine/yardsticks.hpp"
 #include "hemi/io/scene_reader.hpp"
 
@@ -430,20 +431,21 @@ EnclosureFinding find_leaks(const FormFactorMatrix& factors, const std::string& 
 }
 
 void report_leaks(const EnclosureFinding& finding, const FormFactorMatrix& factors, const PatchNames& names,
-                  double max_row_error, const Terminal& terminal) {
+                  const PatchMesh* mesh, double max_row_error, const Terminal& terminal) {
     if (finding.leaks.empty()) {
         return;
     }
-    constexpr std::size_t shown = 3;
+    const auto shown = std::span(finding.leaks).first(std::min<std::size_t>(3, finding.leaks.size()));
+    const auto directions =
+        mesh != nullptr ? leak_directions(*mesh, shown) : std::vector<std::optional<Vec3>>(shown.size());
     std::string message =
         fmt::format("the enclosure is said to be closed, but {} more than {} into the open. Worst: ",
                     finding.leaks.size() == 1 ? std::string("1 patch loses")
                                               : plural(finding.leaks.size(), "patch", "patches") + " lose",
                     max_row_error);
-    for (std::size_t k = 0; k < std::min(shown, finding.leaks.size()); ++k) {
-        const std::uint32_t patch = finding.leaks[k];
-        message += fmt::format("{}{} {}", k == 0 ? "" : "; ", names.describe(patch),
-                               number_text(factors.row(patch).environment));
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+        message += fmt::format("{}{} {}{}", k == 0 ? "" : "; ", names.describe(shown[k]),
+                               number_text(factors.row(shown[k]).environment), towards_text(directions[k]));
     }
     terminal.error(message);
 }

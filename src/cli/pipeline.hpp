@@ -105,9 +105,11 @@ struct EnclosureFinding {
 /// @param enclosure  auto, closed or open
 [[nodiscard]] EnclosureFinding find_leaks(const FormFactorMatrix& factors, const std::string& enclosure,
                                           double max_row_error);
-/// Errors on stderr about leaks: how many and the worst few. Says nothing if there are none.
+/// Errors on stderr about leaks: how many and the worst few, with the direction in which they go. Says
+/// nothing if there are none.
+/// @param mesh  the patches; null: not known
 void report_leaks(const EnclosureFinding& finding, const FormFactorMatrix& factors, const PatchNames& names,
-                  double max_row_error, const Terminal& terminal);
+                  const PatchMesh* mesh, double max_row_error, const Terminal& terminal);
 /// A warning if patches are covered.
 void report_covered(const RowSums& sums, const Terminal& terminal);
 

@@ -123,6 +123,13 @@ Json PatchNames::json(std::uint32_t patch) const {
     return object;
 }
 
+std::string towards_text(const std::optional<Vec3>& direction) {
+    const auto tidy = [](double value) { return std::round(100.0 * value) / 100.0 + 0.0; };
+    return direction
+               ? fmt::format(", towards {} {} {}", tidy(direction->x), tidy(direction->y), tidy(direction->z))
+               : std::string();
+}
+
 std::string row_sum_text(const RowSums& sums) {
     if (sums.known == 0) {
         return "no rows computed";

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -59,6 +60,9 @@ struct PatchNames {
     /// {"index", "group", "centre"}, centre null where not known.
     [[nodiscard]] Json json(std::uint32_t patch) const;
 };
+
+/// ", towards 0 0.71 0.71" for a direction; empty where there is none.
+[[nodiscard]] std::string towards_text(const std::optional<Vec3>& direction);
 
 /// min, mean and max of the row sums, as one line.
 [[nodiscard]] std::string row_sum_text(const RowSums& sums);

@@ -348,7 +348,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
             print(text);
         }
     }
-    report_leaks(enclosure, factors, loaded.names(), arguments.rows.max_row_error, terminal);
+    report_leaks(enclosure, factors, loaded.names(), &loaded.mesh, arguments.rows.max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }
 

@@ -261,30 +261,41 @@ private:
         }
     }
 
-    /// The next run of patches within one block of the matrix.
-    static ToWorker next_job(std::span<const std::uint32_t> patches, std::size_t& next) {
-        ToWorker job;
-        const std::uint32_t block = patches[next] / FormFactorMatrix::block_rows;
-        while (next < patches.size() && patches[next] / FormFactorMatrix::block_rows == block) {
-            job.patches[job.count++] = patches[next++];
+    /// Runs of patches within one block of the matrix each, in order.
+    static std::vector<std::span<const std::uint32_t>> jobs_of(std::span<const std::uint32_t> patches) {
+        std::vector<std::span<const std::uint32_t>> jobs;
+        for (std::size_t begin = 0; begin < patches.size();) {
+            const std::uint32_t block = patches[begin] / FormFactorMatrix::block_rows;
+            std::size_t end = begin + 1;
+            while (end < patches.size() && patches[end] / FormFactorMatrix::block_rows == block) {
+                ++end;
+            }
+            jobs.push_back(patches.subspan(begin, end - begin));
+            begin = end;
         }
-        return job;
+        return jobs;
     }
 
     void serve(std::span<const std::uint32_t> patches, const RowSink& sink) {
+        const auto jobs = jobs_of(patches);
         std::size_t next = 0;
         std::size_t done = 0;
-        const auto feed = [&](WorkerProcess& worker, std::uint32_t ahead) {
-            while (worker.jobs < ahead && next < patches.size()) {
-                worker.send(next_job(patches, next));
+        const auto feed = [&](WorkerProcess& worker) {
+            // One job ahead, so that a worker never waits for the next; but near the end nobody hoards what
+            // another could begin.
+            const std::uint32_t at_once = jobs.size() - next > workers_.size() ? 2 : 1;
+            while (worker.jobs < at_once && next < jobs.size()) {
+                ToWorker message;
+                message.count = static_cast<std::uint32_t>(jobs[next].size());
+                std::copy(jobs[next].begin(), jobs[next].end(), message.patches.begin());
+                worker.send(message);
                 ++worker.jobs;
+                ++next;
             }
         };
         std::vector<pollfd> waiting;
-        for (std::uint32_t ahead = 1; ahead <= 2; ++ahead) { // a job for each before anyone gets a second
-            for (WorkerProcess& worker : workers_) {
-                feed(worker, ahead);
-            }
+        for (WorkerProcess& worker : workers_) {
+            feed(worker);
         }
         for (const WorkerProcess& worker : workers_) {
             waiting.push_back({worker.fd(), POLLIN, 0});
@@ -304,7 +315,7 @@ private:
                 const FromWorker chunk = worker.receive();
                 if (chunk.job_done != 0) {
                     --worker.jobs;
-                    feed(worker, 2); // so that it never waits for the next
+                    feed(worker);
                 }
                 deliver(worker, chunk, sink);
                 done += chunk.rows;

@@ -72,7 +72,7 @@ private:
 
 ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings)
     : with_visibility_(settings.quantity == RowQuantity::visibility) {
-    constexpr std::uint64_t texels_a_chunk = 1u << 22;
+    constexpr std::uint64_t texels_a_chunk = 1u << 19;
     const std::uint64_t texels = std::uint64_t{3} * settings.resolution * settings.resolution;
     const std::uint64_t row_texels = texels * std::max(settings.eye_points, settings.near_eye_points);
     rows_ = static_cast<std::uint32_t>(

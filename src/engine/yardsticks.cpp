@@ -1,22 +1,19 @@
 #include "hemi/engine/yardsticks.hpp"
 
 #include "core/parallel_for.hpp"
-#include "core/splitmix.hpp"
 #include "engine/contour_integral.hpp"
 #include "engine/convex_polygon.hpp"
 #include "engine/direct_integration.hpp"
 #include "engine/eye.hpp"
+#include "engine/patch_rays.hpp"
 #include "engine/ray_tracer.hpp"
-#include "engine/sobol.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/exchange_area.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 
 namespace hemi {
 
@@ -199,20 +196,6 @@ private:
     std::uint64_t back_ = 0;
 };
 
-/// A number of [0, 1) that is distributed as a straight line from `a` to `b`, from an evenly distributed one.
-double linear_sample(double a, double b, double even) {
-    const double root = std::sqrt(a * a + even * (b * b - a * a));
-    return a + root > 0.0 ? even * (a + b) / (a + root) : 0.0;
-}
-
-/// A point of the polygon, evenly distributed over its area.
-Vec3 area_sample(const BilinearMap& map, double u, double v) {
-    const double s =
-        2.0 * linear_sample(map.jacobian - map.jacobian_s, map.jacobian + map.jacobian_s, u) - 1.0;
-    const double t = 2.0 * linear_sample(map.jacobian_at(s, -1.0), map.jacobian_at(s, 1.0), v) - 1.0;
-    return map.point(s, t);
-}
-
 class MonteCarloRows final : public YardstickRows {
 public:
     MonteCarloRows(const PatchMesh& mesh, const YardstickSettings& settings)
@@ -225,28 +208,11 @@ public:
 
 private:
     [[nodiscard]] Row row(std::uint32_t patch) const override {
-        const EyeFrame frame(mesh().normal(patch), patch, 0, settings_.seed);
-        const PatchCorners corners = mesh().corners(patch);
-        const BilinearMap map(corners.polygon(), frame.z);
-        // Every patch has shifts of its own.
-        std::array<std::uint32_t, 4> shift{};
-        std::uint64_t state = splitmix(splitmix(settings_.seed) ^ patch);
-        for (std::uint32_t& bits : shift) {
-            state = splitmix(state);
-            bits = static_cast<std::uint32_t>(state >> 32);
-        }
+        const PatchRays sequence(mesh(), patch, settings_.seed);
         RayCount count(mesh().size());
-        for (std::uint32_t ray = 0; ray < settings_.rays; ++ray) {
-            const auto bits = sobol_point(ray);
-            std::array<double, 4> even{};
-            for (std::size_t d = 0; d < even.size(); ++d) {
-                even[d] = (static_cast<double>(bits[d] ^ shift[d]) + 0.5) * 0x1p-32;
-            }
-            const double radius = std::sqrt(even[2]);
-            const double angle = 2.0 * std::numbers::pi * even[3];
-            const Vec3 direction = radius * std::cos(angle) * frame.x + radius * std::sin(angle) * frame.y +
-                                   std::sqrt(1.0 - even[2]) * frame.z;
-            count.add(tracer_.trace(area_sample(map, even[0], even[1]), direction));
+        for (std::uint32_t index = 0; index < settings_.rays; ++index) {
+            const PatchRays::Ray ray = sequence[index];
+            count.add(tracer_.trace(ray.origin, ray.direction));
         }
         return count.row();
     }

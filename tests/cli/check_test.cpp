@@ -58,6 +58,7 @@ TEST_CASE("check: leaks of a closed scene are listed with their places", "[cli]"
     CHECK(run.status == 5);
     CHECK(run.out_has("20 patches: they see the environment"));
     CHECK(run.out_has("patch 0 (floor, at 0.25 0.25 0): 0.2"));
+    CHECK(run.out_has(", towards "));
     CHECK(run.out_has("and 10 more"));
     CHECK(run.out_has("out of tolerance (0.0001): 20 patches leak"));
     const Json json = run_hemi(quick({"check", scene, "--json"})).json();
@@ -65,6 +66,7 @@ TEST_CASE("check: leaks of a closed scene are listed with their places", "[cli]"
     CHECK(json["leaks"]["count"] == 20);
     CHECK(json["leaks"]["worst"].size() == 10);
     CHECK(json["leaks"]["worst"][0]["centre"].size() == 3);
+    CHECK(json["leaks"]["worst"][0]["towards"].size() == 3);
     CHECK(run_hemi(quick({"check", scene, "--enclosure", "open"})).status == 0);
     CHECK(run_hemi(quick({"check", scene, "--max-row-error", "0.9"})).status == 0);
 }

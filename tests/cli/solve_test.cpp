@@ -169,6 +169,7 @@ TEST_CASE("solve: a closed scene that leaks is exit 5, after its outputs are wri
     CHECK(run.err_has("45 patches lose"));
     CHECK(run.err_has("Worst: patch "));
     CHECK(run.err_has(", at "));
+    CHECK(run.err_has(", towards "));
     CHECK(run.json()["schema"] == "hemi/solve/1");
     CHECK(directory.has("a.png"));
     CHECK(run_hemi(quick({"solve", scene, "--enclosure", "open"})).status == 0);

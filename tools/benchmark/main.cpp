@@ -101,6 +101,7 @@ int main(int argc, char** argv) {
     }
     // One thread a context, naive or not; read when the first context is made.
     setenv("LP_NUM_THREADS", "0", 1);
+    keep_freed_memory();
     Options options;
     CLI::App app("Times hemicube rows against the naive design", "tools/bench");
     declare(app, options);

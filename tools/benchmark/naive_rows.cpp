@@ -34,13 +34,13 @@ struct Vertex {
     std::array<std::uint32_t, 2> item;
 };
 
+} // namespace
+
 std::uint32_t item_of_back(const PatchMesh& mesh, std::uint32_t patch) {
     const std::uint32_t surface = mesh.surface_of()[patch];
     const bool two_sided = mesh.surfaces()[surface].two_sided;
     return two_sided ? item_first_patch + patch + mesh.patches_per_side(surface) : item_blocked;
 }
-
-} // namespace
 
 NaiveRows::NaiveRows(const PatchMesh& mesh, const HemicubeSettings& settings, const std::string& device)
     : context_(gl::make_context(device)), settings_(settings), eyes_(make_eye_points(mesh, 1).points),

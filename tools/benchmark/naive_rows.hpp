@@ -13,6 +13,9 @@
 
 namespace hemi::bench {
 
+/// What the back of a front patch counts as: its back patch, or blocked.
+[[nodiscard]] std::uint32_t item_of_back(const PatchMesh& mesh, std::uint32_t patch);
+
 /// The textbook hemicube, to measure against: every row draws all patches five times, each patch with an item
 /// id of its own, reads the five faces back one by one and sums texel by texel on the CPU. Same eyes,
 /// rotation, facing and delta form factors as the engine; conventional perspective and depth.

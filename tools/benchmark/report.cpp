@@ -48,7 +48,9 @@ nlohmann::json to_json(const Cell& cell) {
              {{"one_core", cell.one_core},
               {"one_worker", value(cell.one_worker)},
               {"all_workers", value(cell.all_workers)},
-              {"naive", cell.naive}}},
+              {"naive", cell.naive},
+              {"embree", cell.embree},
+              {"monte_carlo", cell.monte_carlo}}},
             {"megapixels_per_second", megapixels(cell)},
             {"ratio_to_naive", cell.ratio}};
 }
@@ -76,22 +78,26 @@ void Report::table_head() const {
     line("");
     line("Hemicubes/s, sparse rows included. Naive draws all patches five times a row and reads five faces");
     line("back; one core: one context of one thread, as naive has; workers: with their processes' traffic.");
+    line("Embree: 16 coherent rays at a time through the same texels, MC: as many random rays; one core "
+         "each.");
     line("");
-    line("{:16} {:>7} {:>4} {:>9} {:>9} {:>10} {:>9} {:>9} {:>9}", "scene", "patches", "res", "one core",
-         "1 worker", fmt::format("{} workers", circumstances_.workers), "Mpixels/s", "naive", "x naive");
+    line("{:16} {:>7} {:>4} {:>9} {:>9} {:>10} {:>9} {:>7} {:>9} {:>7} {:>7}", "scene", "patches", "res",
+         "one core", "1 worker", fmt::format("{} workers", circumstances_.workers), "Mpixels/s", "naive",
+         "x naive", "Embree", "MC");
 }
 
-void Report::scene(const std::string& name, std::uint32_t patches, std::size_t polygons, double difference) {
-    agreements_.push_back({name, patches, difference});
-    line("{}: {} patches on {} polygons; naive rows and these differ by {:.1e} of a row", name, patches,
-         polygons, difference);
+void Report::scene(const std::string& name, std::uint32_t patches, std::size_t polygons, double naive,
+                   double embree) {
+    agreements_.push_back({name, patches, naive, embree});
+    line("{}: {} patches on {} polygons; naive rows differ by {:.1e} of a row, Embree's by {:.1e}", name,
+         patches, polygons, naive, embree);
 }
 
 void Report::cell(const Cell& cell) {
     cells_.push_back(cell);
-    line("{:16} {:>7} {:>4} {:>9} {:>9} {:>10} {:>9.1f} {:>9} {:>9.1f}", cell.scene, cell.patches,
+    line("{:16} {:>7} {:>4} {:>9} {:>9} {:>10} {:>9.1f} {:>7} {:>9.1f} {:>7} {:>7}", cell.scene, cell.patches,
          cell.resolution, rate(cell.one_core), rate(cell.one_worker), rate(cell.all_workers),
-         megapixels(cell), rate(cell.naive), cell.ratio);
+         megapixels(cell), rate(cell.naive), cell.ratio, rate(cell.embree), rate(cell.monte_carlo));
 }
 
 void Report::findings_head() const {
@@ -114,7 +120,8 @@ void Report::write_json(const std::filesystem::path& file) const {
     for (const Agreement& agreement : agreements_) {
         json["agreement"].push_back({{"scene", agreement.scene},
                                      {"patches", agreement.patches},
-                                     {"difference", agreement.difference}});
+                                     {"naive", agreement.naive},
+                                     {"embree", agreement.embree}});
     }
     for (const Cell& one : cells_) {
         json["table"].push_back(to_json(one));

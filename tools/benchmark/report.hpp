@@ -27,7 +27,9 @@ struct Cell {
     std::optional<double> one_worker;
     std::optional<double> all_workers;
     double naive = 0.0;
-    double ratio = 0.0; ///< one_core / naive
+    double ratio = 0.0;       ///< one_core / naive
+    double embree = 0.0;      ///< rays through the same texels, one core
+    double monte_carlo = 0.0; ///< as many rays, one core
 };
 
 enum class Bound { none, at_least, at_most };
@@ -51,8 +53,9 @@ public:
     explicit Report(Circumstances circumstances);
 
     void table_head() const;
-    /// @param difference  of naive and engine rows.
-    void scene(const std::string& name, std::uint32_t patches, std::size_t polygons, double difference);
+    /// @param naive,embree  how far their rows are from the engine's, of a row
+    void scene(const std::string& name, std::uint32_t patches, std::size_t polygons, double naive,
+               double embree);
     void cell(const Cell& cell);
     void findings_head() const;
     void finding(const Finding& finding);
@@ -64,7 +67,8 @@ private:
     struct Agreement {
         std::string scene;
         std::uint32_t patches;
-        double difference;
+        double naive;
+        double embree;
     };
     Circumstances circumstances_;
     std::vector<Agreement> agreements_;

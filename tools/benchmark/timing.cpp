@@ -3,8 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <ctime>
+#include <limits>
 #include <utility>
+
+#include <malloc.h>
+#include <sys/mman.h>
 
 namespace hemi::bench {
 
@@ -77,6 +83,31 @@ CoreShare::CoreShare()
 
 double CoreShare::so_far() const {
     return (clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - processor_) / (clock_seconds(CLOCK_MONOTONIC) - wall_);
+}
+
+void keep_freed_memory() {
+    mallopt(M_MMAP_THRESHOLD, std::numeric_limits<int>::max());
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+}
+
+FreshMemory::FreshMemory() {
+    constexpr int default_threshold = 128 * 1024;
+    mallopt(M_MMAP_THRESHOLD, default_threshold);
+    mallopt(M_TRIM_THRESHOLD, default_threshold);
+    malloc_trim(0);
+}
+
+double fresh_memory_rate() {
+    constexpr std::size_t bytes = std::size_t{1} << 28;
+    void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) {
+        return 0.0;
+    }
+    const double start = clock_seconds(CLOCK_MONOTONIC);
+    std::memset(memory, 1, bytes);
+    const double elapsed = clock_seconds(CLOCK_MONOTONIC) - start;
+    munmap(memory, bytes);
+    return static_cast<double>(bytes) / elapsed;
 }
 
 Subject row_subject(RowProvider& provider, std::vector<std::uint32_t> rows, double seconds) {

@@ -39,6 +39,23 @@ private:
     double processor_;
 };
 
+/// From now on memory that is given back stays with the process: matrices of further runs lie in pages that
+/// were touched before.
+void keep_freed_memory();
+
+/// While it lives, memory that is given back goes to the system, and every matrix waits for it to clear fresh
+/// pages, as the first matrix of a program does. How long that takes is a property of the machine.
+class FreshMemory {
+public:
+    FreshMemory();
+    ~FreshMemory() { keep_freed_memory(); }
+    FreshMemory(const FreshMemory&) = delete;
+    FreshMemory& operator=(const FreshMemory&) = delete;
+};
+
+/// Bytes per second at which memory that was never touched is written, page by page.
+[[nodiscard]] double fresh_memory_rate();
+
 /// Seconds a row: computes the rows as a matrix, again and again until `seconds` have passed.
 /// @param provider  must outlive the subject.
 [[nodiscard]] Subject row_subject(RowProvider& provider, std::vector<std::uint32_t> rows, double seconds);
