@@ -1,15 +1,23 @@
 #version 450 core
-// Linear radiosity; alpha tells a surface from the background.
+// Linear radiosity; alpha tells a surface from the background, and a back from a front.
 in vec3 smooth_radiosity;
 flat in vec3 flat_radiosity;
 in vec3 outline;
 
 uniform bool flat_shading;
 uniform float outline_width; // samples; 0: no outlines
+uniform float stripe_width;  // of backs, samples
+uniform vec2 first_sample;   // of this part of the picture
 
 layout(location = 0) out vec4 radiosity;
 
 void main() {
+    if (!gl_FrontFacing) { // not light: a colour for the display
+        vec2 place = gl_FragCoord.xy + first_sample;
+        bool stripe = fract((place.x + place.y) / (2.0 * stripe_width)) < 0.5;
+        radiosity = vec4(stripe ? vec3(0.35, 0.04, 0.16) : vec3(0.12, 0.02, 0.06), 2.0);
+        return;
+    }
     radiosity = vec4(flat_shading ? flat_radiosity : smooth_radiosity, 1.0);
     if (outline_width > 0.0) {
         vec3 distance_in_samples = outline / max(fwidth(outline), vec3(1e-6));

@@ -18,7 +18,14 @@ vec3 filmic_curve(vec3 x) {
     return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
+bool is_back(vec4 surface) {
+    return surface.a > 1.0;
+}
+
 vec3 display(vec4 surface) {
+    if (is_back(surface)) {
+        return surface.rgb;
+    }
     if (surface.a == 0.0 && !has_environment) {
         return vec3(nothing);
     }
@@ -46,7 +53,7 @@ vec4 sample_at(ivec2 place) {
         vec4 before = texelFetch(samples, clamp(place - one, ivec2(0), last), 0);
         vec4 after = texelFetch(samples, clamp(place + one, ivec2(0), last), 0);
         if (before.a > 0.0 && after.a > 0.0) {
-            return 0.5 * (before + after);
+            return is_back(before) || is_back(after) ? after : 0.5 * (before + after);
         }
     }
     return vec4(environment, 0.0);
@@ -60,7 +67,7 @@ void main() {
         for (int x = 0; x < samples_per_edge; ++x) {
             vec4 surface = sample_at(first + ivec2(x, y));
             shown += display(surface);
-            linear += surface.rgb;
+            linear += is_back(surface) ? vec3(0.0) : surface.rgb;
         }
     }
     float share = 1.0 / float(samples_per_edge * samples_per_edge);

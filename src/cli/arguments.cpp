@@ -103,6 +103,8 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
                })
         ->excludes(size);
     options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
+    options.flag("--allow-outside", scene.allow_outside,
+                 "open files outside the scene's folder that the scene names");
     app.add_option("--two-sided", scene.two_sided,
                    "faces of GROUP radiate on both sides (not for .json); repeatable")
         ->allow_extra_args(false)
@@ -188,6 +190,10 @@ void add_rows(CLI::App& app, RowOptions& rows) {
                                                             text, *rows.resolution + 1));
                       }
                   });
+    options.value(
+        "--shadow-rays", "N",
+        "rays between patches that partly see each other, 0 to 4096 (as the preset says)",
+        [&rows](const std::string& text) { rows.shadow_rays = to_index("--shadow-rays", text, 0, 4096); });
     add_drawing(app, rows);
 }
 
@@ -209,8 +215,8 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
     auto* target = options.value(
         "--error-target", "T", "find the cheapest settings by which the estimated error is T at most",
         [&rows](const std::string& text) { rows.error_target = parse_positive("--error-target", text); });
-    for (const char* name :
-         {"--preset", "--method", "--eye-points", "--resolution", "--rays", "--no-estimate"}) {
+    for (const char* name : {"--preset", "--method", "--eye-points", "--resolution", "--shadow-rays",
+                             "--rays", "--no-estimate"}) {
         target->excludes(app.get_option(name));
     }
 }
@@ -294,6 +300,15 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
                 static_cast<ToneMapping>(parse_choice("--tone-mapping", text, Words{"filmic", "linear"}));
             picture.tone_mapping_given = true;
         }));
+    options.flag("--orthographic", picture.orthographic, "parallel rays, at the scale of the target's depth");
+    options.flag("--outlines", picture.outlines, "outlines of patches");
+    options.flag("--backs", picture.backs, "show the backs of one-sided surfaces, striped");
+    for (const char* name : {"--orthographic", "--outlines", "--backs"}) {
+        added.push_back(app.get_option(name));
+    }
+    added.push_back(options.value(
+        "--samples", "N", "supersamples along each edge of a pixel, 1 to 8 (4)",
+        [&picture](const std::string& text) { picture.samples = to_index("--samples", text, 1, 8); }));
     for (CLI::Option* option : added) {
         if (output != nullptr) {
             option->needs(output);
@@ -336,7 +351,8 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     Options output(app, "Output");
     auto* file = output.path(
         "-o,--output", "FILE", a.output,
-        "form factors: .hff .mtx .csv .npz, View3D's .txt .vf, ParaView's .vtp; - for .csv on stdout");
+        "form factors: .hff .mtx .csv .npz .h5, View3D's .txt .vf, Elmer's .dat .bin, EnergyPlus' .idf, "
+        "ParaView's .vtp; - for .csv on stdout");
     add_resume(app, a.rows, file);
     output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
     auto* row = output.value("--row", "I", "print one row, largest first, with names",
@@ -430,9 +446,15 @@ void add_view(CLI::App& app, ViewArguments& a) {
     add_solver(app, a.solver);
     a.picture.size = {1280, 720};
     add_picture(app, a.picture, nullptr);
-    Options(app, "Window")
-        .value("--script", "FILE", "keys, drags and screenshots from a file, for tests",
-               [&a](const std::string& text) { a.script = text; });
+    Options window(app, "Window");
+    window.value("--controls", "NAME", "standard (the default) or blender: what the mouse does",
+                 [&a](const std::string& text) {
+                     a.controls = static_cast<viewer::Controls>(
+                         parse_choice("--controls", text, Words{"standard", "blender"}));
+                 });
+    window.value("--script", "FILE",
+                 "drags, keys, screenshots and more from a file, for demonstrations and tests",
+                 [&a](const std::string& text) { a.script = text; });
     add_common(app, a.common, false);
     app.footer("Examples:\n"
                "  hemi view scenes/cornell-box.json\n"
@@ -448,24 +470,26 @@ void add_bake(CLI::App& app, BakeArguments& a) {
     add_environment(app, a.scene);
     add_solver(app, a.solver);
     Options(app, "Output")
-        .path("-o,--output", "OUT.glb", a.picture.output, "binary glTF with vertex colours; - for stdout")
+        .path("-o,--output", "OUT", a.picture.output,
+              "mesh with vertex colours: .glb or .ply; - for .glb on stdout")
         ->required();
     (void)add_shown(app, a.picture);
     add_common(app, a.common);
-    app.footer("Colours (COLOR_0) are linear: exposure times radiosity, at most 1. The radiosity itself is "
-               "the vertex\n"
-               "attribute _RADIOSITY. Axes are those of the scene.\n\n"
-               "Examples:\n"
-               "  hemi bake scenes/cornell-box.json -o cornell-box.glb\n"
-               "  hemi bake room.hres -o room.glb --exposure 0.5 --flat");
+    app.footer(
+        "Colours are exposure times radiosity, at most 1: linear in a .glb (COLOR_0), sRGB in a .ply. The\n"
+        "radiosity itself is _RADIOSITY, or radiosity_red and so on. Axes are those of the scene.\n\n"
+        "Examples:\n"
+        "  hemi bake scenes/cornell-box.json -o cornell-box.glb\n"
+        "  hemi bake room.hres -o room.glb --exposure 0.5 --flat");
 }
 
 void add_convert(CLI::App& app, ConvertArguments& a) {
-    add_positional(app, "IN", a.input, "form factors: .hff .mtx .csv .npz; or a solution: .hres");
     add_positional(
-        app, "OUT", a.output,
-        "form factors: .mtx .csv .npz; from .hff also .hff and View3D's .txt .vf; - for .csv on stdout; "
-        "from .hres: .vtp");
+        app, "IN", a.input,
+        "form factors: .hff .mtx .csv .npz, View3D's .txt .vf, Elmer's .dat .bin; a solution: .hres");
+    add_positional(app, "OUT", a.output,
+                   "form factors: .mtx .csv .npz .h5 .dat .bin; from .hff also .hff .txt .vf and EnergyPlus' "
+                   ".idf; - for .csv on stdout; from .hres: .vtp, or .csv with the radiosity of every patch");
     add_repair(app, a.repair);
     Options paraview(app, "ParaView");
     auto* factors =
@@ -576,6 +600,7 @@ void check_method(const RowOptions& rows, const std::vector<std::string>& given)
         {"--seed", {"hemicube", "montecarlo", "hemisphere"}},
         {"--preset", {"hemicube"}},
         {"--eye-points", {"hemicube"}},
+        {"--shadow-rays", {"hemicube"}},
         {"--no-merge", {"hemicube"}},
         {"--jobs", {"hemicube"}},
         {"--error-target", {"hemicube"}},
@@ -587,6 +612,10 @@ void check_method(const RowOptions& rows, const std::vector<std::string>& given)
             throw InvalidArgument(fmt::format("{} does not apply to --method {}; it belongs to {}", option,
                                               rows.method, fmt::join(found->second, ", ")));
         }
+    }
+    if (rows.shadow_rays && rows.preset == "plain") {
+        throw InvalidArgument("--shadow-rays does not apply to --preset plain, which knows no visibility; it "
+                              "belongs to fast, default, exact");
     }
 }
 
@@ -601,7 +630,11 @@ void add_command(CLI::App& app, const std::string& name, const std::string& help
     command->final_callback([command, values, &chosen] {
         for (const CLI::Option* option : command->get_options()) {
             if (option->count() > 0 && !option->get_lnames().empty()) {
-                values->common.given.push_back("--" + option->get_lnames().front());
+                const std::string& spelling =
+                    values->common.given.emplace_back("--" + option->get_lnames().front());
+                const bool flag = option->get_expected_max() == 0;
+                values->common.words.emplace_back(spelling,
+                                                  flag ? std::vector<std::string>() : option->results());
             }
         }
         if constexpr (requires { values->rows.method; }) {
@@ -630,7 +663,7 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
     add_command(app, "trade", "Speed against accuracy, measured on a scene", add_trade, chosen);
     add_command(app, "render", "Picture of a stored solution", add_render, chosen);
     add_command(app, "view", "Window with an orbiting camera", add_view, chosen);
-    add_command(app, "bake", "Mesh with the solution as vertex colours, glTF", add_bake, chosen);
+    add_command(app, "bake", "Mesh with the solution as vertex colours", add_bake, chosen);
     add_command(app, "convert", "Form factors from one file format to another", add_convert, chosen);
     add_command(app, "info", "What a file holds and what it would cost", add_info, chosen);
     add_command(app, "devices", "OpenGL devices that can be used", add_devices, chosen);

@@ -7,12 +7,14 @@
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 #include "hemi/solver/solver.hpp"
+#include "viewer/viewer.hpp"
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -26,6 +28,8 @@ struct CommonOptions {
     ColourChoice colour = ColourChoice::automatic;
     bool json = false;
     std::vector<std::string> given; ///< names of all options on the command line, "--resolution"
+    /// The same with their values, none for flags.
+    std::vector<std::pair<std::string, std::vector<std::string>>> words;
 };
 
 struct SceneOptions {
@@ -36,6 +40,7 @@ struct SceneOptions {
         environment; ///< `--environment`: one value for all channels or one for each; empty: the scene's
     std::vector<std::string> two_sided;
     bool skip_degenerate = false;
+    bool allow_outside = false;
 };
 
 struct RowOptions {
@@ -45,6 +50,7 @@ struct RowOptions {
     std::optional<std::uint32_t> rays; ///< of montecarlo
     std::optional<std::uint32_t> eye_points;
     std::optional<std::uint32_t> resolution;
+    std::optional<std::uint32_t> shadow_rays; ///< of a hybrid, a partly hidden pair
     std::optional<std::uint64_t> seed;
     bool merge = true;
     std::uint32_t jobs = 0;                  ///< 0: one per core
@@ -63,6 +69,10 @@ struct PictureOptions {
     ToneMapping tone_mapping = ToneMapping::filmic;
     bool tone_mapping_given = false;
     bool flat = false;
+    bool outlines = false;
+    bool backs = false;
+    bool orthographic = false;
+    std::uint32_t samples = 4;
     std::vector<std::string> show; ///< channel names; empty: all of one or three channels
     std::optional<CameraOption> camera;
 };
@@ -117,7 +127,8 @@ struct ViewArguments {
     RowOptions rows;
     SolverSettings solver;
     PictureOptions picture; ///< to start with; its output is not used
-    std::string script;     ///< file that drives the window in a test; empty: a person does
+    std::string script;     ///< file that drives the window; empty: a person does
+    viewer::Controls controls = viewer::Controls::standard;
 };
 
 struct BakeArguments {

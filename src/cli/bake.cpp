@@ -41,8 +41,9 @@ void write_baked(const BakeArguments& arguments, const PictureSubject& subject, 
             ? *arguments.picture.exposure
             : automatic_exposure(subject.mesh, mesh, subject.blocked, subject.exitance, channels);
     const std::filesystem::path& path = *arguments.picture.output;
-    io::write_baked_glb(path, subject.mesh,
-                        arguments.picture.flat ? flat_corners(mesh.patches) : mesh.corners, exposure);
+    const std::vector<float> corners = arguments.picture.flat ? flat_corners(mesh.patches) : mesh.corners;
+    (extension_of(path) == ".ply" ? io::write_baked_ply : io::write_baked_glb)(path, subject.mesh, corners,
+                                                                               exposure);
     if (arguments.common.json) {
         print_json({{"schema", "hemi/bake/1"},
                     {"output", path.string()},
@@ -99,7 +100,7 @@ void bake_result(const BakeArguments& arguments, const Terminal& terminal) {
 
 ExitStatus run(const BakeArguments& arguments, const Terminal& terminal) {
     Outputs outputs;
-    outputs.add("-o", *arguments.picture.output, {".glb"}, true);
+    outputs.add("-o", *arguments.picture.output, {".glb", ".ply"}, true);
     if (outputs.uses_standard_output() && arguments.common.json) {
         throw InvalidArgument("--json and an output to - cannot both go to standard output");
     }

@@ -47,9 +47,9 @@ FormFactorMatrix rows_of(const LoadedScene& loaded, const Contender& contender,
         return !interrupted();
     };
     const bool hybrid = !contender.yardstick && plan.hybrid;
-    FormFactorMatrix rows =
-        hybrid ? compute_hybrid(*provider, loaded.mesh, patches, plan.rule, loaded.scene.enclosure, rows_done)
-               : compute_matrix(*provider, patches, rows_done);
+    FormFactorMatrix rows = hybrid ? compute_hybrid(*provider, loaded.mesh, patches, *plan.hybrid,
+                                                    loaded.scene.enclosure, rows_done)
+                                   : compute_matrix(*provider, patches, rows_done);
     const double pairs_taken = hybrid ? watch.seconds() - rows_taken : 0.0;
     // The hybrid takes each pair once.
     const double size = loaded.mesh.size();
@@ -76,7 +76,8 @@ void judge(Measurement& measurement, const LoadedScene& loaded, const FormFactor
 } // namespace
 
 Contender hemicube_contender(const RowOptions& base, const std::string& preset, std::uint32_t patches,
-                             std::uint32_t eye_points, std::uint32_t resolution) {
+                             std::uint32_t eye_points, std::uint32_t resolution,
+                             std::optional<std::uint32_t> shadow_rays) {
     Contender contender;
     contender.options = base;
     contender.options.preset = preset;
@@ -92,12 +93,19 @@ Contender hemicube_contender(const RowOptions& base, const std::string& preset, 
         contender.options.resolution = resolution;
         contender.command += fmt::format(" --resolution {}", resolution);
     }
+    contender.options.shadow_rays = shadow_rays;
+    if (shadow_rays) {
+        contender.command += fmt::format(" --shadow-rays {}", *shadow_rays);
+    }
     const HemicubeSettings hemicube = plan_rows(contender.options, patches).hemicube;
     const std::string eyes_and_texels = fmt::format("{}x{}", hemicube.eye_points, hemicube.resolution);
     contender.family = preset != "plain" ? "hybrid" : hemicube.eye_points == 1 ? "plain" : "plain, more eyes";
     contender.settings = preset == "plain" || eye_points + resolution > 0
                              ? eyes_and_texels
                              : fmt::format("{} ({})", preset, eyes_and_texels);
+    if (shadow_rays) {
+        contender.settings += *shadow_rays == 0 ? ", no rays" : fmt::format(", {} rays", *shadow_rays);
+    }
     return contender;
 }
 
@@ -141,6 +149,7 @@ Reference find_reference(const LoadedScene& loaded, std::span<const std::uint32_
     best.preset = "exact";
     best.eye_points.reset();
     best.resolution.reset();
+    best.shadow_rays.reset();
     Reference reference;
     reference.settings = reference_settings(plan_rows(best, loaded.mesh.size()).hemicube);
     reference.settings.eye_points = reference.settings.near_eye_points; // as many as there can be

@@ -23,11 +23,13 @@ struct Contender {
     [[nodiscard]] std::string label() const { return family + (settings.empty() ? "" : " " + settings); }
 };
 
-/// Hemicubes of a preset, with the eye points and the resolution of the preset where these are 0.
+/// Hemicubes of a preset, with the preset's eye points and resolution where these are 0, and its shadow rays
+/// where there are none.
 /// @param base  device, jobs, seed and the like
 [[nodiscard]] Contender hemicube_contender(const RowOptions& base, const std::string& preset,
                                            std::uint32_t patches, std::uint32_t eye_points = 0,
-                                           std::uint32_t resolution = 0);
+                                           std::uint32_t resolution = 0,
+                                           std::optional<std::uint32_t> shadow_rays = {});
 [[nodiscard]] Contender yardstick_contender(const RowOptions& base, Yardstick method, std::uint32_t rays = 0);
 
 /// Rows by which contenders are judged.

@@ -4,6 +4,7 @@
 #include "cli/pipeline.hpp"
 #include "cli/repair_rows.hpp"
 #include "cli/report.hpp"
+#include "cli/solution.hpp"
 #include "cli/stored_factors.hpp"
 #include "hemi/core/error.hpp"
 
@@ -15,15 +16,6 @@
 namespace hemi::cli {
 
 namespace {
-
-io::FactorFile read_input(const std::filesystem::path& path) {
-    if (extension_of(path) == ".hff") {
-        return io::read_hff(path);
-    }
-    io::FactorFile file;
-    file.factors = read_bare_factors(path);
-    return file;
-}
 
 /// Rows of the --factors file, repaired, if it belongs to the patches of `mesh`.
 FormFactorMatrix read_rows(const ConvertArguments& arguments, const PatchMesh& mesh) {
@@ -37,12 +29,22 @@ FormFactorMatrix read_rows(const ConvertArguments& arguments, const PatchMesh& m
     return std::move(file.factors);
 }
 
-void convert_result(const ConvertArguments& arguments) {
-    if (arguments.repair && !arguments.factors) {
-        throw InvalidArgument("--repair needs form factors: --factors FILE.hff");
+/// --json: what every conversion says, and `more`.
+void tell(const ConvertArguments& arguments, const Json& more) {
+    if (arguments.common.json) {
+        Json object{{"schema", "hemi/convert/1"},
+                    {"input", arguments.input.string()},
+                    {"output", arguments.output.string()}};
+        object.update(more);
+        print_json(object);
     }
-    const io::ResultFile result = io::read_hres(arguments.input);
-    const PatchMesh mesh(result.scene, result.subdivision);
+}
+
+std::string output_name(const ConvertArguments& arguments) {
+    return is_standard_output(arguments.output) ? "a .csv" : arguments.output.string();
+}
+
+void write_cells(const ConvertArguments& arguments, const io::ResultFile& result, const PatchMesh& mesh) {
     std::vector<io::CellArray> arrays = cell_data(result, mesh);
     if (arguments.factors) {
         const FormFactorMatrix factors = read_rows(arguments, mesh);
@@ -51,16 +53,88 @@ void convert_result(const ConvertArguments& arguments) {
         }
     }
     io::write_vtp(arguments.output, mesh, arrays);
-    if (arguments.common.json) {
-        std::vector<std::string> names;
-        for (const io::CellArray& array : arrays) {
-            names.push_back(array.name);
+    std::vector<std::string> names;
+    for (const io::CellArray& array : arrays) {
+        names.push_back(array.name);
+    }
+    tell(arguments, {{"patches", mesh.size()}, {"arrays", names}});
+}
+
+void convert_result(const ConvertArguments& arguments, const Terminal& terminal) {
+    if (arguments.repair && !arguments.factors) {
+        throw InvalidArgument("--repair needs form factors: --factors FILE.hff");
+    }
+    const io::ResultFile result = io::read_hres(arguments.input);
+    const PatchMesh mesh(result.scene, result.subdivision);
+    const bool to_paraview = extension_of(arguments.output) == ".vtp";
+    if (to_paraview) {
+        write_cells(arguments, result, mesh);
+    } else {
+        io::write_radiosity_csv(arguments.output, mesh, result.scene.channels,
+                                patch_exitance(result.scene, mesh), result.irradiance, result.radiosity);
+        tell(arguments, {{"patches", mesh.size()}});
+    }
+    terminal.note(
+        fmt::format("not in {}: materials' names, subdivision, environment, camera, what solved it{}",
+                    output_name(arguments),
+                    to_paraview ? "" : ", corners, reflectance, row balance and estimated errors"));
+}
+
+/// Whether IN and OUT go together.
+void check_formats(const ConvertArguments& arguments) {
+    const std::string input = extension_of(arguments.input);
+    const std::string output = extension_of(arguments.output);
+    if (input == ".hres") {
+        if (output != ".vtp" && output != ".csv" && !is_standard_output(arguments.output)) {
+            throw InvalidArgument(
+                fmt::format("{}: a stored solution can be written as .vtp, or as .csv, the radiosity "
+                            "of every patch; `hemi bake` makes .glb and .ply, `hemi render` pictures",
+                            arguments.output.string()));
         }
-        print_json({{"schema", "hemi/convert/1"},
-                    {"input", arguments.input.string()},
-                    {"output", arguments.output.string()},
-                    {"patches", mesh.size()},
-                    {"arrays", names}});
+        if (arguments.factors && output != ".vtp") {
+            throw InvalidArgument("--factors and --row are for a .hres that becomes a .vtp");
+        }
+        return;
+    }
+    if (output == ".vtp") {
+        throw InvalidArgument(
+            fmt::format("{}: a .vtp needs the patches, which {} does not have; convert a .hres, or "
+                        "use `hemi factors SCENE -o FILE.vtp`",
+                        arguments.output.string(), arguments.input.string()));
+    }
+    if (arguments.factors) {
+        throw InvalidArgument("--factors and --row are for a .hres that becomes a .vtp");
+    }
+    const FactorFormat& format = factor_format(arguments.output);
+    const auto content = factor_content(arguments.input);
+    if (content && *content < format.needs) {
+        throw InvalidArgument(fmt::format("{}: {} files hold {}, which {} does not have; `hemi factors SCENE "
+                                          "-o FILE{}` writes one",
+                                          arguments.output.string(), format.extension, format.holds,
+                                          arguments.input.string(), format.extension));
+    }
+    const bool to_hff = format.extension == ".hff";
+    if (arguments.repair && (to_hff || input != ".hff")) {
+        throw InvalidArgument(to_hff ? "--repair: a .hff holds the rows before the repair, which is redone "
+                                       "when it is read"
+                                     : "--repair needs areas and row balance, which only a .hff has");
+    }
+}
+
+/// What the rows are in the other format, and what is left behind.
+void tell_losses(const ConvertArguments& arguments, const FactorFormat& format, bool from_hff,
+                 Repair repaired, const Terminal& terminal) {
+    if (repaired != Repair::none) {
+        terminal.note(fmt::format("written are the rows after the repair ({})", repair_name(repaired)));
+    }
+    if (from_hff) {
+        terminal.note(fmt::format("not in {}: {}", output_name(arguments), format.lost));
+    } else if (factor_content(arguments.input) == FactorContent::areas) {
+        terminal.note(fmt::format("not in {}: emissivities{}", output_name(arguments),
+                                  format.lost.starts_with("areas") ? " and areas" : ""));
+    }
+    if (format.needs == FactorContent::areas) {
+        terminal.note("emissivities are written as 0.999; `hemi factors SCENE -o FILE` writes the scene's");
     }
 }
 
@@ -68,76 +142,32 @@ void convert_result(const ConvertArguments& arguments) {
 
 ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
     Outputs outputs;
-    outputs.add("OUT", arguments.output, {".hff", ".mtx", ".csv", ".npz", ".txt", ".vf", ".vtp"}, true);
+    std::vector<std::string_view> extensions = factor_extensions();
+    extensions.push_back(".vtp");
+    outputs.add("OUT", arguments.output, extensions, true);
     if (outputs.uses_standard_output() && arguments.common.json) {
         throw InvalidArgument("--json and an output to - cannot both go to standard output");
     }
-    const bool from_result = extension_of(arguments.input) == ".hres";
-    if (from_result != (extension_of(arguments.output) == ".vtp")) {
-        throw InvalidArgument(
-            from_result
-                ? fmt::format("{}: a stored solution can be written as .vtp", arguments.output.string())
-                : fmt::format("{}: a .vtp needs the patches, which {} does not have; convert a .hres, or "
-                              "use `hemi factors SCENE -o FILE.vtp`",
-                              arguments.output.string(), arguments.input.string()));
-    }
-    if (from_result) {
-        convert_result(arguments);
+    check_formats(arguments);
+    if (extension_of(arguments.input) == ".hres") {
+        convert_result(arguments, terminal);
         return ExitStatus::ok;
     }
-    if (arguments.factors) {
-        throw InvalidArgument("--factors and --row are for a .hres that becomes a .vtp");
-    }
+    const FactorFormat& format = factor_format(arguments.output);
+    io::FactorFile file = read_factors(arguments.input);
     const bool from_hff = extension_of(arguments.input) == ".hff";
-    const bool to_hff = extension_of(arguments.output) == ".hff";
-    if (to_hff && !from_hff && is_bare_factor_file(arguments.input)) {
-        throw InvalidArgument(
-            fmt::format("{}: a .hff holds areas, names, row balance and the geometry's hash, which "
-                        "{} does not have; `hemi factors SCENE -o FILE.hff` makes one",
-                        arguments.output.string(), arguments.input.string()));
-    }
-    const bool to_view3d = is_view3d_factor_file(arguments.output);
-    if (to_view3d && !from_hff && is_bare_factor_file(arguments.input)) {
-        throw InvalidArgument(
-            fmt::format("{}: View3D's files hold areas, which {} does not have; a .hff does",
-                        arguments.output.string(), arguments.input.string()));
-    }
-    if (arguments.repair && (to_hff || !from_hff)) {
-        throw InvalidArgument(to_hff ? "--repair: a .hff holds the rows before the repair, which is redone "
-                                       "when it is read"
-                                     : "--repair needs areas and row balance, which only a .hff has");
-    }
-    io::FactorFile file = read_input(arguments.input);
     Repair repaired = Repair::none;
-    if (from_hff && !to_hff) {
+    if (from_hff && format.extension != ".hff") {
         settle_contacts(file);
         repaired = repair_rows(file, arguments.repair).report.repair;
     }
-    write_factors(arguments.output, file);
-    if (repaired != Repair::none) {
-        terminal.note(fmt::format("written are the rows after the repair ({})", repair_name(repaired)));
+    Diagnostics diagnostics;
+    write_factors(arguments.output, file, {{}, repaired}, diagnostics);
+    terminal.warn(diagnostics);
+    if (format.extension != ".hff") {
+        tell_losses(arguments, format, from_hff, repaired, terminal);
     }
-    if (from_hff && !to_hff) {
-        terminal.note(
-            fmt::format("not in {}: {}group names, row balance (environment, blocked), settings and the "
-                        "geometry's hash",
-                        is_standard_output(arguments.output) ? "a .csv" : arguments.output.string(),
-                        to_view3d ? "" : "areas, "));
-        if (to_view3d) {
-            terminal.note("emissivities are not in a .hff and are written as 0.999; `hemi factors SCENE -o "
-                          "FILE` writes the scene's");
-        }
-        if (!file.factors.all_known()) {
-            terminal.warn("rows that were not computed become empty rows");
-        }
-    }
-    if (arguments.common.json) {
-        print_json({{"schema", "hemi/convert/1"},
-                    {"input", arguments.input.string()},
-                    {"output", arguments.output.string()},
-                    {"patches", file.factors.size()},
-                    {"entries", file.factors.entries()}});
-    }
+    tell(arguments, {{"patches", file.factors.size()}, {"entries", file.factors.entries()}});
     return ExitStatus::ok;
 }
 

@@ -13,6 +13,7 @@
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "io/text_output.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -76,7 +77,9 @@ std::vector<double> emissivities(const Subject& subject) {
 Outputs check_outputs(const FactorsArguments& arguments) {
     Outputs outputs;
     if (arguments.output) {
-        outputs.add("-o", *arguments.output, {".hff", ".mtx", ".csv", ".npz", ".txt", ".vf", ".vtp"}, true);
+        std::vector<std::string_view> extensions = factor_extensions();
+        extensions.push_back(".vtp");
+        outputs.add("-o", *arguments.output, extensions, true);
     }
     if (arguments.patches) {
         outputs.add("--patches", *arguments.patches, {".csv"}, true);
@@ -345,27 +348,16 @@ std::string groups_table(const io::FactorFile& file, const GroupFactors& groups)
     return table.text();
 }
 
-std::string csv_field(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) {
-        return text;
-    }
-    std::string quoted = "\"";
-    for (const char c : text) {
-        quoted += c == '"' ? "\"\"" : std::string(1, c);
-    }
-    return quoted + '"';
-}
-
 /// group,area,<every group>,environment,blocked: a line per leaving group.
 void write_groups_csv(const std::filesystem::path& path, const io::FactorFile& file,
                       const GroupFactors& groups) {
     std::string text = "group,area";
     for (const std::string& name : file.groups) {
-        text += ',' + csv_field(name);
+        text += ',' + io::csv_field(name);
     }
     text += ",environment,blocked\n";
     for (std::uint32_t g = 0; g < groups.groups; ++g) {
-        text += fmt::format("{},{}", csv_field(file.groups[g]), groups.areas[g]);
+        text += fmt::format("{},{}", io::csv_field(file.groups[g]), groups.areas[g]);
         for (std::uint32_t h = 0; h < groups.groups; ++h) {
             text += fmt::format(",{}", groups.factors[std::size_t{g} * groups.groups + h]);
         }
@@ -453,9 +445,10 @@ ExitStatus run(const FactorsArguments& arguments, const Outputs& outputs, const 
         return ExitStatus::ok;
     }
     const bool writes = arguments.output && !table_goes_to_file(arguments);
+    Diagnostics diagnostics;
     if (writes && holds_raw_rows(*arguments.output)) {
         estimate_rows(file);
-        write_factors(*arguments.output, file);
+        write_factors(*arguments.output, file, {}, diagnostics);
         kept.discard();
     }
     settle_contacts(file);
@@ -468,9 +461,11 @@ ExitStatus run(const FactorsArguments& arguments, const Outputs& outputs, const 
         if (extension_of(*arguments.output) == ".vtp") {
             io::write_vtp(*arguments.output, subject.loaded->mesh, cell_data(file));
         } else {
-            write_factors(*arguments.output, file, emissivities(subject));
+            const std::vector<double> emissivity = emissivities(subject);
+            write_factors(*arguments.output, file, {emissivity, subject.repair.report.repair}, diagnostics);
         }
     }
+    terminal.warn(diagnostics);
     kept.discard();
     if (arguments.row) {
         show_row(arguments, subject);

@@ -252,6 +252,7 @@ void show_factors(const InfoArguments& arguments) {
                                          {"method", file.method},
                                          {"resolution", file.resolution},
                                          {"eye_points", file.eye_points},
+                                         {"shadow_rays", file.shadow_rays},
                                          {"seed", file.seed},
                                          {"renderer", file.renderer},
                                          {"enclosure", file.enclosure},
@@ -266,9 +267,10 @@ void show_factors(const InfoArguments& arguments) {
     text += summary_line("rows", fmt::format("{} computed", count_text(sums.known)));
     text += summary_line("entries", fmt::format("{}, {}", count_text(file.factors.entries()),
                                                 memory_text(file.factors.memory_bytes())));
-    text += summary_line("made by",
-                         fmt::format("{}, preset {}, resolution {}, {} eye point(s), seed {}", file.method,
-                                     file.preset, file.resolution, file.eye_points, file.seed));
+    text += summary_line(
+        "made by", fmt::format("{}, preset {}, resolution {}, {}, {}, seed {}", file.method, file.preset,
+                               file.resolution, plural(file.eye_points, "eye point", "eye points"),
+                               plural(file.shadow_rays, "shadow ray", "shadow rays"), file.seed));
     text += summary_line("renderer", file.renderer);
     text += summary_line("enclosure", file.enclosure);
     text += summary_line("geometry", fmt::format("{:016x}", file.geometry_hash));
@@ -281,8 +283,8 @@ void show_factors(const InfoArguments& arguments) {
     print(text + "\n" + groups.text());
 }
 
-void show_bare_factors(const InfoArguments& arguments) {
-    const FormFactorMatrix factors = read_bare_factors(arguments.scene.path);
+void show_foreign_factors(const InfoArguments& arguments) {
+    const FormFactorMatrix factors = read_factors(arguments.scene.path).factors;
     const RowSums sums = row_sums(factors);
     if (arguments.common.json) {
         print_json(with_head("factors", {{"patches", factors.size()},
@@ -312,11 +314,12 @@ ExitStatus run(const InfoArguments& arguments, const Terminal& terminal) {
         show_result(arguments);
     } else if (extension == ".hff") {
         show_factors(arguments);
-    } else if (is_bare_factor_file(path)) {
-        show_bare_factors(arguments);
+    } else if (is_foreign_factor_file(path)) {
+        show_foreign_factors(arguments);
     } else {
-        throw InvalidArgument(fmt::format("{}: info reads {}, .hff, .hres, .mtx, .csv and .npz",
-                                          path.string(), io::scene_extensions()));
+        throw InvalidArgument(
+            fmt::format("{}: info reads {}, .hres, .hff, .mtx, .csv, .npz, .txt, .vf, .dat and .bin",
+                        path.string(), io::scene_extensions()));
     }
     return ExitStatus::ok;
 }

@@ -1,11 +1,11 @@
 #include "cli/outputs.hpp"
 
 #include "hemi/core/error.hpp"
+#include "io/text_scan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <unistd.h>
@@ -15,18 +15,15 @@ namespace hemi::cli {
 namespace fs = std::filesystem;
 
 std::string extension_of(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
+    return io::lower_extension(path);
 }
 
 bool is_standard_output(const fs::path& path) {
     return path == "-";
 }
 
-void Outputs::add(std::string_view option, const fs::path& path,
-                  std::initializer_list<std::string_view> extensions, bool allow_standard_output) {
+void Outputs::add(std::string_view option, const fs::path& path, std::span<const std::string_view> extensions,
+                  bool allow_standard_output) {
     if (is_standard_output(path)) {
         if (!allow_standard_output) {
             throw InvalidArgument(fmt::format("{} -: this cannot be written to standard output", option));

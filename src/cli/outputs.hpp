@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,7 +23,12 @@ public:
     /// @param option  what the path was given as, for messages
     /// @throws InvalidArgument for the extension or a path used twice; IoError if it cannot be written.
     void add(std::string_view option, const std::filesystem::path& path,
-             std::initializer_list<std::string_view> extensions, bool allow_standard_output = false);
+             std::span<const std::string_view> extensions, bool allow_standard_output = false);
+
+    void add(std::string_view option, const std::filesystem::path& path,
+             std::initializer_list<std::string_view> extensions, bool allow_standard_output = false) {
+        add(option, path, std::span(extensions.begin(), extensions.size()), allow_standard_output);
+    }
 
     [[nodiscard]] bool uses_standard_output() const noexcept { return uses_standard_output_; }
 

@@ -1,6 +1,7 @@
 #include "cli/picture_output.hpp"
 
 #include "cli/report.hpp"
+#include "cli/walk_in.hpp"
 #include "core/nearest_word.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/display/picture.hpp"
@@ -50,8 +51,12 @@ std::array<std::uint32_t, 3> channels_to_show(const std::vector<std::string>& ch
     return indices;
 }
 
-Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const std::optional<CameraOption>& option) {
-    Camera camera = scene.camera ? *scene.camera : default_camera(mesh.bounds());
+Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOptions& options) {
+    const std::optional<CameraOption>& option = options.camera;
+    Camera camera = scene.camera ? *scene.camera
+                    : option     ? default_camera(mesh.bounds())
+                                 : walk_in_camera(mesh).value_or(default_camera(mesh.bounds()));
+    camera.orthographic = options.orthographic || (camera.orthographic && !option);
     if (option) {
         camera.eye = option->eye;
         camera.target = option->target;
@@ -75,22 +80,32 @@ std::array<float, 3> shown_environment(const Scene& scene, const std::array<std:
     return shown;
 }
 
+PictureSettings picture_settings(const PictureOptions& options) {
+    PictureSettings settings;
+    settings.width = options.size[0];
+    settings.height = options.size[1];
+    settings.samples = options.samples;
+    settings.shading = options.flat ? Shading::flat : Shading::gouraud;
+    settings.tone_mapping = options.tone_mapping;
+    settings.outlines = options.outlines;
+    settings.backs = options.backs;
+    settings.exposure = options.exposure.value_or(settings.exposure);
+    return settings;
+}
+
 WrittenPicture write_picture(const PictureSubject& subject, const PictureOptions& options,
                              const std::string& device) {
     const auto channels = static_cast<std::uint32_t>(subject.scene.channels.size());
     const auto show = channels_to_show(subject.scene.channels, options.show);
     PictureMesh drawn = make_picture_mesh(subject.mesh, channels, subject.radiosity, subject.blocked, show);
     drawn.environment = shown_environment(subject.scene, show);
-    PictureSettings settings;
-    settings.width = options.size[0];
-    settings.height = options.size[1];
-    settings.shading = options.flat ? Shading::flat : Shading::gouraud;
-    settings.tone_mapping = options.tone_mapping;
-    settings.exposure = options.exposure ? *options.exposure
-                                         : automatic_exposure(subject.mesh, drawn, subject.blocked,
-                                                              subject.exitance, channels);
+    PictureSettings settings = picture_settings(options);
+    if (!options.exposure) {
+        settings.exposure =
+            automatic_exposure(subject.mesh, drawn, subject.blocked, subject.exitance, channels);
+    }
     const Picture picture =
-        draw_picture(drawn, choose_camera(subject.scene, subject.mesh, options.camera), settings, device);
+        draw_picture(drawn, choose_camera(subject.scene, subject.mesh, options), settings, device);
     if (extension_of(*options.output) == ".hdr") {
         io::write_hdr(*options.output, picture.width, picture.height, picture.linear);
     } else {

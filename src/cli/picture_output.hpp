@@ -21,13 +21,16 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options);
 [[nodiscard]] std::array<std::uint32_t, 3> channels_to_show(const std::vector<std::string>& channels,
                                                             const std::vector<std::string>& show);
 
-/// `--camera` over the scene's camera over one that frames the bounds.
-[[nodiscard]] Camera choose_camera(const Scene& scene, const PatchMesh& mesh,
-                                   const std::optional<CameraOption>& option);
+/// `--camera` over the scene's camera over one inside, where the scene is a room, over one that frames the
+/// bounds; with `--orthographic`.
+[[nodiscard]] Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOptions& options);
 
 /// Exitance of the environment in the channels shown: what lies behind all surfaces.
 [[nodiscard]] std::array<float, 3> shown_environment(const Scene& scene,
                                                      const std::array<std::uint32_t, 3>& show);
+
+/// How a picture is drawn; with an exposure of 1 where it is automatic.
+[[nodiscard]] PictureSettings picture_settings(const PictureOptions& options);
 
 /// What a picture shows; arrays as in Solution.
 struct PictureSubject {

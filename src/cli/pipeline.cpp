@@ -97,6 +97,7 @@ io::FactorFile describe(const LoadedScene& loaded, const RowOptions& options, co
     file.method = options.method;
     file.resolution = plan.hemicube.resolution;
     file.eye_points = plan.hemicube.eye_points;
+    file.shadow_rays = plan.hybrid ? plan.hybrid->shadow_rays : 0;
     file.seed = plan.hemicube.seed;
     file.enclosure = enclosure_name(loaded.scene.enclosure);
     return file;
@@ -130,7 +131,8 @@ std::string enclosure_name(Enclosure enclosure) {
 LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     const Stopwatch watch;
     Diagnostics diagnostics;
-    Scene scene = io::read_scene(options.path, {options.two_sided, options.skip_degenerate}, diagnostics);
+    Scene scene = io::read_scene(
+        options.path, {options.two_sided, options.skip_degenerate, options.allow_outside}, diagnostics);
     terminal.warn(diagnostics);
     check_two_sided_groups(scene, options);
     if (options.enclosure) {
@@ -204,7 +206,9 @@ std::uint32_t eye_points_for(std::uint32_t hemicubes, std::uint32_t patches, std
 RowPlan plan_rows(const RowOptions& options, std::uint32_t patches) {
     RowPlan plan;
     HemicubeSettings& hemicube = plan.hemicube;
-    plan.hybrid = options.preset != "plain";
+    if (options.preset != "plain") {
+        plan.hybrid.emplace();
+    }
     // Visibility is as good as the eye points where patches are few and large, and as the texels a patch gets
     // where they are many and small.
     if (options.preset == "fast") {
@@ -214,16 +218,21 @@ RowPlan plan_rows(const RowOptions& options, std::uint32_t patches) {
         hemicube.eye_points = eye_points_for(6000, patches, 4, 16);
         hemicube.resolution = 64;
         hemicube.near_eye_points = 16;
+        plan.hybrid->shadow_rays = 16;
     } else if (options.preset == "exact") {
         hemicube.eye_points = eye_points_for(20000, patches, 4, 64);
         hemicube.resolution = 128;
         hemicube.near_eye_points = 64;
-        plan.rule = ExchangeRule::exact;
+        plan.hybrid->rule = ExchangeRule::exact;
+        plan.hybrid->shadow_rays = 64;
     }
     hemicube.resolution = options.resolution.value_or(hemicube.resolution);
     if (options.eye_points) { // every patch as many as were asked for
         hemicube.eye_points = *options.eye_points;
         hemicube.near_eye_points = 1;
+    }
+    if (plan.hybrid) {
+        plan.hybrid->shadow_rays = options.shadow_rays.value_or(plan.hybrid->shadow_rays);
     }
     hemicube.seed = options.seed.value_or(hemicube.seed);
     hemicube.merge_lattices = options.merge;
@@ -356,15 +365,20 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
     const Stopwatch watch;
     if (plan.hybrid) {
         ProgressBar seen(terminal, "visibility", "rows");
-        std::optional<ProgressBar> paired; // starts its clock when its turn has come
-        const auto pairs_done = [&](std::size_t done, std::size_t total) {
-            if (!paired) {
-                paired.emplace(terminal, "form factors", "rows");
-            }
-            return paired->callback()(done, total);
+        // These start their clocks when their turn has come.
+        std::optional<ProgressBar> traced;
+        std::optional<ProgressBar> paired;
+        const auto in_turn = [&terminal](std::optional<ProgressBar>& bar, const char* name) {
+            return [&bar, &terminal, name](std::size_t done, std::size_t total) {
+                if (!bar) {
+                    bar.emplace(terminal, name, "rows");
+                }
+                return bar->callback()(done, total);
+            };
         };
-        rows.file.factors = compute_hybrid(source.provider, loaded.mesh, patches, plan.rule,
-                                           loaded.scene.enclosure, seen.callback(), pairs_done);
+        rows.file.factors =
+            compute_hybrid(source.provider, loaded.mesh, patches, *plan.hybrid, loaded.scene.enclosure,
+                           seen.callback(), in_turn(traced, "shadow rays"), in_turn(paired, "form factors"));
     } else {
         ProgressBar bar(terminal, "form factors", "rows");
         rows.file.factors = compute_matrix(source.provider, patches, bar.callback());
@@ -395,6 +409,7 @@ Rows reuse_rows(const std::filesystem::path& path, const LoadedScene& loaded, co
     check_setting(common, path, "--preset", options.preset, file.preset);
     check_setting(common, path, "--method", options.method, file.method);
     check_setting(common, path, "--eye-points", options.eye_points.value_or(0), file.eye_points);
+    check_setting(common, path, "--shadow-rays", options.shadow_rays.value_or(0), file.shadow_rays);
     return rows;
 }
 

@@ -55,8 +55,7 @@ void refuse_all_but(const CommonOptions& common, std::span<const std::string> al
 /// How rows will be computed: the preset, and what single options replaced in it.
 struct RowPlan {
     HemicubeSettings hemicube;
-    bool hybrid = false; ///< exact factors times visibility; else the texels alone
-    ExchangeRule rule = ExchangeRule::standard;
+    std::optional<HybridSettings> hybrid; ///< exact factors times visibility; else the texels alone
 };
 /// @param patches  of the whole scene: where many share the texels, one sharper eye sees more than several
 [[nodiscard]] RowPlan plan_rows(const RowOptions& options, std::uint32_t patches);

@@ -305,7 +305,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     const LoadedScene loaded = load_scene(arguments.scene, terminal);
     if (arguments.picture.output) {
         (void)channels_to_show(loaded.scene.channels, arguments.picture.show);
-        (void)choose_camera(loaded.scene, loaded.mesh, arguments.picture.camera);
+        (void)choose_camera(loaded.scene, loaded.mesh, arguments.picture);
     }
     seconds.load = loaded.seconds;
 

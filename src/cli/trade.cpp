@@ -41,14 +41,13 @@ std::vector<Entry> all_entries(const RowOptions& base, std::uint32_t patches) {
     const auto add = [&entries](Contender contender) {
         entries.push_back({std::move(contender), {}, "", false, false});
     };
-    const auto hemicube = [&](const std::string& preset, std::uint32_t eyes = 0,
-                              std::uint32_t resolution = 0) {
-        Contender contender = hemicube_contender(base, preset, patches, eyes, resolution);
+    const auto hemicube = [&](const std::string& preset, std::uint32_t eyes = 0, std::uint32_t resolution = 0,
+                              std::optional<std::uint32_t> rays = {}) {
+        Contender contender = hemicube_contender(base, preset, patches, eyes, resolution, rays);
         const bool known = std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) {
             const RowPlan a = plan_rows(entry.contender.options, patches);
             const RowPlan b = plan_rows(contender.options, patches);
-            return !entry.contender.yardstick && a.hemicube == b.hemicube && a.hybrid == b.hybrid &&
-                   a.rule == b.rule;
+            return !entry.contender.yardstick && a.hemicube == b.hemicube && a.hybrid == b.hybrid;
         });
         if (!known) {
             add(std::move(contender));
@@ -58,6 +57,7 @@ std::vector<Entry> all_entries(const RowOptions& base, std::uint32_t patches) {
     hemicube("plain", 1, 64);
     hemicube("plain", 1, 128);
     hemicube("fast");
+    hemicube("default", 0, 0, 0);
     hemicube("default");
     const bool few = patches <= yardstick_patches_max;
     if (few) {
@@ -280,7 +280,8 @@ Json to_json(const Trade& trade, const LoadedScene& loaded, const TradeArguments
     for (const Entry* const entry : by_time(trade.entries())) {
         const Contender& contender = entry->contender;
         const Measurement& m = *entry->measurement;
-        const HemicubeSettings hemicube = plan_rows(contender.options, loaded.mesh.size()).hemicube;
+        const RowPlan plan = plan_rows(contender.options, loaded.mesh.size());
+        const HemicubeSettings& hemicube = plan.hemicube;
         const bool rays = contender.yardstick && contender.yardstick->method == Yardstick::montecarlo;
         measurements.push_back(
             {{"label", contender.label()},
@@ -288,6 +289,8 @@ Json to_json(const Trade& trade, const LoadedScene& loaded, const TradeArguments
              {"preset", contender.yardstick ? Json(nullptr) : Json(contender.options.preset)},
              {"eye_points", contender.yardstick ? Json(nullptr) : Json(hemicube.eye_points)},
              {"resolution", contender.yardstick ? Json(nullptr) : Json(hemicube.resolution)},
+             {"shadow_rays",
+              plan.hybrid && !contender.yardstick ? Json(plan.hybrid->shadow_rays) : Json(nullptr)},
              {"rays", rays ? Json(contender.yardstick->rays) : Json(nullptr)},
              {"options", contender.command.empty() ? Json(nullptr) : Json(contender.command)},
              {"rows", m.all_rows ? "all" : "sample"},

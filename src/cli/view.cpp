@@ -1,4 +1,6 @@
+#include "cli/coarse_light.hpp"
 #include "cli/commands.hpp"
+#include "cli/error_report.hpp"
 #include "cli/outputs.hpp"
 #include "cli/picture_output.hpp"
 #include "cli/pipeline.hpp"
@@ -7,17 +9,30 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "viewer/command_line.hpp"
 #include "viewer/viewer.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <memory>
+#include <mutex>
+#include <string_view>
 #include <utility>
 
 namespace hemi::cli {
 
 namespace {
+
+/// Options that say how to begin: a command line that draws what the window shows has its own.
+const std::vector<std::string>& window_options() {
+    static const std::vector<std::string> names{"--size",         "--camera",       "--flat",    "--exposure",
+                                                "--tone-mapping", "--orthographic", "--backs",   "--outlines",
+                                                "--samples",      "--script",       "--controls"};
+    return names;
+}
 
 void check_display() {
     const auto is_set = [](const char* variable) {
@@ -30,95 +45,200 @@ void check_display() {
     }
 }
 
-/// All that does not depend on where the solution comes from.
-viewer::ViewerInput make_input(const ViewArguments& arguments, const Scene& scene, const PatchMesh& mesh) {
-    const PictureOptions& options = arguments.picture;
-    viewer::ViewerInput input;
-    input.title = scene.name.empty() ? arguments.scene.path.filename().string() : scene.name;
-    input.file_stem = arguments.scene.path.stem().string();
-    input.scene = &scene;
-    input.mesh = &mesh;
-    input.reflectance = patch_reflectance(scene, mesh);
-    input.channels = static_cast<std::uint32_t>(scene.channels.size());
-    input.show = channels_to_show(scene.channels, options.show);
-    input.environment = shown_environment(scene, input.show);
-    input.camera = choose_camera(scene, mesh, options.camera);
-    input.picture.width = options.size[0];
-    input.picture.height = options.size[1];
-    input.picture.shading = options.flat ? Shading::flat : Shading::gouraud;
-    input.picture.tone_mapping = options.tone_mapping;
-    input.picture.exposure = options.exposure.value_or(1.0);
-    input.automatic_exposure = !options.exposure;
-    input.script = arguments.script;
-    return input;
-}
-
-viewer::Solved solve_for_view(const LoadedScene& loaded, const ViewArguments& arguments,
-                              const Terminal& terminal) {
-    Rows rows = compute_rows(loaded, reflecting_patches(loaded), arguments.rows, terminal);
-    settle_contacts(rows.file);
-    (void)repair_rows(rows.file, arguments.rows.repair);
-    viewer::Solved solved;
-    solved.factors = std::make_shared<const FormFactorMatrix>(std::move(rows.file.factors));
-    const FormFactorMatrix& factors = *solved.factors;
-    solved.radiosity = solve_scene(loaded, factors, arguments.solver, false, terminal).radiosity;
-    for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        const RowView row = factors.row(i);
-        solved.row_sum.push_back(row.sum());
-        solved.environment_share.push_back(row.environment);
-        solved.blocked.push_back(row.blocked);
+/// The options that were given, as words of a command line; without those of the window.
+std::string given_options(const CommonOptions& common) {
+    std::string text;
+    for (const auto& [name, values] : common.words) {
+        if (std::find(window_options().begin(), window_options().end(), name) != window_options().end()) {
+            continue;
+        }
+        text += ' ';
+        text += name;
+        for (const std::string& value : values) {
+            text += ' ';
+            text += viewer::quoted(value);
+        }
     }
-    return solved;
+    return text;
 }
 
-void view_scene(const ViewArguments& arguments, const Terminal& terminal) {
-    const LoadedScene loaded = load_scene(arguments.scene, terminal);
-    viewer::ViewerInput input = make_input(arguments, loaded.scene, loaded.mesh);
-    input.exitance = patch_exitance(loaded.scene, loaded.mesh);
-    input.radiosity = input.exitance;
-    input.hemicube = plan_rows(arguments.rows, loaded.mesh.size()).hemicube;
-    input.solver = arguments.solver;
-    input.solve = [&](const viewer::SolveProgress& progress) {
-        Terminal listening = terminal;
-        listening.set_progress_listener(progress);
-        return solve_for_view(loaded, arguments, listening);
-    };
-    viewer::run_viewer(input);
-}
+/// Rows of F with all that belongs to them: once found, they do for every scene of the same geometry.
+struct KeptRows {
+    std::mutex mutex;
+    std::shared_ptr<const Rows> rows;
 
-void view_result(const ViewArguments& arguments) {
-    const std::filesystem::path& path = arguments.scene.path;
-    if (extension_of(path) != ".hres") {
+    std::shared_ptr<const Rows> of(const LoadedScene& loaded) {
+        const std::lock_guard lock(mutex);
+        const bool same = rows && rows->file.geometry_hash == loaded.mesh.geometry_hash() &&
+                          rows->file.enclosure == enclosure_name(loaded.scene.enclosure);
+        return same ? rows : nullptr;
+    }
+    void keep(std::shared_ptr<const Rows> found) {
+        const std::lock_guard lock(mutex);
+        rows = std::move(found);
+    }
+};
+
+/// Reads what the window shows, as often as it wants to.
+class ViewSource {
+public:
+    ViewSource(const ViewArguments& arguments, const Terminal& terminal)
+        : arguments_(arguments), terminal_(terminal), kept_(std::make_shared<KeptRows>()) {}
+
+    [[nodiscard]] viewer::ViewerInput open(const std::filesystem::path& path) const {
+        if (io::is_scene_file(path)) {
+            return scene(path);
+        }
+        if (extension_of(path) == ".hres") {
+            return result(path);
+        }
         throw InvalidArgument(fmt::format("{}: view shows a scene ({}) or a stored solution (.hres)",
                                           path.string(), io::scene_extensions()));
     }
-    refuse_all_but(arguments.common,
-                   std::vector<std::string>{"--size", "--show", "--camera", "--flat", "--exposure",
-                                            "--tone-mapping", "--script"},
-                   path);
-    const io::ResultFile result = io::read_hres(path);
-    const PatchMesh mesh(result.scene, result.subdivision);
-    viewer::ViewerInput input = make_input(arguments, result.scene, mesh);
-    input.radiosity = result.radiosity;
-    input.exitance = patch_exitance(result.scene, mesh);
-    input.row_sum = result.row_sum;
-    input.environment_share = result.environment;
-    input.blocked = result.blocked;
-    if (result.radiosity_error) {
-        input.radiosity_error = result.radiosity_error->patches;
+
+private:
+    /// All that does not depend on where the solution comes from.
+    [[nodiscard]] viewer::ViewerInput describe(const std::filesystem::path& path,
+                                               std::shared_ptr<const Scene> scene,
+                                               std::shared_ptr<const PatchMesh> mesh) const {
+        const PictureOptions& options = arguments_.picture;
+        viewer::ViewerInput input;
+        input.file = path;
+        input.title = scene->name.empty() ? path.filename().string() : scene->name;
+        input.reflectance = patch_reflectance(*scene, *mesh);
+        input.exitance = patch_exitance(*scene, *mesh);
+        input.channels = static_cast<std::uint32_t>(scene->channels.size());
+        input.show = channels_to_show(scene->channels, options.show);
+        input.environment = shown_environment(*scene, input.show);
+        input.camera = choose_camera(*scene, *mesh, options);
+        input.picture = picture_settings(options);
+        input.automatic_exposure = !options.exposure;
+        input.scene = std::move(scene);
+        input.mesh = std::move(mesh);
+        return input;
     }
-    viewer::run_viewer(input);
-}
+
+    [[nodiscard]] viewer::ViewerInput scene(const std::filesystem::path& path) const {
+        SceneOptions options = arguments_.scene;
+        options.path = path;
+        const auto loaded = std::make_shared<const LoadedScene>(load_scene(options, terminal_));
+        viewer::ViewerInput input = describe(path, std::shared_ptr<const Scene>(loaded, &loaded->scene),
+                                             std::shared_ptr<const PatchMesh>(loaded, &loaded->mesh));
+        input.command = "hemi solve " + viewer::quoted(path.string()) + given_options(arguments_.common);
+        input.radiosity = input.exitance;
+        input.hemicube = plan_rows(arguments_.rows, loaded->mesh.size()).hemicube;
+        input.solver = arguments_.solver;
+        input.find_rows = [this, loaded](const viewer::RowListener& listener) {
+            return find_rows(*loaded, listener);
+        };
+        input.save_result = [this, loaded, options](const std::filesystem::path& file,
+                                                    const viewer::SolvedLight& light) {
+            save(*loaded, options, file, light);
+        };
+        return input;
+    }
+
+    [[nodiscard]] viewer::ViewerInput result(const std::filesystem::path& path) const {
+        io::ResultFile result = io::read_hres(path);
+        const auto scene = std::make_shared<const Scene>(std::move(result.scene));
+        viewer::ViewerInput input =
+            describe(path, scene, std::make_shared<const PatchMesh>(*scene, result.subdivision));
+        input.command = "hemi render " + viewer::quoted(path.string());
+        if (!arguments_.picture.show.empty()) {
+            input.command += fmt::format(" --show {}", fmt::join(arguments_.picture.show, ","));
+        }
+        input.radiosity = std::move(result.radiosity);
+        input.rows.row_sum = std::move(result.row_sum);
+        input.rows.environment_share = std::move(result.environment);
+        input.rows.blocked = std::move(result.blocked);
+        if (result.radiosity_error) {
+            input.radiosity_error = std::move(result.radiosity_error->patches);
+        }
+        return input;
+    }
+
+    /// Of all patches, so that every one can be picked, and may begin to reflect.
+    [[nodiscard]] viewer::FoundRows find_rows(const LoadedScene& loaded,
+                                              const viewer::RowListener& listener) const {
+        std::shared_ptr<const Rows> rows = kept_->of(loaded);
+        if (!rows) {
+            Terminal listening = terminal_;
+            listening.set_progress_listener(
+                [&listener](std::string_view, std::string_view, std::size_t done, std::size_t total) {
+                    return listener.progress("coarse preview", "", done, total);
+                });
+            if (auto light = coarse_light(loaded, arguments_.rows, arguments_.solver, listening)) {
+                listener.preview(std::move(*light));
+            }
+            listening.set_progress_listener(listener.progress);
+            auto found = std::make_shared<Rows>(
+                compute_rows(loaded, all_patches(loaded.mesh.size()), arguments_.rows, listening));
+            if (!listener.progress("estimate of errors", "", 0, 1)) {
+                throw Cancelled();
+            }
+            add_reference(*found, loaded, arguments_.rows, listening);
+            settle_contacts(found->file);
+            (void)repair_rows(found->file, arguments_.rows.repair);
+            estimate_rows(found->file);
+            kept_->keep(found);
+            rows = std::move(found);
+        }
+        const io::FactorFile& file = rows->file;
+        viewer::FoundRows found;
+        found.factors = std::shared_ptr<const FormFactorMatrix>(rows, &file.factors);
+        if (file.reference.entries() > 0) {
+            found.reference = std::shared_ptr<const FormFactorMatrix>(rows, &file.reference);
+        }
+        for (std::uint32_t i = 0; i < file.factors.size(); ++i) {
+            const RowView row = file.factors.row(i);
+            found.row_sum.push_back(row.sum());
+            found.environment_share.push_back(row.environment);
+            found.blocked.push_back(row.blocked);
+        }
+        return found;
+    }
+
+    void save(const LoadedScene& loaded, const SceneOptions& options, const std::filesystem::path& path,
+              const viewer::SolvedLight& light) const {
+        const std::shared_ptr<const Rows> rows = kept_->of(loaded);
+        LoadedScene changed = loaded;
+        changed.scene.materials = light.materials;
+        Solution solution;
+        solution.channels = static_cast<std::uint32_t>(loaded.scene.channels.size());
+        solution.exitance = patch_exitance(changed.scene, changed.mesh);
+        solution.radiosity = light.radiosity;
+        const std::vector<double> reflectance = patch_reflectance(changed.scene, changed.mesh);
+        solution.irradiance = irradiance({&rows->file.factors, solution.channels, reflectance,
+                                          solution.exitance, changed.scene.environment, changed.mesh.areas()},
+                                         light.radiosity);
+        solution.solver = light.solver;
+        solution.sweeps = light.sweeps;
+        solution.residual = light.residual;
+        solution.error = light.error;
+        io::write_hres(path, make_result(changed, options, *rows, solution));
+    }
+
+    const ViewArguments& arguments_;
+    const Terminal& terminal_;
+    std::shared_ptr<KeptRows> kept_;
+};
 
 } // namespace
 
 ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
     check_display();
-    if (io::is_scene_file(arguments.scene.path)) {
-        view_scene(arguments, terminal);
-    } else {
-        view_result(arguments);
+    const std::filesystem::path& path = arguments.scene.path;
+    if (extension_of(path) == ".hres") {
+        std::vector<std::string> allowed = window_options();
+        allowed.emplace_back("--show");
+        refuse_all_but(arguments.common, allowed, path);
     }
+    const ViewSource source(arguments, terminal);
+    viewer::ViewerSettings settings;
+    settings.controls = arguments.controls;
+    settings.script = arguments.script;
+    settings.open = [&source](const std::filesystem::path& file) { return source.open(file); };
+    viewer::run_viewer(source.open(path), settings);
     return ExitStatus::ok;
 }
 

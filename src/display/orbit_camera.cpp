@@ -32,6 +32,12 @@ double half_fov(const Camera& camera) {
     return camera.fov * std::numbers::pi / 360.0;
 }
 
+/// Height of the picture in scene units at the depth of `point`.
+double view_height(const Camera& camera, const Vec3& point) {
+    const double depth = glm::dot(point - camera.eye, glm::normalize(camera.target - camera.eye));
+    return 2.0 * std::tan(half_fov(camera)) * depth;
+}
+
 } // namespace
 
 OrbitCamera::OrbitCamera(const Camera& home, const Bounds& bounds)
@@ -44,15 +50,28 @@ ViewRay OrbitCamera::ray(double x, double y) const {
     const Camera view = squared(camera_);
     const Vec3 forward = glm::normalize(view.target - view.eye);
     const double scale = 2.0 * std::tan(half_fov(view));
-    return {view.eye, forward + scale * (x * glm::cross(forward, view.up) + y * view.up)};
+    const Vec3 aside = scale * (x * glm::cross(forward, view.up) + y * view.up);
+    if (view.orthographic) {
+        const double before = glm::length(bounds_.centre() - view.eye) + bounds_.diagonal();
+        return {view.eye + glm::length(view.target - view.eye) * aside - before * forward, forward};
+    }
+    return {view.eye, forward + aside};
 }
 
 std::optional<std::array<std::array<double, 2>, 2>> OrbitCamera::line(const Vec3& a, const Vec3& b) const {
     const Camera view = squared(camera_);
     const Vec3 forward = glm::normalize(view.target - view.eye);
     const Vec3 right = glm::cross(forward, view.up);
-    const double nearest = 1e-5 * bounds_.diagonal();
     std::array<Vec3, 2> ends{a - view.eye, b - view.eye};
+    if (view.orthographic) {
+        const double height = view_height(view, view.target);
+        std::array<std::array<double, 2>, 2> seen{};
+        for (std::size_t k = 0; k < 2; ++k) {
+            seen[k] = {glm::dot(ends[k], right) / height, glm::dot(ends[k], view.up) / height};
+        }
+        return seen;
+    }
+    const double nearest = 1e-5 * bounds_.diagonal();
     std::array<double, 2> depths{glm::dot(ends[0], forward), glm::dot(ends[1], forward)};
     if (depths[0] < nearest && depths[1] < nearest) {
         return std::nullopt;
@@ -99,8 +118,8 @@ void OrbitCamera::orbit(double across, double up) {
 void OrbitCamera::pan(double x, double y) {
     camera_ = start_;
     const Vec3 forward = glm::normalize(grabbed_.target - grabbed_.eye);
-    const double depth = std::max(glm::dot(pivot_ - grabbed_.eye, forward), 1e-6 * bounds_.diagonal());
-    const double scale = 2.0 * std::tan(half_fov(grabbed_)) * depth;
+    const double scale = std::max(view_height(grabbed_, grabbed_.orthographic ? grabbed_.target : pivot_),
+                                  1e-6 * bounds_.diagonal());
     const Vec3 shift = scale * (x * glm::cross(forward, grabbed_.up) + y * grabbed_.up);
     camera_.eye -= shift;
     camera_.target -= shift;
@@ -135,12 +154,28 @@ void OrbitCamera::reset() {
     grab(camera_.target);
 }
 
-void OrbitCamera::look_along(Axis axis, double aspect) {
+void OrbitCamera::set_orthographic(bool orthographic) {
+    camera_.orthographic = orthographic;
+    grab(camera_.target);
+}
+
+void OrbitCamera::set_fov(double degrees) {
+    camera_.fov = std::clamp(degrees, smallest_fov, largest_fov);
+    grab(camera_.target);
+}
+
+void OrbitCamera::place(const Camera& camera) {
+    camera_ = camera;
+    grab(camera_.target);
+}
+
+void OrbitCamera::look_along(Axis axis, bool opposite, double aspect) {
     // Seen from the front the scene's x axis points right where its upward axis allows.
     Vec3 right = Vec3(1.0, 0.0, 0.0) - upward_.x * upward_;
     right = glm::length(right) > 0.1 ? glm::normalize(right) : any_perpendicular(upward_);
     const Vec3 ahead = glm::cross(upward_, right);
-    const Vec3 forward = axis == Axis::front ? ahead : (axis == Axis::right ? -right : -upward_);
+    const Vec3 towards = axis == Axis::front ? ahead : (axis == Axis::right ? -right : -upward_);
+    const Vec3 forward = opposite ? -towards : towards;
     camera_.up = axis == Axis::top ? ahead : upward_;
     camera_.eye = camera_.target - forward;
     frame_all(aspect);

@@ -9,10 +9,10 @@
 
 namespace hemi {
 
-/// A half-line from the eye through a point of the picture.
+/// A half-line from the eye through a point of the picture; of an orthographic camera, from before the scene.
 struct ViewRay {
     Vec3 origin;
-    Vec3 direction; ///< not of unit length: origin + direction lies at depth 1
+    Vec3 direction; ///< not of unit length: one length along it adds 1 to the depth
 };
 
 /// A camera that a hand moves: orbit, pan and zoom about a pivot that stays where it is on the screen. Knows
@@ -51,7 +51,16 @@ public:
     void frame_all(double aspect);
     void reset();
     /// Looks along an axis of the scene at all of it.
-    void look_along(Axis axis, double aspect);
+    /// @param opposite  from the other side: from behind, from the left, from below
+    void look_along(Axis axis, bool opposite, double aspect);
+
+    /// The picture keeps its size at the target's depth.
+    void set_orthographic(bool orthographic);
+    /// Brought into the range that can be chosen. The eye stays where it is.
+    void set_fov(double degrees);
+    static constexpr double smallest_fov = 5.0;
+    static constexpr double largest_fov = 120.0;
+    void place(const Camera& camera);
 
 private:
     Camera home_;

@@ -20,7 +20,7 @@ namespace hemi {
 namespace {
 
 /// Samples along an edge of a tile. Small tiles are quicker, since their memory is used again and again; but
-/// every tile draws the whole mesh anew.
+/// every tile draws the whole mesh anew, which is more than the pixels cost where each is one sample.
 constexpr std::uint32_t small_tile = 1024;
 constexpr std::uint32_t large_tile = 4096;
 constexpr GLsizei many_indices = 12 * 20000;
@@ -30,6 +30,8 @@ constexpr double near_share = 1e-5;
 constexpr float nothing_level = 0.025F;
 /// Patch outlines, pixels.
 constexpr float outline_pixels = 0.75F;
+/// Stripes on the backs of surfaces, pixels.
+constexpr float stripe_pixels = 4.0F;
 
 struct Vertex {
     std::array<float, 3> position;
@@ -96,8 +98,9 @@ std::array<Vec3, 3> camera_axes(const Camera& camera) {
 }
 
 /// Column-major clip_from_direction for a part of the picture, given in pixels from its lower left.
+/// @param reach  from the eye to the farthest point of the scene, at least
 std::array<float, 16> projection(const Camera& camera, const PictureSettings& settings, double x, double y,
-                                 double width, double height, double near_distance) {
+                                 double width, double height, double near_distance, double reach) {
     const std::array<Vec3, 3> axes = camera_axes(camera);
     const double focal = 1.0 / std::tan(camera.fov * std::numbers::pi / 360.0);
     const double aspect = static_cast<double>(settings.width) / settings.height;
@@ -106,6 +109,20 @@ std::array<float, 16> projection(const Camera& camera, const PictureSettings& se
     const double shift_x = (settings.width - 2.0 * x - width) / width;
     const double shift_y = (settings.height - 2.0 * y - height) / height;
     std::array<float, 16> matrix{};
+    if (camera.orthographic) {
+        const double scale = focal / glm::length(camera.target - camera.eye);
+        for (int column = 0; column < 3; ++column) {
+            const std::size_t at = static_cast<std::size_t>(column) * 4;
+            matrix[at] = static_cast<float>(scale_x * scale / aspect * axes[0][column]);
+            matrix[at + 1] = static_cast<float>(scale_y * scale * axes[1][column]);
+            matrix[at + 2] = static_cast<float>(0.5 / reach * axes[2][column]);
+        }
+        matrix[12] = static_cast<float>(shift_x);
+        matrix[13] = static_cast<float>(shift_y);
+        matrix[14] = 0.5F;
+        matrix[15] = 1.0F;
+        return matrix;
+    }
     for (int column = 0; column < 3; ++column) {
         const double depth = -axes[2][column];
         const std::size_t at = static_cast<std::size_t>(column) * 4;
@@ -212,7 +229,8 @@ void PictureRenderer::upload(const PictureMesh& mesh) {
 }
 
 std::vector<PictureRenderer::Tile> PictureRenderer::tiles(const PictureSettings& settings) const {
-    const std::uint32_t wanted = index_count_ < many_indices ? small_tile : large_tile;
+    const bool small = index_count_ < many_indices && settings.samples > 1;
+    const std::uint32_t wanted = small ? small_tile : large_tile;
     const std::uint32_t samples = std::min(wanted, static_cast<std::uint32_t>(max_texture_));
     const std::uint32_t edge = std::max(1U, samples / settings.samples);
     std::vector<Tile> result;
@@ -255,6 +273,9 @@ void PictureRenderer::draw_samples(const Camera& camera, const PictureSettings& 
     glUniform1i(uniform(picture_program_, "flat_shading"), settings.shading == Shading::flat ? 1 : 0);
     glUniform1f(uniform(picture_program_, "outline_width"),
                 settings.outlines ? outline_pixels * static_cast<float>(samples) : 0.0F);
+    glUniform1f(uniform(picture_program_, "stripe_width"), stripe_pixels * static_cast<float>(samples));
+    glUniform2f(uniform(picture_program_, "first_sample"), static_cast<float>(tile.x * samples),
+                static_cast<float>(tile.y * samples));
     draw_mesh(picture_program_, camera, settings, tile);
 }
 
@@ -265,14 +286,24 @@ void PictureRenderer::draw_mesh(const gl::Program& program, const Camera& camera
     glDepthFunc(GL_GREATER);
     glEnable(GL_CULL_FACE);
     glUseProgram(program.get());
-    const std::array<float, 16> matrix =
-        projection(camera, settings, tile.x, tile.y, tile.width, tile.height, near_share * diagonal_);
-    glUniformMatrix4fv(uniform(program, "clip_from_direction"), 1, GL_FALSE, matrix.data());
     const Vec3 eye = camera.eye - origin_;
+    const std::array<float, 16> matrix = projection(camera, settings, tile.x, tile.y, tile.width, tile.height,
+                                                    near_share * diagonal_, glm::length(eye) + diagonal_);
+    glUniformMatrix4fv(uniform(program, "clip_from_direction"), 1, GL_FALSE, matrix.data());
     glUniform3f(uniform(program, "eye"), static_cast<float>(eye.x), static_cast<float>(eye.y),
                 static_cast<float>(eye.z));
     glBindVertexArray(vertex_array_.get());
     glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+    if (settings.backs) {
+        // A hair farther away, so that a two-sided surface shows the patch on that side.
+        glCullFace(GL_FRONT);
+        glEnable(GL_POLYGON_OFFSET_FILL);
+        glPolygonOffset(-1.0F, -16.0F);
+        glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+        glDisable(GL_POLYGON_OFFSET_FILL);
+        glPolygonOffset(0.0F, 0.0F);
+        glCullFace(GL_BACK);
+    }
 
     glDisable(GL_CULL_FACE);
     glDepthFunc(GL_LESS);

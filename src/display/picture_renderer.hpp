@@ -37,7 +37,8 @@ public:
     /// The same pixels, read back. @throws as draw()
     [[nodiscard]] Picture picture(const Camera& camera, const PictureSettings& settings);
 
-    /// Patch seen at the centre of every pixel, row by row from the top; no_item where none is.
+    /// Patch seen at the centre of every pixel, row by row from the top; no_item where none is. Where backs
+    /// are shown, they count.
     /// @throws as draw()
     [[nodiscard]] std::vector<std::uint32_t> items(const Camera& camera, const PictureSettings& settings);
     /// The same of one pixel, x from the left and y from the top, inside the picture.

@@ -1,6 +1,7 @@
 #include "hemi/engine/hybrid.hpp"
 
 #include "core/parallel_for.hpp"
+#include "engine/shadow_rays.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
@@ -70,16 +71,23 @@ std::uint8_t stored_visibility(PairCode code) {
                      std::clamp(visibility_of(code) * visibility_clear + 0.5, 1.0, visibility_clear - 1.0));
 }
 
-PairCode combine(Sighting a, Sighting b, double assumed) {
+/// V of a pair from what both ends saw, and on how many texels it rests.
+struct Combined {
+    PairCode code;
+    double texels;
+};
+
+Combined combine(Sighting a, Sighting b, double assumed) {
     if (!a.known() && !b.known()) {
-        return pair_code(assumed);
-    }
-    if ((a.is_clear() || !a.known()) && (b.is_clear() || !b.known())) {
-        return pair_clear;
+        return {pair_code(assumed), 0.0};
     }
     const double weight_a = a.known() ? a.weight() : 0.0;
     const double weight_b = b.known() ? b.weight() : 0.0;
-    return pair_code((weight_a * a.share() + weight_b * b.share()) / (weight_a + weight_b));
+    const double texels = weight_a + weight_b;
+    if ((a.is_clear() || !a.known()) && (b.is_clear() || !b.known())) {
+        return {pair_clear, texels};
+    }
+    return {pair_code((weight_a * a.share() + weight_b * b.share()) / texels), texels};
 }
 
 /// Tells quickly which patches have parts in front of each other.
@@ -166,9 +174,9 @@ private:
 
 class Hybrid {
 public:
-    Hybrid(const PatchMesh& mesh, std::span<const std::uint32_t> patches, ExchangeRule rule)
-        : mesh_(mesh), size_(mesh.size()), patches_(patches), areas_(mesh, rule), facing_(mesh),
-          row_of_(size_, nobody) {
+    Hybrid(const PatchMesh& mesh, std::span<const std::uint32_t> patches, const HybridSettings& settings)
+        : mesh_(mesh), size_(mesh.size()), patches_(patches), areas_(mesh, settings.rule), facing_(mesh),
+          shadow_rays_(settings.shadow_rays), row_of_(size_, nobody) {
         for (std::uint32_t k = 0; k < patches.size(); ++k) {
             row_of_[patches[k]] = k;
         }
@@ -203,37 +211,64 @@ public:
     }
 
     /// One code for both directions of every pair; sightings become codes.
-    void combine_pairs() {
+    void combine_pairs(const Progress& rays_done) {
         const Neighbours neighbours(mesh_);
+        std::optional<ShadowRays> rays;
+        if (shadow_rays_ > 0) {
+            rays.emplace(mesh_);
+        }
         codes_.resize(patches_.size());
         std::vector<double> mean(patches_.size());
         parallel_for(patches_.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
                 mean[k] = mean_share(sightings_[k]);
+                codes_[k].assign(size_, pair_hidden);
             }
         });
-        parallel_for(patches_.size(), 16, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                const std::uint32_t i = patches_[k];
-                codes_[k].assign(size_, pair_hidden);
-                for (std::uint32_t j = 0; j < size_; ++j) {
-                    const std::uint32_t other = row_of_[j];
-                    Sighting there = sightings_[k][j];
-                    Sighting back = other == nobody ? Sighting() : sightings_[other][i];
-                    if (i == j || (there.known() && there.share() == 0.0 && !back.known()) ||
-                        !facing_(i, j)) {
-                        continue;
-                    }
-                    double assumed = 1.0;
-                    if (!there.known() && !back.known()) {
-                        there = neighbours.stand_in(sightings_[k], j);
-                        back = other == nobody ? Sighting() : neighbours.stand_in(sightings_[other], i);
-                        assumed = other == nobody ? mean[k] : 0.5 * (mean[k] + mean[other]);
-                    }
-                    codes_[k][j] = combine(there, back, assumed);
+        // A pair of two rows is combined by the lower one, which alone writes both entries.
+        const auto combine_row = [&](std::size_t k) {
+            const std::uint32_t i = patches_[k];
+            for (std::uint32_t j = 0; j < size_; ++j) {
+                const std::uint32_t other = row_of_[j];
+                if (other != nobody && j <= i) {
+                    continue;
+                }
+                const Sighting nothing;
+                Sighting there = sightings_[k][j];
+                Sighting back = other == nobody ? nothing : sightings_[other][i];
+                const auto sees_none = [](Sighting one) { return one.known() && one.share() == 0.0; };
+                if ((sees_none(there) && !back.known()) || (sees_none(back) && !there.known()) ||
+                    !facing_(i, j)) {
+                    continue;
+                }
+                double assumed = 1.0;
+                if (!there.known() && !back.known()) {
+                    there = neighbours.stand_in(sightings_[k], j);
+                    back = other == nobody ? nothing : neighbours.stand_in(sightings_[other], i);
+                    assumed = other == nobody ? mean[k] : 0.5 * (mean[k] + mean[other]);
+                }
+                Combined pair = combine(there, back, assumed);
+                if (rays) {
+                    sharpen(*rays, pair, i, j);
+                }
+                codes_[k][j] = pair.code;
+                if (other != nobody) {
+                    codes_[other][i] = pair.code;
                 }
             }
-        });
+        };
+        constexpr std::size_t rows_at_once = 64;
+        for (std::size_t first = 0; first < patches_.size(); first += rows_at_once) {
+            const std::size_t count = std::min(rows_at_once, patches_.size() - first);
+            parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t k = begin; k < end; ++k) {
+                    combine_row(first + k);
+                }
+            });
+            if (rays && rays_done && !rays_done(first + count, patches_.size())) {
+                throw Cancelled();
+            }
+        }
         sightings_.clear();
         sightings_.shrink_to_fit();
     }
@@ -270,6 +305,20 @@ public:
     }
 
 private:
+    /// Weighs shadow rays in where a pair is partly hidden and few texels say how much.
+    void sharpen(const ShadowRays& rays, Combined& pair, std::uint32_t i, std::uint32_t j) const {
+        // Nearly clear or nearly hidden: a few rays know no better.
+        constexpr double sure = 0.005;
+        const double visibility = visibility_of(pair.code);
+        if (visibility < sure || visibility > 1.0 - sure || pair.texels >= 4.0 * shadow_rays_) {
+            return;
+        }
+        const ShadowRays::Estimate traced = rays.visibility(i, j, shadow_rays_);
+        if (const double all = pair.texels + traced.rays; all > 0.0) {
+            pair.code = pair_code((pair.texels * visibility + traced.rays * traced.visibility) / all);
+        }
+    }
+
     static double mean_share(std::span<const Sighting> row) {
         double sum = 0.0;
         std::size_t known = 0;
@@ -404,6 +453,7 @@ private:
     std::span<const std::uint32_t> patches_;
     ExchangeAreas areas_;
     Facing facing_;
+    std::uint32_t shadow_rays_;         ///< a pair
     std::vector<std::uint32_t> row_of_; ///< patch -> position in patches_, or nobody
     std::vector<std::vector<Sighting>> sightings_;
     std::vector<std::vector<PairCode>> codes_;
@@ -444,11 +494,12 @@ HybridEstimate estimate_hybrid(RowProvider& visibility, std::span<const std::uin
 }
 
 FormFactorMatrix compute_hybrid(RowProvider& visibility, const PatchMesh& mesh,
-                                std::span<const std::uint32_t> patches, ExchangeRule rule,
-                                Enclosure enclosure, const Progress& rows_done, const Progress& pairs_done) {
-    Hybrid hybrid(mesh, patches, rule);
+                                std::span<const std::uint32_t> patches, const HybridSettings& settings,
+                                Enclosure enclosure, const Progress& rows_done, const Progress& rays_done,
+                                const Progress& pairs_done) {
+    Hybrid hybrid(mesh, patches, settings);
     hybrid.see(visibility, rows_done);
-    hybrid.combine_pairs();
+    hybrid.combine_pairs(rays_done);
     return hybrid.factors(enclosure, pairs_done);
 }
 

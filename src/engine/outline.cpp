@@ -1,98 +1,103 @@
 #include "engine/outline.hpp"
 
+#include "core/parallel_for.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <utility>
 
 namespace hemi {
 
 namespace {
 
-/// Vertices in the cells of a coarse grid, to find those near a segment.
-class VertexGrid {
+/// A binary tree over vertices, split at medians, to find those near a segment: as fast where vertices crowd
+/// in a large scene as where they are spread evenly.
+class VertexTree {
 public:
-    VertexGrid(std::span<const Vec3> positions, const std::vector<bool>& used, double tolerance) {
-        std::size_t count = 0;
-        for (std::size_t v = 0; v < positions.size(); ++v) {
-            if (used[v]) {
-                bounds_.add(positions[v]);
-                ++count;
-            }
-        }
-        const double cells = std::clamp(std::cbrt(static_cast<double>(count)), 1.0, 64.0);
-        cell_ = std::max(bounds_.diagonal() / cells, 4.0 * tolerance);
-        for (std::size_t v = 0; v < positions.size(); ++v) {
-            if (used[v]) {
-                cells_[key(coordinates(positions[v]))].push_back(static_cast<std::uint32_t>(v));
-            }
+    VertexTree(std::span<const Vec3> positions, std::vector<std::uint32_t> vertices)
+        : positions_(positions), vertices_(std::move(vertices)) {
+        nodes_.reserve(4 * (vertices_.size() / leaf + 1));
+        if (!vertices_.empty()) {
+            split(0, static_cast<std::uint32_t>(vertices_.size()));
         }
     }
 
-    /// Vertices in all cells that a segment passes or nearly touches; may hold some twice.
-    void near_segment(const Vec3& a, const Vec3& b, std::vector<std::uint32_t>& found) const {
-        found.clear();
-        const auto from = coordinates(a);
-        const auto to = coordinates(b);
-        // Cells of the segment's box; walked along its longest axis so that only a thin tube is visited.
-        int axis = 0;
-        for (int k = 1; k < 3; ++k) {
-            if (std::abs(b[k] - a[k]) > std::abs(b[axis] - a[axis])) {
-                axis = k;
+    /// Calls `visit(vertex)` for all vertices within `distance` of the segment, and for some others.
+    template <typename Visit>
+    void near_segment(const Vec3& a, const Vec3& b, double distance, const Visit& visit) const {
+        const Vec3 along = b - a;
+        std::uint32_t at = 0;
+        while (at < nodes_.size()) { // depth first; a node that is missed is skipped with all below it
+            const Node& node = nodes_[at];
+            if (!is_near(node.bounds, a, along, distance)) {
+                at = node.after;
+                continue;
             }
-        }
-        const int step = to[axis] >= from[axis] ? 1 : -1;
-        for (int slab = from[axis] - step;; slab += step) {
-            // The part of the segment in this slab and its neighbours' halves.
-            const double low = bounds_.lower[axis] + cell_ * (slab - 1);
-            const double high = low + 3.0 * cell_;
-            const double length = b[axis] - a[axis];
-            double t0 = 0.0;
-            double t1 = 1.0;
-            if (std::abs(length) > 0.0) {
-                t0 = std::clamp((low - a[axis]) / length, 0.0, 1.0);
-                t1 = std::clamp((high - a[axis]) / length, 0.0, 1.0);
+            for (std::uint32_t k = node.first; k < node.end; ++k) {
+                visit(vertices_[k]);
             }
-            const auto c0 = coordinates(a + t0 * (b - a));
-            const auto c1 = coordinates(a + t1 * (b - a));
-            std::array<int, 3> lower{};
-            std::array<int, 3> upper{};
-            for (std::size_t k = 0; k < 3; ++k) {
-                lower[k] = std::min(c0[k], c1[k]) - 1;
-                upper[k] = std::max(c0[k], c1[k]) + 1;
-            }
-            lower[static_cast<std::size_t>(axis)] = upper[static_cast<std::size_t>(axis)] = slab;
-            for (int x = lower[0]; x <= upper[0]; ++x) {
-                for (int y = lower[1]; y <= upper[1]; ++y) {
-                    for (int z = lower[2]; z <= upper[2]; ++z) {
-                        if (const auto cell = cells_.find(key({x, y, z})); cell != cells_.end()) {
-                            found.insert(found.end(), cell->second.begin(), cell->second.end());
-                        }
-                    }
-                }
-            }
-            if (slab == to[axis] + step) {
-                break;
-            }
+            ++at;
         }
     }
 
 private:
-    [[nodiscard]] std::array<int, 3> coordinates(const Vec3& point) const {
-        std::array<int, 3> result{};
-        for (int k = 0; k < 3; ++k) {
-            result[static_cast<std::size_t>(k)] =
-                static_cast<int>(std::floor((point[k] - bounds_.lower[k]) / cell_));
+    static constexpr std::uint32_t leaf = 8;
+
+    struct Node {
+        Bounds bounds;
+        std::uint32_t first = 0, end = 0; ///< vertices of a leaf
+        std::uint32_t after = 0;          ///< the node that follows all below this one
+    };
+
+    /// Whether the segment from a to a + along meets the box, made larger by `distance` on all sides.
+    static bool is_near(const Bounds& box, const Vec3& a, const Vec3& along, double distance) {
+        double enter = 0.0;
+        double leave = 1.0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double low = box.lower[axis] - distance - a[axis];
+            const double high = box.upper[axis] + distance - a[axis];
+            if (along[axis] == 0.0) {
+                if (low > 0.0 || high < 0.0) {
+                    return false;
+                }
+                continue;
+            }
+            const double t0 = low / along[axis];
+            const double t1 = high / along[axis];
+            enter = std::max(enter, std::min(t0, t1));
+            leave = std::min(leave, std::max(t0, t1));
         }
-        return result;
-    }
-    static std::uint64_t key(const std::array<int, 3>& c) {
-        const auto bits = [](int value) { return static_cast<std::uint64_t>(value + 1024) & 0x1FFFFFu; };
-        return (bits(c[0]) << 42) | (bits(c[1]) << 21) | bits(c[2]);
+        return enter <= leave;
     }
 
-    Bounds bounds_;
-    double cell_ = 1.0;
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;
+    void split(std::uint32_t first, std::uint32_t end) {
+        const std::size_t node = nodes_.size();
+        nodes_.emplace_back();
+        Bounds bounds;
+        for (std::uint32_t k = first; k < end; ++k) {
+            bounds.add(positions_[vertices_[k]]);
+        }
+        nodes_[node].bounds = bounds;
+        if (end - first <= leaf) {
+            nodes_[node].first = first;
+            nodes_[node].end = end;
+        } else {
+            const Vec3 extent = bounds.upper - bounds.lower;
+            const int axis =
+                extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
+            const std::uint32_t middle = first + (end - first) / 2;
+            std::nth_element(
+                vertices_.begin() + first, vertices_.begin() + middle, vertices_.begin() + end,
+                [&](std::uint32_t u, std::uint32_t v) { return positions_[u][axis] < positions_[v][axis]; });
+            split(first, middle);
+            split(middle, end);
+        }
+        nodes_[node].after = static_cast<std::uint32_t>(nodes_.size());
+    }
+
+    std::span<const Vec3> positions_;
+    std::vector<std::uint32_t> vertices_; ///< in the order of the leaves
+    std::vector<Node> nodes_;             ///< in depth-first order
 };
 
 double cross(const OutlinePoint& a, const OutlinePoint& b, const OutlinePoint& c) {
@@ -103,54 +108,67 @@ double squared_length(const OutlinePoint& a, const OutlinePoint& b) {
     return (b.u - a.u) * (b.u - a.u) + (b.v - a.v) * (b.v - a.v);
 }
 
+/// Inserts the vertices of the tree that lie on the outline's edges.
+void refine(Outline& outline, std::span<const Vec3> positions, const VertexTree& tree,
+            const TouchingTolerance& tolerance) {
+    std::vector<std::pair<double, std::uint32_t>> touching;
+    Outline refined;
+    for (std::size_t c = 0; c < outline.size(); ++c) {
+        const OutlinePoint& from = outline[c];
+        const OutlinePoint& to = outline[(c + 1) % outline.size()];
+        refined.push_back(from);
+        const Vec3& a = positions[from.vertex];
+        const Vec3& b = positions[to.vertex];
+        const Vec3 along = b - a;
+        const double length_squared = glm::dot(along, along);
+        if (!(length_squared > 0.0)) {
+            continue; // corners closer than the welding tolerance
+        }
+        const double slack = tolerance.at(std::sqrt(length_squared));
+        touching.clear();
+        tree.near_segment(a, b, 2.0 * slack, [&](std::uint32_t v) {
+            if (v == from.vertex || v == to.vertex) {
+                return;
+            }
+            const Vec3 offset = positions[v] - a;
+            const double t = glm::dot(offset, along) / length_squared;
+            const Vec3 gap = offset - t * along;
+            if (t > 0.0 && t < 1.0 && glm::dot(gap, gap) <= slack * slack) {
+                touching.emplace_back(t, v);
+            }
+        });
+        std::sort(touching.begin(), touching.end());
+        for (const auto& [t, v] : touching) {
+            refined.push_back({v, from.u + t * (to.u - from.u), from.v + t * (to.v - from.v)});
+        }
+    }
+    outline = std::move(refined);
+}
+
 } // namespace
 
 void insert_touching_vertices(std::vector<Outline>& outlines, std::span<const Vec3> positions,
                               const TouchingTolerance& tolerance) {
     std::vector<bool> used(positions.size(), false);
     for (const Outline& outline : outlines) {
-        for (std::size_t c = 0; c < outline.size(); ++c) {
-            used[outline[c].vertex] = true;
+        for (const OutlinePoint& corner : outline) {
+            used[corner.vertex] = true;
         }
     }
-    const VertexGrid grid(positions, used, tolerance.largest());
+    std::vector<std::uint32_t> vertices;
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+        if (used[v]) {
+            vertices.push_back(v);
+        }
+    }
+    const VertexTree tree(positions, std::move(vertices));
 
-    std::vector<std::uint32_t> candidates;
-    std::vector<std::pair<double, std::uint32_t>> touching;
-    for (Outline& outline : outlines) {
-        Outline refined;
-        for (std::size_t c = 0; c < outline.size(); ++c) {
-            const OutlinePoint& from = outline[c];
-            const OutlinePoint& to = outline[(c + 1) % outline.size()];
-            refined.push_back(from);
-            const Vec3& a = positions[from.vertex];
-            const Vec3 along = positions[to.vertex] - a;
-            const double length_squared = glm::dot(along, along);
-            if (!(length_squared > 0.0)) {
-                continue; // corners closer than the welding tolerance
-            }
-            const double slack = tolerance.at(std::sqrt(length_squared));
-            grid.near_segment(a, positions[to.vertex], candidates);
-            touching.clear();
-            for (const std::uint32_t v : candidates) {
-                if (v == from.vertex || v == to.vertex) {
-                    continue;
-                }
-                const Vec3 offset = positions[v] - a;
-                const double t = glm::dot(offset, along) / length_squared;
-                const Vec3 gap = offset - t * along;
-                if (t > 0.0 && t < 1.0 && glm::dot(gap, gap) <= slack * slack) {
-                    touching.emplace_back(t, v);
-                }
-            }
-            std::sort(touching.begin(), touching.end());
-            touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
-            for (const auto& [t, v] : touching) {
-                refined.push_back({v, from.u + t * (to.u - from.u), from.v + t * (to.v - from.v)});
-            }
+    constexpr std::size_t at_once = 4096;
+    parallel_for(outlines.size(), at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            refine(outlines[k], positions, tree, tolerance);
         }
-        outline = std::move(refined);
-    }
+    });
 }
 
 std::vector<std::array<std::uint32_t, 3>> triangulate(const Outline& outline) {

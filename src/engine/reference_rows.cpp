@@ -54,7 +54,8 @@ std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows
 
 FormFactorMatrix compute_reference(RowProvider& visibility, const PatchMesh& mesh,
                                    std::span<const std::uint32_t> patches, const Progress& progress) {
-    return compute_hybrid(visibility, mesh, patches, ExchangeRule::exact, Enclosure::automatic, progress);
+    return compute_hybrid(visibility, mesh, patches, {ExchangeRule::exact, 0}, Enclosure::automatic,
+                          progress);
 }
 
 } // namespace hemi

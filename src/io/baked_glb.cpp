@@ -1,6 +1,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/baked_mesh_file.hpp"
 #include "hemi/io/output_file.hpp"
+#include "io/baked_mesh.hpp"
 #include "io/json_text.hpp"
 
 #include <fmt/format.h>
@@ -241,15 +242,7 @@ private:
 
 void write_baked_glb(const std::filesystem::path& path, const PatchMesh& mesh,
                      std::span<const float> radiosity, double exposure) {
-    if (radiosity.size() != std::size_t{mesh.size()} * 12) {
-        throw InvalidArgument(
-            fmt::format("{} radiosities for {} patches; must be 12 for each", radiosity.size(), mesh.size()));
-    }
-    if (!(exposure >= 0.0) || !std::isfinite(exposure) ||
-        !std::all_of(radiosity.begin(), radiosity.end(), [](float b) { return std::isfinite(b); })) {
-        throw InvalidArgument(
-            "an exposure that is negative or not finite, or a radiosity that is not finite");
-    }
+    check_baked(mesh, radiosity, exposure);
     Baker(mesh, radiosity, exposure).write(path);
 }
 

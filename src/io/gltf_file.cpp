@@ -89,14 +89,6 @@ std::string decode_percent(const JsonNode& node, std::string_view uri) {
     return path;
 }
 
-/// Whether `path` is in `folder` or below it, links followed.
-bool is_inside(const fs::path& folder, const fs::path& path) {
-    std::error_code problem;
-    const fs::path from = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, problem);
-    const fs::path to = problem ? fs::path() : fs::weakly_canonical(path, problem);
-    return !problem && std::mismatch(from.begin(), from.end(), to.begin(), to.end()).first == from.end();
-}
-
 } // namespace
 
 std::uint32_t GltfAccessor::integer(std::size_t i) const {
@@ -117,8 +109,9 @@ float GltfAccessor::number(std::size_t i, std::uint32_t c) const {
     return read_as<float>(data_ + i * stride_ + c * sizeof(float));
 }
 
-GltfFile::GltfFile(const fs::path& path)
-    : file_(path.string()), document_(read_document(path)), root_(document_, file_) {
+GltfFile::GltfFile(const fs::path& path, bool allow_outside)
+    : file_(path.string()), folder_(path, allow_outside), document_(read_document(path)),
+      root_(document_, file_) {
     root_.check_object();
     check_version();
     check_extensions();
@@ -228,8 +221,11 @@ std::string GltfFile::read_buffer(const JsonNode& uri, const fs::path& folder) c
         return std::move(*bytes);
     }
     const fs::path name = decode_percent(uri, text);
-    if (text.find("://") != std::string::npos || name.is_absolute() || !is_inside(folder, folder / name)) {
+    if (text.find("://") != std::string::npos) {
         uri.fail(fmt::format("{}; must be a data URI or a file in the scene's folder", in_quotes(text)));
+    }
+    if (!folder_.allows(folder / name)) {
+        uri.fail(SceneFolder::refusal(text));
     }
     try {
         return read_file(folder / name);

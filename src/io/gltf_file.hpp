@@ -2,6 +2,7 @@
 
 #include "hemi/core/geometry.hpp"
 #include "io/json_node.hpp"
+#include "io/scene_folder.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -43,9 +44,8 @@ private:
 class GltfFile {
 public:
     /// @throws ParseError or InputError for anything that is not sound up to the buffers, for extensions that
-    /// are
-    ///   required and not known here, and for buffers outside the file's folder.
-    explicit GltfFile(const std::filesystem::path& path);
+    ///   are required and not known here, and, unless allowed, for buffers outside the file's folder.
+    GltfFile(const std::filesystem::path& path, bool allow_outside);
     GltfFile(const GltfFile&) = delete;
     GltfFile& operator=(const GltfFile&) = delete;
 
@@ -70,6 +70,7 @@ private:
     [[noreturn]] void fail(const std::string& message) const;
 
     std::string file_;
+    SceneFolder folder_;
     std::string binary_; ///< the BIN chunk of a .glb
     bool has_binary_ = false;
     Json document_;

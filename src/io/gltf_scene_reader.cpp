@@ -118,8 +118,8 @@ class GltfSceneReader {
 public:
     GltfSceneReader(const std::filesystem::path& path, const SceneReaderOptions& options,
                     Diagnostics& diagnostics)
-        : file_(path.string()), gltf_(path), options_(options), diagnostics_(diagnostics),
-          nodes_(gltf_.root(), "nodes"), meshes_(gltf_.root(), "meshes"),
+        : file_(path.string()), gltf_(path, options.allow_outside), options_(options),
+          diagnostics_(diagnostics), nodes_(gltf_.root(), "nodes"), meshes_(gltf_.root(), "meshes"),
           materials_(gltf_.root(), "materials"), cameras_(gltf_.root(), "cameras"),
           material_indices_(materials_.size() + 1, none) {
         scene_.name = to_utf8(path.stem().string());

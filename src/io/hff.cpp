@@ -16,7 +16,7 @@ namespace hemi::io {
 
 namespace {
 
-constexpr ChunkFormat hff_format{"HEMIFF\r\n", 3, "form factors (.hff)"};
+constexpr ChunkFormat hff_format{"HEMIFF\r\n", 4, "form factors (.hff)"};
 
 /// First rows of the blocks that have a known row.
 std::vector<std::uint32_t> known_blocks(const FormFactorMatrix& factors) {
@@ -38,6 +38,7 @@ Json header(const FactorFile& file) {
               {"method", file.method},
               {"resolution", file.resolution},
               {"eye_points", file.eye_points},
+              {"shadow_rays", file.shadow_rays},
               {"seed", file.seed},
               {"renderer", file.renderer},
               {"enclosure", file.enclosure},
@@ -119,6 +120,7 @@ std::vector<std::uint32_t> read_header(ChunkReader& reader, FactorFile& file) {
     file.method = head.member("method").any_text();
     file.resolution = integer32(head.member("resolution"));
     file.eye_points = integer32(head.member("eye_points"));
+    file.shadow_rays = integer32(head.member("shadow_rays"));
     file.seed = head.member("seed").integer(std::numeric_limits<std::uint64_t>::max());
     file.renderer = head.member("renderer").any_text();
     file.enclosure = head.member("enclosure").any_text();

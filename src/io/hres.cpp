@@ -65,7 +65,8 @@ Json header(const ResultFile& result, const PatchMesh& mesh) {
         head["camera"] = {{"eye", point(camera.eye)},
                           {"target", point(camera.target)},
                           {"up", point(camera.up)},
-                          {"fov", camera.fov}};
+                          {"fov", camera.fov},
+                          {"orthographic", camera.orthographic}};
     }
     return head;
 }
@@ -112,7 +113,7 @@ std::vector<Material> read_materials(const JsonNode& all) {
 
 Camera read_camera(const JsonNode& node) {
     return {node.member("eye").point(), node.member("target").point(), node.member("up").point(),
-            node.member("fov").number()};
+            node.member("fov").number(), node.has("orthographic") && node.member("orthographic").boolean()};
 }
 
 /// What the header says of sizes.

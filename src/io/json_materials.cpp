@@ -1,6 +1,7 @@
 #include "io/json_materials.hpp"
 
 #include "core/nearest_word.hpp"
+#include "io/text_scan.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

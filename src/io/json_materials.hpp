@@ -2,9 +2,11 @@
 
 #include "hemi/scene/scene.hpp"
 #include "io/json_node.hpp"
-#include "io/obj_mesh.hpp"
+#include "io/mtl_reader.hpp"
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>

@@ -1,10 +1,13 @@
 #include "core/nearest_word.hpp"
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "io/face_mesh.hpp"
 #include "io/json_materials.hpp"
 #include "io/json_node.hpp"
-#include "io/obj_mesh.hpp"
+#include "io/obj_materials.hpp"
 #include "io/polygon_pieces.hpp"
+#include "io/scene_folder.hpp"
+#include "io/text_scan.hpp"
 #include "io/transform.hpp"
 #include "io/two_sided.hpp"
 
@@ -20,9 +23,9 @@ namespace hemi::io {
 
 namespace {
 
-/// An OBJ file that the scene names, and what its MTL files say.
+/// A mesh that the scene names, and what MTL files say of its materials.
 struct LoadedMesh {
-    ObjMesh mesh;
+    FaceMesh mesh;
     std::vector<std::optional<MtlMaterial>> materials;
     bool looked_up = false;
 };
@@ -58,7 +61,7 @@ Grid read_grid(const JsonNode& node) {
 }
 
 Camera read_camera(const JsonNode& node) {
-    node.check_keys({"eye", "target", "up", "fov"});
+    node.check_keys({"eye", "target", "up", "fov", "orthographic"});
     Camera camera;
     camera.eye = node.member("eye").point();
     camera.target = node.member("target").point();
@@ -72,6 +75,7 @@ Camera read_camera(const JsonNode& node) {
             fov.fail(fmt::format("{}; must be between 0 and 180 degrees", camera.fov));
         }
     }
+    camera.orthographic = node.has("orthographic") && node.member("orthographic").boolean();
     const Vec3 view = camera.target - camera.eye;
     if (!(glm::length(view) > 0.0)) {
         node.fail("eye and target are the same point");
@@ -107,7 +111,8 @@ public:
     JsonSceneReader(const std::filesystem::path& path, const SceneReaderOptions& options,
                     Diagnostics& diagnostics)
         : path_(path), file_(path.string()), options_(options), diagnostics_(diagnostics),
-          document_(parse_json(read_file(path), file_)), root_(document_, file_) {}
+          document_(parse_json(read_file(path), file_)), root_(document_, file_),
+          folder_(path, options.allow_outside) {}
 
     Scene read() {
         check_version();
@@ -165,16 +170,20 @@ private:
             }
             const JsonNode name = surface.member("mesh");
             const std::filesystem::path file = path_.parent_path() / name.text();
-            if (!file.string().ends_with(".obj") && !file.string().ends_with(".OBJ")) {
-                name.expect("the path of an OBJ file");
+            if (!is_face_mesh(file)) {
+                name.expect("the path of a mesh: .obj, .msh, .ply or .stl");
+            }
+            if (!folder_.allows(file)) {
+                name.fail(SceneFolder::refusal(name.text()));
             }
             auto [entry, is_new] = meshes_.try_emplace(file.string());
             LoadedMesh& loaded = entry->second;
             if (is_new) {
-                loaded.mesh = read_obj_mesh(file, options_.skip_degenerate, diagnostics_);
+                loaded.mesh = read_face_mesh(file, options_.skip_degenerate, diagnostics_);
+                loaded.materials.resize(loaded.mesh.materials.size());
             }
-            if (!surface.has("material") && !loaded.looked_up) {
-                loaded.materials = find_obj_materials(loaded.mesh, own, diagnostics_);
+            if (!surface.has("material") && !loaded.looked_up && lower_extension(file) == ".obj") {
+                loaded.materials = find_obj_materials(loaded.mesh, own, folder_, diagnostics_);
                 loaded.looked_up = true;
             }
         }
@@ -294,7 +303,7 @@ private:
         }
     }
 
-    std::vector<std::uint32_t> mesh_groups(const JsonNode& node, const ObjMesh& mesh) {
+    std::vector<std::uint32_t> mesh_groups(const JsonNode& node, const FaceMesh& mesh) {
         if (node.has("name")) {
             return std::vector<std::uint32_t>(mesh.groups.size(), group(node.member("name").text()));
         }
@@ -361,6 +370,7 @@ private:
     Diagnostics& diagnostics_;
     Json document_;
     JsonNode root_;
+    SceneFolder folder_;
     Scene scene_;
     std::map<std::string, LoadedMesh> meshes_;
     std::unordered_map<std::string, std::uint32_t> groups_;

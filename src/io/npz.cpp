@@ -2,6 +2,7 @@
 #include "hemi/io/factor_file.hpp"
 #include "hemi/io/output_file.hpp"
 #include "io/npy.hpp"
+#include "io/rows_builder.hpp"
 #include "io/text_scan.hpp"
 #include "io/triples.hpp"
 #include "io/zip_writer.hpp"
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 namespace hemi::io {
@@ -89,17 +89,18 @@ public:
             fail(fmt::format("{} indices and {} values; indptr.npy says {}", columns.size(), values.size(),
                              offsets.back()));
         }
-        FormFactorMatrix result(static_cast<std::uint32_t>(sizes[0]));
-        for (std::uint32_t first = 0; first < result.size();) {
-            RowBlock block = make_block(first, result.size(), offsets, columns, values);
-            first += block.rows();
-            try {
-                result.set_block(std::move(block));
-            } catch (const InvalidArgument& error) {
-                fail(error.what());
+        const auto size = static_cast<std::uint32_t>(sizes[0]);
+        RowsBuilder rows(size);
+        for (std::uint32_t row = 0; row < size; ++row) {
+            for (std::uint64_t k = offsets[row]; k < offsets[row + 1]; ++k) {
+                check_entry(row, columns[k], values[k], size);
+                rows.add(static_cast<std::uint32_t>(columns[k]), static_cast<float>(values[k]));
+            }
+            if (const auto twice = rows.end_row()) {
+                fail(fmt::format("row {}: column {} is there twice", row, *twice));
             }
         }
-        return result;
+        return rows.take();
     }
 
 private:
@@ -111,31 +112,6 @@ private:
             array.fail(fmt::format("must be {} offsets that ascend from 0", rows + 1));
         }
         return offsets;
-    }
-
-    RowBlock make_block(std::uint32_t first, std::uint32_t size, const std::vector<std::uint64_t>& offsets,
-                        const std::vector<std::uint64_t>& columns, const std::vector<double>& values) const {
-        const std::uint32_t rows = std::min(FormFactorMatrix::block_rows, size - first);
-        RowBlock block;
-        block.first_row = first;
-        block.begin.assign(1, 0);
-        std::vector<std::uint64_t> order;
-        for (std::uint32_t row = first; row < first + rows; ++row) {
-            order.resize(offsets[row + 1] - offsets[row]);
-            std::iota(order.begin(), order.end(), offsets[row]);
-            std::stable_sort(order.begin(), order.end(),
-                             [&](std::uint64_t a, std::uint64_t b) { return columns[a] < columns[b]; });
-            for (const std::uint64_t k : order) {
-                check_entry(row, columns[k], values[k], size);
-                block.columns.push_back(static_cast<std::uint32_t>(columns[k]));
-                block.values.push_back(static_cast<float>(values[k]));
-            }
-            block.begin.push_back(block.columns.size());
-        }
-        block.environment.assign(rows, 0.0);
-        block.blocked.assign(rows, 0.0);
-        block.known.assign(rows, 1);
-        return block;
     }
 
     void check_entry(std::uint32_t row, std::uint64_t column, double value, std::uint32_t size) const {

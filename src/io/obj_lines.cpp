@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <utility>
 
 namespace hemi::io {
@@ -86,6 +87,9 @@ void ObjLines::read_vertex(std::string_view rest) {
     }
     if (count < 3) {
         fail(fmt::format("a vertex of {} numbers; must have 3", count));
+    }
+    if (vertices_.size() == std::numeric_limits<int>::max()) {
+        fail("more vertices than the loader can count, 2^31 - 1");
     }
     vertices_.push_back(point);
 }

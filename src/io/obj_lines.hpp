@@ -2,6 +2,7 @@
 
 #include "hemi/core/diagnostics.hpp"
 #include "hemi/core/geometry.hpp"
+#include "io/face_mesh.hpp"
 #include "io/text_scan.hpp"
 
 #include <cstddef>
@@ -18,12 +19,6 @@ namespace hemi::io {
 /// and only the lines with structure (faces, groups, materials) are passed on.
 class ObjLines : public std::streambuf {
 public:
-    /// A `mtllib` line.
-    struct Library {
-        std::size_t line;
-        std::string names; ///< the rest of the line
-    };
-
     /// @param text  must outlive this.
     ObjLines(std::string file, std::string_view text, Diagnostics& diagnostics);
 
@@ -31,7 +26,7 @@ public:
     [[nodiscard]] std::size_t line() const noexcept { return line_; }
     /// All `v` up to that line.
     [[nodiscard]] const std::vector<Vec3>& vertices() const noexcept { return vertices_; }
-    [[nodiscard]] const std::vector<Library>& libraries() const noexcept { return libraries_; }
+    [[nodiscard]] const std::vector<FaceMesh::Library>& libraries() const noexcept { return libraries_; }
 
 protected:
     int_type underflow() override;
@@ -49,7 +44,7 @@ private:
     std::string current_;
     std::size_t line_ = 0;
     std::vector<Vec3> vertices_;
-    std::vector<Library> libraries_;
+    std::vector<FaceMesh::Library> libraries_;
     std::set<std::string, std::less<>> ignored_;
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -86,6 +87,12 @@ bool sync(const fs::path& path) {
     ::close(descriptor);
     errno = error;
     return good;
+}
+
+/// Bytes of memory of the machine.
+std::uint64_t physical_memory() {
+    return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
 } // namespace
@@ -208,6 +215,10 @@ std::string read_file(const fs::path& path) {
     }
     std::string text;
     const auto size = fs::file_size(path, ignored);
+    if (!ignored && size > physical_memory()) {
+        throw InputError(fmt::format("{}: {} bytes; this machine has {} bytes of memory", path.string(), size,
+                                     physical_memory()));
+    }
     std::size_t used = 0;
     text.resize(ignored ? 0 : size + 1); // one more, to see the end
     for (;;) {

@@ -1,6 +1,7 @@
 #include "hemi/io/scene_reader.hpp"
 
 #include "hemi/core/error.hpp"
+#include "io/text_scan.hpp"
 
 #include <fmt/format.h>
 
@@ -12,22 +13,14 @@ namespace hemi::io {
 
 namespace {
 
-std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return extension;
-}
-
 struct Reader {
     std::string_view extension;
     Scene (*read)(const std::filesystem::path&, const SceneReaderOptions&, Diagnostics&);
 };
-constexpr Reader readers[] = {{".json", read_json_scene},
-                              {".obj", read_obj_scene},
-                              {".gltf", read_gltf_scene},
-                              {".glb", read_gltf_scene},
-                              {".vs3", read_vs3_scene}};
+constexpr Reader readers[] = {{".json", read_json_scene}, {".obj", read_obj_scene},
+                              {".gltf", read_gltf_scene}, {".glb", read_gltf_scene},
+                              {".vs3", read_vs3_scene},   {".msh", read_msh_scene},
+                              {".ply", read_ply_scene},   {".stl", read_stl_scene}};
 
 const Reader* reader_of(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);

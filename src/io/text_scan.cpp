@@ -1,5 +1,6 @@
 #include "io/text_scan.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -118,6 +119,13 @@ std::string to_utf8(std::string_view text) {
         }
     }
     return result;
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return extension;
 }
 
 } // namespace hemi::io

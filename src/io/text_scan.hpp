@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,8 @@ public:
     bool next(std::string_view& line);
     /// Number of the line that next() gave, from 1.
     [[nodiscard]] std::size_t number() const noexcept { return number_; }
+    /// What comes after that line.
+    [[nodiscard]] std::string_view rest() const noexcept { return rest_; }
 
 private:
     std::string_view rest_;
@@ -52,5 +55,8 @@ template <class Integer>
 /// `text` itself if it is valid UTF-8, else its bytes taken as Latin-1: names from old files stay distinct
 /// and can be written as JSON.
 [[nodiscard]] std::string to_utf8(std::string_view text);
+
+/// Extension of a file's name with its dot, in lower case.
+[[nodiscard]] std::string lower_extension(const std::filesystem::path& path);
 
 } // namespace hemi::io

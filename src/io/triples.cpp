@@ -1,6 +1,7 @@
 #include "io/triples.hpp"
 
 #include "hemi/core/error.hpp"
+#include "io/rows_builder.hpp"
 #include "io/text_scan.hpp"
 
 #include <fmt/format.h>
@@ -49,27 +50,15 @@ void Triples::sort() {
 
 FormFactorMatrix Triples::matrix(std::uint32_t rows) {
     sort();
-    FormFactorMatrix result(rows);
+    RowsBuilder builder(rows);
     auto entry = entries_.begin();
-    for (std::uint32_t first = 0; first < rows;) {
-        const std::uint32_t count = std::min(FormFactorMatrix::block_rows, rows - first);
-        RowBlock block;
-        block.first_row = first;
-        block.begin.assign(1, 0);
-        for (std::uint32_t local = 0; local < count; ++local) {
-            for (; entry != entries_.end() && entry->row == first + local; ++entry) {
-                block.columns.push_back(entry->column);
-                block.values.push_back(entry->value);
-            }
-            block.begin.push_back(block.columns.size());
+    for (std::uint32_t row = 0; row < rows; ++row) {
+        for (; entry != entries_.end() && entry->row == row; ++entry) {
+            builder.add(entry->column, entry->value);
         }
-        block.environment.assign(count, 0.0);
-        block.blocked.assign(count, 0.0);
-        block.known.assign(count, 1);
-        result.set_block(std::move(block));
-        first += count;
+        (void)builder.end_row(); // sort() has found what is there twice
     }
-    return result;
+    return builder.take();
 }
 
 void require_all_known(const FormFactorMatrix& factors, std::string_view format) {

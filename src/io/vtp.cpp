@@ -1,7 +1,7 @@
 #include "hemi/io/vtp_file.hpp"
 
 #include "hemi/core/error.hpp"
-#include "hemi/io/output_file.hpp"
+#include "io/binary_output.hpp"
 
 #include <fmt/format.h>
 
@@ -75,33 +75,10 @@ private:
     std::uint64_t offset_ = 0;
 };
 
-/// Writes arrays of 64-bit numbers, each behind its size, in pieces.
-class Body {
-public:
-    explicit Body(OutputFile& file) : file_(file) {}
-
-    void begin(std::uint64_t numbers) { put(numbers * sizeof(std::uint64_t)); }
-
-    template <class Number>
-    void put(Number number) {
-        static_assert(sizeof(Number) == sizeof(std::uint64_t));
-        const auto* const bytes = reinterpret_cast<const char*>(&number);
-        buffer_.append(bytes, sizeof number);
-        if (buffer_.size() >= flush_at) {
-            flush();
-        }
-    }
-    void flush() {
-        file_.write(buffer_);
-        buffer_.clear();
-    }
-
-private:
-    static constexpr std::size_t flush_at = 1 << 18;
-
-    OutputFile& file_;
-    std::string buffer_;
-};
+/// Begins an array of 64-bit numbers: its size goes before it.
+void begin(BinaryOutput& body, std::uint64_t numbers) {
+    body.put(numbers * sizeof(std::uint64_t));
+}
 
 void check(const CellArray& array, std::size_t patches) {
     const std::size_t components = std::max<std::size_t>(array.components.size(), 1);
@@ -158,28 +135,27 @@ void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::sp
     head.close("Piece");
     head.close("PolyData");
 
-    OutputFile file(path);
-    file.write(head.text() + "<AppendedData encoding=\"raw\">\n_");
-    Body body(file);
-    body.begin(size);
+    BinaryOutput body(path);
+    body.text(head.text() + "<AppendedData encoding=\"raw\">\n_");
+    begin(body, size);
     for (std::uint64_t i = 0; i < size; ++i) {
         body.put(i);
     }
-    body.begin(size);
+    begin(body, size);
     for (std::uint32_t i = 0; i < size; ++i) {
         body.put(std::uint64_t{mesh.group(i)});
     }
-    body.begin(size);
+    begin(body, size);
     for (const double area : mesh.areas()) {
         body.put(area);
     }
     for (const CellArray& array : arrays) {
-        body.begin(array.values.size());
+        begin(body, array.values.size());
         for (const double value : array.values) {
             body.put(value);
         }
     }
-    body.begin(3 * points);
+    begin(body, 3 * points);
     for (std::uint32_t i = 0; i < size; ++i) {
         const PatchCorners corners = mesh.corners(i);
         for (const Vec3& corner : corners.polygon()) {
@@ -188,19 +164,18 @@ void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::sp
             body.put(corner.z);
         }
     }
-    body.begin(points);
+    begin(body, points);
     for (std::uint64_t p = 0; p < points; ++p) {
         body.put(p);
     }
-    body.begin(size);
+    begin(body, size);
     std::uint64_t end = 0;
     for (std::uint32_t i = 0; i < size; ++i) {
         end += mesh.surfaces()[mesh.surface_of()[i]].vertex_count;
         body.put(end);
     }
-    body.flush();
-    file.write("\n</AppendedData>\n</VTKFile>\n");
-    file.commit();
+    body.text("\n</AppendedData>\n</VTKFile>\n");
+    body.commit();
 }
 
 } // namespace hemi::io

@@ -38,7 +38,7 @@ public:
             step(first, run);
             first = false;
             relative = relative_residual();
-            run.count(relative);
+            run.count(relative, [this] { return system_.unscaled(radiosity()); });
         } while (relative > goal && run.solution.sweeps < run.settings.max_sweeps);
     }
 

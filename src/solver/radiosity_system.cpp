@@ -104,11 +104,14 @@ std::vector<double> RadiositySystem::unscaled(const ChannelField& field) const {
     return values;
 }
 
-void SolverRun::count(double residual) const {
+void SolverRun::count(double residual, const std::function<std::vector<double>()>& radiosity) const {
     ++solution.sweeps;
     if (!std::isfinite(residual)) {
         solution.residual = residual;
         fail("the values are no longer finite");
+    }
+    if (settings.watch) {
+        settings.watch(solution.sweeps, residual, radiosity);
     }
     if (callback && !callback(solution.sweeps, residual)) {
         throw Cancelled();

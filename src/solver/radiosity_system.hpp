@@ -57,8 +57,9 @@ struct SolverRun {
     const SweepCallback& callback;
     RadiositySolution& solution;
 
-    /// Counts a sweep, and calls back. @throws Cancelled; NotConverged if the residual is not finite
-    void count(double residual) const;
+    /// Counts a sweep, shows `radiosity()` to who watches, and calls back.
+    /// @throws Cancelled; NotConverged if the residual is not finite
+    void count(double residual, const std::function<std::vector<double>()>& radiosity) const;
     [[noreturn]] void fail(const std::string& reason) const;
 };
 

@@ -138,7 +138,7 @@ ChannelField solve_by_sweeps(const RadiositySystem& system, const SolverRun& run
             std::swap(previous, radiosity);
         }
         const Change change = sweeper.sweep(jacobi ? previous : radiosity, radiosity);
-        run.count(change.relative);
+        run.count(change.relative, [&] { return system.unscaled(radiosity); });
         const bool hopeless = forecast.hopeless(solution.sweeps, change.relative, goal);
         if (change.relative > goal && !change.rounding && !hopeless) {
             continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <variant>
 
 /// What a window tells the viewer; a script says the same. Points are pixels from the upper left.
@@ -15,13 +16,16 @@ struct ButtonEvent {
     Button button;
     bool pressed;
     bool shift;
+    bool control = false;
 };
 struct ScrollEvent {
     double amount; ///< notches of the wheel, away from the user positive
 };
 inline constexpr char escape_key = '\x1B';
 inline constexpr char tab_key = '\t';
-inline constexpr char help_key = '\x01'; ///< F1
+inline constexpr char help_key = '\x01';   ///< F1
+inline constexpr char reload_key = '\x05'; ///< F5
+inline constexpr char home_key = '\x02';   ///< Home
 /// `key` is what a keyboard shows on it: a capital letter, a digit, or one of the above.
 struct KeyEvent {
     char key;
@@ -30,8 +34,13 @@ struct KeyEvent {
 /// The window has another size, or its content was lost.
 struct RefreshEvent {};
 struct CloseEvent {};
+/// Files were dropped on the window; the first counts.
+struct DropEvent {
+    std::string path;
+};
 
-using Event = std::variant<CursorEvent, ButtonEvent, ScrollEvent, KeyEvent, RefreshEvent, CloseEvent>;
+using Event =
+    std::variant<CursorEvent, ButtonEvent, ScrollEvent, KeyEvent, RefreshEvent, CloseEvent, DropEvent>;
 
 /// Functions for std::visit, one an alternative.
 template <typename... Functions>

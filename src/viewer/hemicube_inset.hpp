@@ -2,7 +2,7 @@
 
 #include "engine/gl_rows.hpp"
 #include "gl/objects.hpp"
-#include "viewer/panels.hpp"
+#include "viewer/overlays.hpp"
 
 #include <array>
 #include <cstdint>

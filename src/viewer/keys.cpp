@@ -32,17 +32,55 @@ void next_heat_map(const ViewerInput& input, Choices& choices) {
 
 } // namespace
 
-bool apply_camera_key(char key, double aspect, OrbitCamera& orbit) {
-    if (key == 'F') {
+std::vector<GuideLine> guide(Controls controls) {
+    std::vector<GuideLine> lines{{"left drag", "orbit about the point under the cursor"},
+                                 {"middle drag, shift + left drag", "pan"},
+                                 {"wheel, right drag", "zoom at the cursor"}};
+    if (controls == Controls::blender) {
+        lines = {{"middle drag", "orbit about the point under the cursor"},
+                 {"shift + middle drag", "pan"},
+                 {"wheel, ctrl + middle drag, right drag", "zoom at the cursor"}};
+    }
+    lines.insert(lines.end(),
+                 {{"left click", "pick a patch; beside the scene: none"},
+                  {"F, Home", "frame everything"},
+                  {"R", "back to the scene's own camera"},
+                  {"1  3  7", "from the front, the right, above; with shift from the other side"},
+                  {"5", "orthographic or perspective"},
+                  {"V, shift + V", "next quantity, previous one"},
+                  {"H", "heat map of the picked patch: row of F, column, none"},
+                  {"C", "hemicube of the picked patch"},
+                  {"L", "linear or logarithmic scale"},
+                  {"S", "Gouraud or flat"},
+                  {"W", "patch outlines"},
+                  {"B", "back faces: striped, or seen through"},
+                  {"T", "filmic or linear tone mapping"},
+                  {"E, shift + E", "brighter, darker by a third of a stop"},
+                  {"G, shift + G", "the next sweep from the lamps' light, all sweeps"},
+                  {"P, shift + P", "screenshot of the picture, of the whole window"},
+                  {"X", "copy a command line that draws this picture"},
+                  {"F5", "read the file again"},
+                  {"Tab", "side panel"},
+                  {"F1", "this list"},
+                  {"Esc", "closes this list, lets go of the patch, quits"},
+                  {"Q", "quits"}});
+    return lines;
+}
+
+bool apply_camera_key(const KeyEvent& event, double aspect, OrbitCamera& orbit) {
+    const char key = event.key;
+    if (key == 'F' || key == home_key) {
         orbit.frame_all(aspect);
     } else if (key == 'R') {
         orbit.reset();
     } else if (key == '1') {
-        orbit.look_along(OrbitCamera::Axis::front, aspect);
+        orbit.look_along(OrbitCamera::Axis::front, event.shift, aspect);
     } else if (key == '3') {
-        orbit.look_along(OrbitCamera::Axis::right, aspect);
+        orbit.look_along(OrbitCamera::Axis::right, event.shift, aspect);
     } else if (key == '7') {
-        orbit.look_along(OrbitCamera::Axis::top, aspect);
+        orbit.look_along(OrbitCamera::Axis::top, event.shift, aspect);
+    } else if (key == '5') {
+        orbit.set_orthographic(!orbit.camera().orthographic);
     } else {
         return false;
     }
@@ -60,6 +98,8 @@ bool apply_look_key(const KeyEvent& event, const ViewerInput& input, Choices& ch
         look.stops += event.shift ? -exposure_step : exposure_step;
     } else if (event.key == 'W') {
         look.outlines = !look.outlines;
+    } else if (event.key == 'B') {
+        look.backs = !look.backs;
     } else if (event.key == 'L') {
         bool& logarithmic = look.quantity == Quantity::row || look.quantity == Quantity::column
                                 ? look.logarithmic_factors

@@ -106,9 +106,9 @@ Field light_field(const Look& look, const ViewerInput& input, const Light& light
 
 Field row_error_field(const ViewerInput& input) {
     Field field{"Row of F: |sum + e + b - 1|", "", {}, {1e-8, 1e-2, true}};
-    for (std::size_t i = 0; i < input.row_sum.size(); ++i) {
+    for (std::size_t i = 0; i < input.rows.row_sum.size(); ++i) {
         field.values.push_back(
-            std::abs(input.row_sum[i] + input.environment_share[i] + input.blocked[i] - 1.0));
+            std::abs(input.rows.row_sum[i] + input.rows.environment_share[i] + input.rows.blocked[i] - 1.0));
     }
     return field;
 }
@@ -133,15 +133,15 @@ const char* quantity_title(Quantity quantity) {
 
 const char* why_not(Quantity quantity, const ViewerInput& input, std::optional<std::uint32_t> picked) {
     if (quantity == Quantity::estimated_error && input.radiosity_error.empty()) {
-        return "no errors were estimated for this solution";
+        return "no errors were estimated of this light";
     }
-    if (quantity == Quantity::row_error && input.row_sum.empty()) {
+    if (quantity == Quantity::row_error && input.rows.row_sum.empty()) {
         return "needs form factors";
     }
     if (quantity == Quantity::row || quantity == Quantity::column) {
-        if (input.factors == nullptr) {
-            return input.solve ? "not computed"
-                               : "a stored solution has no form factors; open the scene instead";
+        if (input.rows.factors == nullptr) {
+            return input.find_rows ? "not computed"
+                                   : "a stored solution has no form factors; open the scene instead";
         }
         if (!picked) {
             return "click a patch first";
@@ -211,10 +211,10 @@ std::optional<Field> make_field(const Look& look, const ViewerInput& input, cons
     case Quantity::row:
     case Quantity::column: {
         const bool row = look.quantity == Quantity::row;
-        Field field{row ? "F(i, j), i picked: leaves i, arrives at j"
-                        : "F(j, i), i picked: leaves j, arrives at i",
-                    "", row ? factors_from(*input.factors, *picked) : factors_to(*input.factors, *picked),
-                    scale_to(usual_factor, look.logarithmic_factors, factor_range)};
+        Field field{
+            row ? "F(i, j), i picked: leaves i, arrives at j" : "F(j, i), i picked: leaves j, arrives at i",
+            "", row ? factors_from(*input.rows.factors, *picked) : factors_to(*input.rows.factors, *picked),
+            scale_to(usual_factor, look.logarithmic_factors, factor_range)};
         std::replace(field.values.begin(), field.values.end(), 0.0, none);
         return field;
     }
@@ -300,6 +300,7 @@ PictureSettings picture_settings(const Look& look, const PictureSettings& first,
     settings.tone_mapping = look.tone_mapping;
     settings.exposure = exposure;
     settings.outlines = look.outlines;
+    settings.backs = look.backs;
     if (look.quantity != Quantity::picture) {
         settings.shading = Shading::flat;
         settings.tone_mapping = ToneMapping::linear;
@@ -307,16 +308,6 @@ PictureSettings picture_settings(const Look& look, const PictureSettings& first,
         settings.outlines = look.outlines || look.quantity == Quantity::outlines;
     }
     return settings;
-}
-
-std::vector<bool> without_rows(const ViewerInput& input) {
-    std::vector<bool> result(input.scene->materials.size(), false);
-    for (std::uint32_t i = 0; input.factors != nullptr && i < input.mesh->size(); ++i) {
-        if (!input.factors->known(i)) {
-            result[input.mesh->material(i)] = true;
-        }
-    }
-    return result;
 }
 
 std::vector<std::array<float, 3>> lamp_colours(const PatchMesh& mesh, const PictureMesh& light,

@@ -48,6 +48,7 @@ struct Look {
     ToneMapping tone_mapping = ToneMapping::filmic;
     double stops = 0.0; ///< exposure over the one at the start, powers of two
     bool outlines = false;
+    bool backs = false;
 
     bool operator==(const Look&) const = default;
 };
@@ -102,9 +103,6 @@ struct Field {
 /// @param first  what the look does not say
 [[nodiscard]] PictureSettings picture_settings(const Look& look, const PictureSettings& first,
                                                double exposure, std::array<std::uint32_t, 2> size);
-/// Of every material, whether a row of its patches is unknown: then it must not begin to reflect.
-[[nodiscard]] std::vector<bool> without_rows(const ViewerInput& input);
-
 /// Lamps as the picture shows them, all else in dim greys: a scene that is not solved yet.
 [[nodiscard]] std::vector<std::array<float, 3>> lamp_colours(const PatchMesh& mesh, const PictureMesh& light,
                                                              double exposure, ToneMapping tone_mapping);

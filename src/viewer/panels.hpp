@@ -1,9 +1,11 @@
 #pragma once
 
-#include "display/orbit_camera.hpp"
+#include "viewer/document.hpp"
 #include "viewer/look.hpp"
+#include "viewer/partners.hpp"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -12,18 +14,30 @@
 
 namespace hemi::viewer {
 
-/// One of the patches that a picked one exchanges most light with.
-struct Partner {
-    std::uint32_t patch;
-    double factor; ///< F(picked, patch), or F(patch, picked) where columns are shown
-    double share;  ///< of the light that arrives at the picked patch from all patches; 0 where none does
+/// What a button in the panel asks for, once.
+struct Wishes {
+    bool cancel = false; ///< the search for rows
+    bool start_over = false;
+    bool step = false;
+    bool run_on = false;
+    bool screenshot = false;
+    bool save_result = false;
+    bool save_camera = false;
+    bool copy_command = false;
+    bool reload = false;
+    std::optional<char> camera_key; ///< as if it were pressed
+    std::optional<double> fov;
+    std::optional<bool> orthographic;
 };
 
-/// A picked patch, and whom it faces.
-struct PickedPatch {
-    std::uint32_t patch;
-    std::vector<Partner> partners; ///< largest first, a few; empty without form factors
+/// A size of screenshots.
+struct PictureSize {
+    const char* name;
+    std::uint32_t width; ///< 0: as the scene has in the window
+    std::uint32_t height;
+    std::uint32_t scale; ///< of the scene's size in the window
 };
+[[nodiscard]] std::span<const PictureSize> picture_sizes();
 
 /// What the user has chosen, by keys, clicks or panels.
 struct Choices {
@@ -35,9 +49,11 @@ struct Choices {
     bool hemicube_ids = false;               ///< coloured by item, else as the scene is
     std::uint32_t hemicube_eye = 0;
     std::vector<Material> materials; ///< as the light should be
-    bool cancel = false;             ///< what is being solved
     bool panel = true;
     bool help = false;
+    std::size_t picture_size = 0; ///< of screenshots, into picture_sizes()
+    std::uint32_t samples = 4;    ///< of screenshots, along an edge of a pixel
+    Wishes wishes;
 };
 
 /// What a hemicube's picture depends on besides its patch.
@@ -49,46 +65,19 @@ struct HemicubeChoice {
     bool operator==(const HemicubeChoice&) const = default;
 };
 
-/// All that the panels show.
+/// All that the side panel shows.
 struct PanelContent {
-    const ViewerInput& input;
-    const Light& light;
+    const Document& document;
     const std::optional<PickedPatch>& picked;
-    std::string status;        ///< at the panel's foot
-    std::string relit;         ///< on the last change of materials
-    std::string solving;       ///< what is under way; empty: nothing
-    double solved_share = 0.0; ///< of that
-    /// Materials of which a row is unknown: they must not begin to reflect. One a material.
-    const std::vector<bool>& without_rows;
+    const Camera& camera;
+    std::string note;   ///< on what was done last; empty: on the light
+    std::string status; ///< at the panel's foot
 };
 
 /// Pixels of the window that the side panel takes, from the right; 0 where the window is too small for it.
 [[nodiscard]] std::uint32_t panel_width(std::array<std::uint32_t, 2> window, bool wanted);
 
-/// The side panel. Between Gui::begin() and Gui::end(), like all that follow.
+/// The side panel. Between Gui::begin() and Gui::end().
 void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window, Choices& choices);
-/// The colours of a field, in the lower left of the view.
-void legend(const Field& field, std::array<std::uint32_t, 2> view);
-/// The outline of a patch, in front of everything.
-/// @param picked  else pointed at: another colour
-void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
-                std::array<std::uint32_t, 2> view, bool picked);
-/// A hemicube unfolded, as a texture of the window's context.
-struct HemicubePicture {
-    std::uint32_t texture;
-    std::uint32_t patch;
-    std::uint32_t resolution;
-    std::uint32_t eyes; ///< eye points of the patch
-};
-/// In the upper right of the view, with what it is and how it is coloured.
-void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2> view, Choices& choices);
-/// Mouse and keys.
-void help_window(std::array<std::uint32_t, 2> view, bool& open);
-
-/// The `count` patches with the largest factor, or that send the most light.
-/// @param column  factors are F(patch, picked), else F(picked, patch)
-[[nodiscard]] std::vector<Partner> largest_partners(const ViewerInput& input, const Light& light,
-                                                    std::uint32_t picked, bool column, bool by_light,
-                                                    std::size_t count);
 
 } // namespace hemi::viewer

@@ -8,23 +8,56 @@
 
 namespace hemi::viewer {
 
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Light on the way to the solution is shown no more often than this.
+constexpr std::chrono::milliseconds interval{80};
+
+} // namespace
+
 Relighter::Relighter(const ViewerInput& input, std::function<void()> done)
     : input_(input), done_(std::move(done)), thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 Relighter::~Relighter() = default;
 
-void Relighter::ask(Light wanted) {
+void Relighter::ask(Light wanted, bool stepwise) {
     {
         const std::lock_guard lock(mutex_);
-        wanted_ = std::move(wanted);
+        wanted_ = Wish{std::move(wanted), stepwise};
         result_.reset();
+        residuals_.clear();
+        stepwise_ = stepwise;
+        steps_ = 0;
+    }
+    asked_.notify_one();
+}
+
+void Relighter::step() {
+    {
+        const std::lock_guard lock(mutex_);
+        ++steps_;
+    }
+    asked_.notify_one();
+}
+
+void Relighter::run_on() {
+    {
+        const std::lock_guard lock(mutex_);
+        stepwise_ = false;
     }
     asked_.notify_one();
 }
 
 bool Relighter::busy() const {
     const std::lock_guard lock(mutex_);
-    return working_ || wanted_ || result_;
+    return result_ || ((working_ || wanted_) && !(waiting_ && steps_ == 0));
+}
+
+bool Relighter::waits() const {
+    const std::lock_guard lock(mutex_);
+    return (working_ || wanted_) && stepwise_;
 }
 
 std::optional<Relit> Relighter::take() {
@@ -32,46 +65,107 @@ std::optional<Relit> Relighter::take() {
     return std::exchange(result_, std::nullopt);
 }
 
+std::vector<double> Relighter::residuals() const {
+    const std::lock_guard lock(mutex_);
+    return residuals_;
+}
+
 void Relighter::work(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (asked_.wait(lock, stop, [this] { return wanted_.has_value(); })) {
-        Light wanted = *std::exchange(wanted_, std::nullopt);
+        Wish wish = *std::exchange(wanted_, std::nullopt);
         working_ = true;
         lock.unlock();
-        std::optional<Relit> found = solve(std::move(wanted), stop);
+        try {
+            solve(std::move(wish), stop);
+        } catch (const Cancelled&) { // another wish has come
+        }
         lock.lock();
         working_ = false;
-        if (found && !wanted_) {
-            result_ = std::move(found);
-            lock.unlock();
-            done_();
-            lock.lock();
-        }
+        stepwise_ = wanted_ && wanted_->stepwise;
     }
 }
 
-std::optional<Relit> Relighter::solve(Light wanted, const std::stop_token& stop) {
-    const auto start = std::chrono::steady_clock::now();
+void Relighter::publish(Relit relit) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (wanted_) {
+            return;
+        }
+        result_ = std::move(relit);
+    }
+    done_();
+}
+
+void Relighter::wait_for_step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
+    waiting_ = true;
+    asked_.wait(lock, stop, [this] { return wanted_ || !stepwise_ || steps_ > 0; });
+    waiting_ = false;
+    if (stop.stop_requested() || wanted_) {
+        throw Cancelled();
+    }
+    steps_ -= steps_ > 0 ? 1 : 0;
+}
+
+void Relighter::solve(Wish wish, const std::stop_token& stop) {
     Relit relit;
+    relit.light = std::move(wish.light);
+    const std::vector<double> start = relit.light.radiosity;
+    Clock::time_point began = Clock::now();
     try {
-        const RadiosityProblem problem{input_.factors.get(), input_.channels,           wanted.reflectance,
-                                       wanted.exitance,      input_.scene->environment, input_.mesh->areas()};
+        const RadiosityProblem problem{input_.rows.factors.get(), input_.channels,
+                                       relit.light.reflectance,   relit.light.exitance,
+                                       input_.scene->environment, input_.mesh->areas()};
         SolverSettings settings = input_.solver;
-        settings.start = wanted.radiosity;
-        RadiositySolution solution = solve_radiosity(problem, settings, [&](std::uint32_t, double) {
-            const std::lock_guard lock(mutex_);
-            return !stop.stop_requested() && !wanted_;
-        });
+        settings.start = start;
+        if (wish.stepwise && settings.method == SolverMethod::automatic) {
+            settings.method = SolverMethod::gauss_seidel;
+        }
+        Clock::time_point told = began;
+        settings.watch = [&](std::uint32_t sweep, double residual, const auto& radiosity) {
+            const Clock::time_point now = Clock::now();
+            std::unique_lock lock(mutex_);
+            if (stop.stop_requested() || wanted_) {
+                throw Cancelled();
+            }
+            residuals_.push_back(residual);
+            const bool waits = stepwise_ && steps_ == 0;
+            if (waits || now - told >= interval) {
+                told = now;
+                lock.unlock();
+                Relit so_far{relit.light, false,    std::string(solver_name(settings.method)),
+                             sweep,       residual, std::chrono::duration<double>(now - began).count(),
+                             {},          {}};
+                so_far.light.radiosity = radiosity();
+                publish(std::move(so_far));
+                lock.lock();
+            }
+            wait_for_step(lock, stop);
+        };
+        if (wish.stepwise) {
+            std::unique_lock lock(mutex_);
+            wait_for_step(lock, stop);
+        }
+        began = Clock::now();
+        RadiositySolution solution = solve_radiosity(problem, settings);
+        relit.converged = true;
+        relit.solver = solver_name(solution.method);
         relit.sweeps = solution.sweeps;
-        wanted.radiosity = std::move(solution.radiosity);
+        relit.residual = solution.residual;
+        relit.light.radiosity = std::move(solution.radiosity);
     } catch (const Cancelled&) {
-        return std::nullopt;
+        throw;
     } catch (const std::exception& error) {
         relit.problem = error.what();
     }
-    relit.light = std::move(wanted);
-    relit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return relit;
+    relit.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+    publish(relit);
+    if (relit.converged && input_.rows.reference) {
+        relit.error = estimate_radiosity_error(*input_.rows.factors, *input_.rows.reference,
+                                               input_.mesh->areas(), input_.channels, relit.light.reflectance,
+                                               relit.light.exitance, relit.light.radiosity);
+        publish(std::move(relit));
+    }
 }
 
 } // namespace hemi::viewer

@@ -9,19 +9,24 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace hemi::viewer {
 
-/// The light after materials have changed, from the form factors that are there.
+/// Light that was asked for: solved, or on the way there.
 struct Relit {
     Light light;
+    bool converged = false;
+    std::string solver;
     std::uint32_t sweeps = 0;
+    double residual = 0.0;
     double seconds = 0.0;
+    std::optional<RadiosityError> error; ///< estimated; comes a little later than the light
     std::string problem; ///< why there is no solution; then `light` is as it was asked for, not solved
 };
 
-/// Solves beside the window, on a thread of its own, from the last solution on. A wish that comes before the
-/// last is fulfilled replaces it.
+/// Solves beside the window, on a thread of its own. A wish that comes before the last is fulfilled replaces
+/// it. What the light is like after some sweeps is to be had as well; sweep by sweep, if that is asked for.
 class Relighter {
 public:
     /// @param input  outlives this; its factors are there
@@ -32,24 +37,46 @@ public:
     Relighter(const Relighter&) = delete;
     Relighter& operator=(const Relighter&) = delete;
 
-    /// @param wanted  its radiosity is where the sweeps begin
-    void ask(Light wanted);
-    /// Whether something was asked that was not taken.
+    /// @param wanted    its radiosity is where the sweeps begin; empty: at the sources
+    /// @param stepwise  wait for step() before every sweep; Gauss–Seidel unless another method was asked for
+    void ask(Light wanted, bool stepwise = false);
+    /// Lets it do one more sweep, or all that are left.
+    void step();
+    void run_on();
+
+    /// Whether something was asked that was not taken, and goes on by itself.
     [[nodiscard]] bool busy() const;
+    /// Whether it waits for step().
+    [[nodiscard]] bool waits() const;
+    /// The newest light.
     [[nodiscard]] std::optional<Relit> take();
+    /// Residual after every sweep of the last wish.
+    [[nodiscard]] std::vector<double> residuals() const;
 
 private:
+    struct Wish {
+        Light light;
+        bool stepwise = false;
+    };
+
     void work(const std::stop_token& stop);
-    [[nodiscard]] std::optional<Relit> solve(Light wanted, const std::stop_token& stop);
+    void solve(Wish wish, const std::stop_token& stop);
+    /// @throws Cancelled when the wish is no longer wanted
+    void wait_for_step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
+    void publish(Relit relit);
 
     const ViewerInput& input_;
     std::function<void()> done_;
     mutable std::mutex mutex_;
     std::condition_variable_any asked_;
-    std::optional<Light> wanted_;
+    std::optional<Wish> wanted_;
     std::optional<Relit> result_;
+    std::vector<double> residuals_;
     bool working_ = false;
-    std::jthread thread_; ///< last: it uses all of the above
+    bool stepwise_ = false; ///< what is under way waits for steps
+    bool waiting_ = false;  ///< for one
+    std::size_t steps_ = 0; ///< allowed
+    std::jthread thread_;   ///< last: it uses all of the above
 };
 
 } // namespace hemi::viewer

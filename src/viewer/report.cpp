@@ -18,6 +18,10 @@ Json index_or_null(const std::optional<std::uint32_t>& patch) {
     return patch ? Json(*patch) : Json(nullptr);
 }
 
+Json point(const Vec3& p) {
+    return {p.x, p.y, p.z};
+}
+
 } // namespace
 
 void write_report(const std::filesystem::path& path, const Report& report) {
@@ -33,7 +37,16 @@ void write_report(const std::filesystem::path& path, const Report& report) {
               {"hemicube", report.seen},
               {"values", nullptr},
               {"scale", nullptr},
-              {"radiosity", Json::array()}};
+              {"radiosity", Json::array()},
+              {"residuals", report.document.work().residuals},
+              {"light", report.document.work().light},
+              {"camera",
+               {{"eye", point(report.camera.eye)},
+                {"target", point(report.camera.target)},
+                {"up", point(report.camera.up)},
+                {"fov", report.camera.fov},
+                {"orthographic", report.camera.orthographic}}},
+              {"message", report.message}};
     if (report.picked) {
         for (const Partner& partner : report.picked->partners) {
             json["partners"].push_back(partner.patch);
@@ -47,11 +60,11 @@ void write_report(const std::filesystem::path& path, const Report& report) {
         const ColourScale& scale = report.field->scale;
         json["scale"] = {{"low", scale.low}, {"high", scale.high}, {"logarithmic", scale.logarithmic}};
     }
-    const std::uint32_t channels = report.input.channels;
-    for (std::size_t i = 0; i < report.light.radiosity.size(); i += channels) {
+    const std::uint32_t channels = report.document.input().channels;
+    for (std::size_t i = 0; i < report.document.light().radiosity.size(); i += channels) {
         Json patch = Json::array();
         for (std::uint32_t c = 0; c < channels; ++c) {
-            patch.push_back(report.light.radiosity[i + c]);
+            patch.push_back(report.document.light().radiosity[i + c]);
         }
         json["radiosity"].push_back(std::move(patch));
     }
@@ -60,9 +73,9 @@ void write_report(const std::filesystem::path& path, const Report& report) {
     file.commit();
 }
 
-std::filesystem::path free_name(const std::string& stem) {
+std::filesystem::path free_name(const std::string& stem, const std::string& extension) {
     for (int number = 1;; ++number) {
-        std::filesystem::path path = fmt::format("{}-{:03}.png", stem, number);
+        std::filesystem::path path = fmt::format("{}-{:03}{}", stem, number, extension);
         if (!std::filesystem::exists(path)) {
             return path;
         }

@@ -13,21 +13,24 @@ namespace hemi::viewer {
 
 /// What a window shows, as a script may ask.
 struct Report {
-    const ViewerInput& input;
-    const Light& light;
+    const Document& document;
     const Choices& choices;
     const std::optional<Field>& field;
     const std::optional<PickedPatch>& picked;
+    const Camera& camera;
+    const std::string& message;
     std::vector<std::uint32_t> seen; ///< patches in the hemicube that is shown
 };
 
 /// One JSON object: {"schema": "hemi/view/1", "quantity", "picked": patch or null, "pointed_at", "partners":
 /// [patch …], "hemicube": [patch …], "values": one a patch, null where there is none, or null, "scale":
-/// {"low", "high", "logarithmic"} or null, "radiosity": [[per channel] …]}.
+/// {"low", "high", "logarithmic"} or null, "radiosity": [[per channel] …], "residuals": [after every sweep],
+/// "light": how it was solved, "camera": {"eye", "target", "up", "fov", "orthographic"}, "message": what went
+/// wrong last}.
 /// @throws IoError
 void write_report(const std::filesystem::path& path, const Report& report);
 
-/// The first of STEM-001.png, STEM-002.png … that is not there.
-[[nodiscard]] std::filesystem::path free_name(const std::string& stem);
+/// The first of STEM-001, STEM-002 … with that extension that is not there.
+[[nodiscard]] std::filesystem::path free_name(const std::string& stem, const std::string& extension);
 
 } // namespace hemi::viewer

@@ -95,17 +95,17 @@ std::string_view without_comment(std::string_view line) {
     return line;
 }
 
-bool take_shift(std::string_view& word) {
-    constexpr std::string_view prefix = "shift+";
-    const bool shift = word.starts_with(prefix);
-    word.remove_prefix(shift ? prefix.size() : 0);
-    return shift;
+bool take(std::string_view prefix, std::string_view& word) {
+    const bool there = word.starts_with(prefix);
+    word.remove_prefix(there ? prefix.size() : 0);
+    return there;
 }
 
 DragCommand parse_drag(Line& line) {
     DragCommand drag{};
     std::string_view name = line.word("a button");
-    drag.shift = take_shift(name);
+    drag.shift = take("shift+", name);
+    drag.control = take("ctrl+", name);
     if (name == "left") {
         drag.button = Button::left;
     } else if (name == "middle") {
@@ -124,22 +124,50 @@ DragCommand parse_drag(Line& line) {
 
 KeyCommand parse_key(Line& line) {
     std::string_view name = line.word("a key");
-    const bool shift = take_shift(name);
-    constexpr std::array<std::pair<std::string_view, char>, 3> named{
-        {{"Escape", escape_key}, {"Tab", tab_key}, {"F1", help_key}}};
+    const bool shift = take("shift+", name);
+    constexpr std::array<std::pair<std::string_view, char>, 5> named{
+        {{"Escape", escape_key}, {"Tab", tab_key}, {"Home", home_key}, {"F1", help_key}, {"F5", reload_key}}};
     for (const auto& [word, key] : named) {
         if (name == word) {
             return {{key, shift}};
         }
     }
     if (name.size() != 1 || std::isalnum(static_cast<unsigned char>(name[0])) == 0) {
-        line.fail(fmt::format("key \"{}\"; must be a letter, a digit, Escape, Tab or F1", name));
+        line.fail(fmt::format("key \"{}\"; must be a letter, a digit, Escape, Tab, Home, F1 or F5", name));
     }
     return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift}};
 }
 
+/// WIDTHxHEIGHT; nothing if the word is none.
+std::optional<std::array<std::uint32_t, 2>> parse_extent(std::string_view word) {
+    std::array<std::uint32_t, 2> size{};
+    const char* const end = word.data() + word.size();
+    const auto width = std::from_chars(word.data(), end, size[0]);
+    if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') {
+        return std::nullopt;
+    }
+    const auto height = std::from_chars(width.ptr + 1, end, size[1]);
+    return height.ec == std::errc() && height.ptr == end ? std::optional(size) : std::nullopt;
+}
+
 ScreenshotCommand parse_screenshot(Line& line) {
-    ScreenshotCommand screenshot{std::string(line.rest())};
+    ScreenshotCommand screenshot{};
+    Line ahead = line;
+    if (const auto size = parse_extent(ahead.word("a name"))) {
+        screenshot.size = *size;
+        for (const std::uint32_t edge : *size) {
+            if (edge < 1 || edge > 16384) {
+                line.fail(fmt::format("size {}x{}; each must be 1 to 16384", (*size)[0], (*size)[1]));
+            }
+        }
+        (void)line.next();
+        const std::string_view word = ahead.word("a name");
+        if (word.size() == 1 && word[0] >= '1' && word[0] <= '8') {
+            screenshot.samples = static_cast<std::uint32_t>(word[0] - '0');
+            (void)line.next();
+        }
+    }
+    screenshot.path = line.rest();
     if (!screenshot.path.ends_with(".png") && !screenshot.path.ends_with(".hdr")) {
         line.fail(fmt::format("screenshot \"{}\"; the name must end in .png or .hdr", screenshot.path));
     }
@@ -206,6 +234,19 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
     if (command == "report") {
         return {number, ReportCommand{parse_file(line, command, ".json")}};
     }
+    if (command == "drop") {
+        const std::string_view path = line.rest();
+        if (path.empty()) {
+            line.fail("a file is missing");
+        }
+        return {number, DropCommand{std::string(path)}};
+    }
+    if (command == "save-result") {
+        return {number, SaveResultCommand{parse_file(line, command, ".hres")}};
+    }
+    if (command == "command") {
+        return {number, CommandLineCommand{parse_file(line, command, ".txt")}};
+    }
     ScriptCommand result{number, QuitCommand{}};
     if (command == "drag") {
         result.action = parse_drag(line);
@@ -226,16 +267,30 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
     } else if (command == "resize") {
         const std::uint32_t width = line.size("the width");
         result.action = ResizeCommand{width, line.size("the height")};
+    } else if (command == "fov") {
+        result.action = FovCommand{line.number("the field of view")};
+    } else if (command == "minimise" || command == "restore") {
+        result.action = MinimiseCommand{command == "minimise"};
+    } else if (command == "reload") {
+        result.action = ReloadCommand{};
+    } else if (command == "changed") {
+        result.action = ChangedCommand{};
+    } else if (command == "save-camera") {
+        result.action = SaveCameraCommand{};
     } else if (command == "live") {
         result.action = LiveCommand{};
+    } else if (command == "preview") {
+        result.action = PreviewCommand{};
     } else if (command == "wait") {
         result.action = WaitCommand{};
     } else if (command == "cancel") {
         result.action = CancelCommand{};
     } else if (command != "quit") {
         line.fail(fmt::format(
-            "command \"{}\"; must be drag, click, move, scroll, key, show, set, resize, screenshot, "
-            "windowshot, report, live, wait, cancel or quit",
+            "command \"{}\"; must be drag, click, move, scroll, key, show, set, fov, resize, minimise, "
+            "restore, screenshot, windowshot, report, command, save-result, save-camera, drop, reload, "
+            "changed, "
+            "live, preview, wait, cancel or quit",
             command));
     }
     line.end();

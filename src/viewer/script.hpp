@@ -15,6 +15,7 @@ namespace hemi::viewer {
 struct DragCommand {
     Button button;
     bool shift;
+    bool control;
     std::vector<std::array<double, 2>> path; ///< pressed at the first point, released at the last
 };
 struct ScrollCommand {
@@ -49,6 +50,30 @@ struct ResizeCommand {
 };
 struct ScreenshotCommand {
     std::string path;
+    std::array<std::uint32_t, 2> size{0, 0}; ///< 0: as the scene has in the window
+    std::uint32_t samples = 4;
+};
+/// Opens a file, as if it were dropped on the window.
+struct DropCommand {
+    std::string path;
+};
+/// Reads the file again.
+struct ReloadCommand {};
+/// Until the file has changed on the disk, and was read again.
+struct ChangedCommand {};
+struct SaveResultCommand {
+    std::string path;
+};
+struct SaveCameraCommand {};
+/// Writes the command line that draws the picture.
+struct CommandLineCommand {
+    std::string path;
+};
+struct FovCommand {
+    double degrees;
+};
+struct MinimiseCommand {
+    bool minimised; ///< else back to what it was
 };
 /// As ScreenshotCommand, of the window with its panels.
 struct WindowshotCommand {
@@ -62,6 +87,8 @@ struct ReportCommand {
 struct LiveCommand {};
 /// Until the scene is solved.
 struct WaitCommand {};
+/// Until there is more to see than the lamps.
+struct PreviewCommand {};
 /// Stops solving.
 struct CancelCommand {};
 struct QuitCommand {};
@@ -70,27 +97,38 @@ struct ScriptCommand {
     std::size_t line;
     std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand, SetCommand,
                  ResizeCommand, ScreenshotCommand, WindowshotCommand, ReportCommand, LiveCommand, WaitCommand,
-                 CancelCommand, QuitCommand>
+                 PreviewCommand, CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
+                 SaveCameraCommand, CommandLineCommand, FovCommand, MinimiseCommand, QuitCommand>
         action;
 };
 
 /// Reads a script that drives the window: one command a line, a `#` that begins a word begins a comment.
 /// Points are pixels from the upper left.
 /// ```
-/// drag [shift+]left|middle|right X0 Y0 X1 Y1 [X Y ...]
+/// drag [shift+|ctrl+]left|middle|right X0 Y0 X1 Y1 [X Y ...]
 /// click X Y              with the left button
 /// move X Y               of the cursor
 /// scroll X Y AMOUNT
-/// key [shift+]NAME       a letter, a digit, Escape, Tab or F1
+/// key [shift+]NAME       a letter, a digit, Escape, Tab, Home, F1 or F5
 /// show QUANTITY          picture, outlines, items, radiosity, reflectance, exitance, row-error, error, row
 ///                        or column
 /// set reflectance|exitance VALUE[,VALUE ...] MATERIAL
 ///                        one value, or one a channel; waits until the light has followed
+/// fov DEGREES            field of view
 /// resize WIDTH HEIGHT
-/// screenshot FILE        .png or .hdr: the picture; the name is the rest of the line
+/// minimise, restore      the window
+/// screenshot [WxH [SAMPLES]] FILE
+///                        .png or .hdr: the picture; the name is the rest of the line
 /// windowshot FILE        .png: the window with its panels
-/// report FILE            .json: picked patch, quantity shown and its values, radiosity
+/// report FILE            .json: picked patch, quantity shown and its values, radiosity, camera …
+/// command FILE           .txt: the command line that draws the picture
+/// save-result FILE       .hres
+/// save-camera            into the scene's file
+/// drop FILE              opens it; where it cannot be read, the window says so
+/// reload                 reads the file again
+/// changed                until the file has changed on the disk, and was read again
 /// live                   as the first command: the script does not wait until the scene is solved
+/// preview                until there is a coarse preview of it, or all
 /// wait                   until it is
 /// cancel                 of what is being solved
 /// quit

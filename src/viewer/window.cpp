@@ -1,5 +1,6 @@
 #include "viewer/window.hpp"
 
+#include "gl/objects.hpp"
 #include "hemi/core/error.hpp"
 
 // GLFW must not bring its own OpenGL header.
@@ -40,6 +41,12 @@ std::optional<char> key_name(int key, int scancode) {
     }
     if (key == GLFW_KEY_F1) {
         return help_key;
+    }
+    if (key == GLFW_KEY_F5) {
+        return reload_key;
+    }
+    if (key == GLFW_KEY_HOME) {
+        return home_key;
     }
     const char* name = glfwGetKeyName(key, scancode);
     if (name == nullptr || std::string_view(name).size() != 1) {
@@ -88,7 +95,8 @@ struct Window::Callbacks {
         const Button name = button == GLFW_MOUSE_BUTTON_LEFT
                                 ? Button::left
                                 : (button == GLFW_MOUSE_BUTTON_MIDDLE ? Button::middle : Button::right);
-        events(window).push_back(ButtonEvent{name, action == GLFW_PRESS, (modifiers & GLFW_MOD_SHIFT) != 0});
+        events(window).push_back(ButtonEvent{name, action == GLFW_PRESS, (modifiers & GLFW_MOD_SHIFT) != 0,
+                                             (modifiers & GLFW_MOD_CONTROL) != 0});
     }
     static void scroll(GLFWwindow* window, double, double amount) noexcept {
         events(window).push_back(ScrollEvent{amount});
@@ -104,13 +112,26 @@ struct Window::Callbacks {
     static void resized(GLFWwindow* window, int, int) noexcept { events(window).push_back(RefreshEvent{}); }
     static void refresh(GLFWwindow* window) noexcept { events(window).push_back(RefreshEvent{}); }
     static void close(GLFWwindow* window) noexcept { events(window).push_back(CloseEvent{}); }
+    static void drop(GLFWwindow* window, int count, const char** paths) noexcept {
+        if (count > 0) {
+            events(window).push_back(DropEvent{paths[0]});
+        }
+    }
+    static void APIENTRY message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* text,
+                                 const void* window) noexcept {
+        if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH) {
+            const auto* told = static_cast<const Window*>(window);
+            told->problem_ = text;
+        }
+    }
 };
 
-Window::Window(const std::string& title, std::uint32_t width, std::uint32_t height) {
+Window::Window(const std::string& title, std::uint32_t width, std::uint32_t height, bool debug) {
     glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_API);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, debug ? GLFW_TRUE : GLFW_FALSE);
     // Depth and samples are the renderer's own.
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
@@ -134,6 +155,11 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
     Window::make_current();
     describe("window");
     glfwSwapInterval(1);
+    if (debug) {
+        glEnable(GL_DEBUG_OUTPUT);
+        glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+        glDebugMessageCallback(Callbacks::message, this);
+    }
     listen();
 }
 
@@ -149,6 +175,7 @@ void Window::listen() {
     glfwSetFramebufferSizeCallback(window, Callbacks::resized);
     glfwSetWindowRefreshCallback(window, Callbacks::refresh);
     glfwSetWindowCloseCallback(window, Callbacks::close);
+    glfwSetDropCallback(window, Callbacks::drop);
 }
 
 void Window::make_current() {
@@ -169,6 +196,24 @@ void Window::resize(std::uint32_t width, std::uint32_t height) {
 
 void Window::set_title(const std::string& title) {
     glfwSetWindowTitle(window_.get(), title.c_str());
+}
+
+void Window::minimise(bool minimised) {
+    if (minimised) {
+        glfwIconifyWindow(window_.get());
+    } else {
+        glfwRestoreWindow(window_.get());
+    }
+}
+
+void Window::copy_text(const std::string& text) {
+    glfwSetClipboardString(window_.get(), text.c_str());
+}
+
+void Window::check_debug_messages() const {
+    if (!problem_.empty()) {
+        throw GlError("OpenGL says: " + problem_);
+    }
 }
 
 void Window::swap() {

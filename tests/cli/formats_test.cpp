@@ -73,12 +73,12 @@ TEST_CASE("View3D output: from a scene with its emissivities, from a .hff with a
     REQUIRE(run_hemi(quick({"factors", scene, "-o", directory.path("F.hff")})).status == 0);
     const Outcome convert = run_hemi({"convert", directory.path("F.hff"), directory.path("F.vf")});
     REQUIRE(convert.status == 0);
-    CHECK(convert.err_has("emissivities are not in a .hff"));
+    CHECK(convert.err_has("emissivities are written as 0.999"));
     CHECK(directory.read("F.vf").size() == 32 + 4 * (6 + 36 + 6));
     REQUIRE(run_hemi({"convert", directory.path("F.hff"), directory.path("F.npz")}).status == 0);
     const Outcome bare = run_hemi({"convert", directory.path("F.npz"), directory.path("G.txt")});
     CHECK(bare.status == 2);
-    CHECK(bare.err_has("hold areas"));
+    CHECK(bare.err_has(".txt files hold areas, which"));
 }
 
 TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]") {
@@ -109,6 +109,12 @@ TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]"
         CHECK(outcome.status == status);
         CHECK(outcome.err_has(text));
     };
+    const Outcome table = run_hemi({"convert", hres, directory.path("B.csv")});
+    CHECK(table.status == 0);
+    CHECK(table.err_has("not in "));
+    CHECK(directory.read("B.csv").starts_with("index,group,area,cx,cy,cz,nx,ny,nz,exitance_"));
+    refused({"convert", hres, directory.path("B.csv"), "--factors", hff, "--row", "1"}, 2,
+            "are for a .hres that");
     refused({"convert", hff, vtp}, 2, "a .vtp needs the patches");
     refused({"convert", hres, directory.path("x.npz")}, 2, "can be written as .vtp");
     refused({"convert", hff, directory.path("x.npz"), "--factors", hff, "--row", "1"}, 2, "are for a .hres");
@@ -146,4 +152,109 @@ TEST_CASE("Bake: a scene and its stored solution give the same mesh, which hemi 
     CHECK(run_hemi({"bake", hres, "-o", directory.path("x.gltf")}).status == 2);
     CHECK(run_hemi({"bake", hres, "-o", directory.path("x.glb"), "--seed", "1"}).err_has("does not apply"));
     CHECK(run_hemi({"bake", directory.path("cube.hff"), "-o", directory.path("x.glb")}).status == 2);
+}
+
+TEST_CASE("Convert: to every format that can hold the content, told what it does not hold", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(2));
+    const std::string hff = directory.path("cube.hff");
+    REQUIRE(run_hemi(quick({"factors", scene, "-o", hff})).status == 0);
+    for (const char* name : {"a.mtx", "a.csv", "a.npz", "a.h5", "a.txt", "a.vf", "a.dat", "a.bin", "a.idf"}) {
+        const Outcome run = run_hemi({"convert", hff, directory.path(name)});
+        INFO(name << ": " << run.err);
+        CHECK(run.status == 0);
+        CHECK(run.err_has(std::string(name) + ": "));
+        CHECK(run.err_has("not in "));
+        CHECK(directory.has(name));
+    }
+    CHECK(directory.read("a.idf").ends_with(";\n"));
+    const Outcome factors = run_hemi(quick({"factors", scene, "-o", directory.path("b.idf")}));
+    CHECK(factors.status == 0);
+    const std::string a = directory.read("a.idf");
+    const std::string b = directory.read("b.idf");
+    CHECK(a.substr(a.find("Zone Name")) == b.substr(b.find("Zone Name")));
+    const std::string npz = directory.path("a.npz");
+    for (const char* name : {"b.mtx", "b.csv", "b.h5", "b.dat", "b.bin"}) {
+        const Outcome run = run_hemi({"convert", npz, directory.path(name)});
+        INFO(name << ": " << run.err);
+        CHECK(run.status == 0);
+    }
+    const auto same = [&directory](const char* a_name, const char* b_name) { // as text they are no use
+        return directory.read(a_name) == directory.read(b_name);
+    };
+    CHECK(same("a.bin", "b.bin"));
+    for (const char* name : {"a.txt", "a.vf", "a.dat", "a.bin"}) { // and back again
+        const Outcome run = run_hemi({"convert", directory.path(name), directory.path("d.mtx")});
+        INFO(name << ": " << run.err);
+        CHECK(run.status == 0);
+        CHECK(same("a.mtx", "d.mtx"));
+        CHECK(run_hemi({"info", directory.path(name)}).out_has("24"));
+    }
+    const Outcome kept = run_hemi({"convert", directory.path("a.vf"), directory.path("d.txt")});
+    CHECK(kept.status == 0);
+    CHECK(kept.err_has("d.txt: emissivities"));
+    CHECK(same("a.txt", "d.txt"));
+    CHECK(run_hemi({"convert", directory.path("a.vf"), directory.path("d.h5")}).status == 0);
+    CHECK(run_hemi({"convert", directory.path("a.vf"), directory.path("d.idf")})
+              .err_has("hold areas and group names"));
+    for (const char* name : {"c.hff", "c.txt", "c.vf", "c.idf"}) {
+        const Outcome run = run_hemi({"convert", npz, directory.path(name)});
+        INFO(name << ": " << run.err);
+        CHECK(run.status == 2);
+        CHECK(run.err_has("areas"));
+        CHECK_FALSE(directory.has(name));
+    }
+    CHECK(run_hemi({"convert", hff, directory.path("x.xyz")}).err_has(".idf, .vtp"));
+}
+
+TEST_CASE("EnergyPlus output: an open scene is told as such", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("open.json", open_cube(2, "open"));
+    const Outcome run = run_hemi(quick({"factors", scene, "-o", directory.path("open.idf")}));
+    INFO(run.err);
+    CHECK(run.status == 0);
+    CHECK(run.err_has("EnergyPlus takes a zone for closed"));
+}
+
+TEST_CASE("Bake: as PLY, which hemi reads", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", open_cube(4, "open"));
+    const Outcome run = run_hemi(quick({"bake", scene, "-o", directory.path("a.ply")}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json info = run_hemi({"info", directory.path("a.ply"), "--json"}).json();
+    CHECK(info["quadrilaterals"] == 80);
+    CHECK(run_hemi({"bake", scene, "-o", directory.path("a.obj")}).err_has(".glb, .ply"));
+}
+
+TEST_CASE("Mesh scenes: Gmsh, PLY and STL are solved like any other, bad ones are exit status 3", "[cli]") {
+    const Directory directory;
+    const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+    const std::string msh = directory.write(
+        "box.msh", head +
+                       "$PhysicalNames\n2\n2 1 \"low\"\n2 2 \"high\"\n$EndPhysicalNames\n$Nodes\n8\n"
+                       "1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n"
+                       "$Elements\n2\n1 3 2 1 1 1 2 3 4\n2 3 2 2 2 8 7 6 5\n$EndElements\n");
+    const Json json = run_hemi(quick({"factors", msh, "--by-group", "--json", "--preset", "default",
+                                      "--patches-per-face", "16"}))
+                          .json();
+    CHECK(json["groups"] == Json({"low", "high"}));
+    CHECK(json["factors"][0][1].get<double>() == Approx(0.199825).margin(1e-5));
+    const auto refused = [&](const std::string& name, const std::string& text, const std::string& message) {
+        const Outcome run = run_hemi({"info", directory.write(name, text)});
+        INFO(run.err);
+        CHECK(run.status == 3);
+        CHECK(run.err_has(name + message));
+    };
+    refused("a.msh", "$MeshFormat\n4.1 0 8\n", ":2: MSH version \"4.1\"");
+    refused("a.ply", "ply\nformat binary 1.0\n", ":2: format \"binary\"");
+    refused("a.stl", std::string(84, '\377'),
+            ": cut short, or not STL: 84 bytes; its 4294967295 triangles need");
+    const std::string outside =
+        directory.write("s.json", R"({"hemi": 1, "surfaces": [{"mesh": "/etc/passwd.obj"}]})");
+    const Outcome run = run_hemi({"info", outside});
+    CHECK(run.status == 3);
+    CHECK(run.err_has("s.json: surfaces[0].mesh: \"/etc/passwd.obj\"; must be in the scene's folder"));
+    CHECK(run_hemi({"info", outside, "--allow-outside"})
+              .err_has("/etc/passwd.obj: cannot be read: No such file"));
 }

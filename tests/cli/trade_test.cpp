@@ -91,8 +91,9 @@ TEST_CASE("error target: what cannot be met is status 5, what contradicts it is 
         CHECK(poor.status == 5);
         CHECK(poor.err_has("needs more than the 1.0 KiB"));
     }
-    for (const Words& more : {Words{"--preset", "fast"}, Words{"--eye-points", "4"},
-                              Words{"--resolution", "64"}, Words{"--no-estimate"}}) {
+    for (const Words& more :
+         {Words{"--preset", "fast"}, Words{"--eye-points", "4"}, Words{"--shadow-rays", "4"},
+          Words{"--resolution", "64"}, Words{"--no-estimate"}}) {
         Words words{"solve", scene, "--error-target", "1e-3"};
         words.insert(words.end(), more.begin(), more.end());
         const Outcome refused = run_hemi(words);

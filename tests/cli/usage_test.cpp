@@ -74,6 +74,8 @@ TEST_CASE("Command line: options that do not apply are refused", "[cli]") {
     refuses({"solve", "x.json", "--patch-size", "1", "--patches-per-face", "4"}, "--patch");
     refuses({"factors", "x.json", "--row", "1", "--by-group"}, "--by-group");
     refuses({"view", "x.json", "--json"}, "--json");
+    refuses({"solve", "x.json", "--preset", "plain", "--shadow-rays", "4"}, "--preset plain");
+    refuses({"factors", "x.json", "--method", "direct", "--shadow-rays", "4"}, "--method direct");
     refuses({"devices", "more"}, "unexpected argument 'more'");
 }
 
@@ -104,7 +106,7 @@ TEST_CASE("Command line: output names are looked at before the work", "[cli]") {
     refuses({"solve", scene, "-o", directory.path("a.jpg")}, "must end in .png, .hdr");
     refuses({"solve", scene, "--result", directory.path("a.bin")}, "must end in .hres");
     refuses({"factors", scene, "-o", directory.path("a.doc")},
-            "must end in .hff, .mtx, .csv, .npz, .txt, .vf");
+            "must end in .hff, .mtx, .csv, .npz, .h5, .txt, .vf, .dat, .bin, .idf, .vtp");
     refuses({"solve", scene, "--patches", directory.path("a.csv"), "--radiosity", directory.path("a.csv")},
             "the same file");
     refuses({"solve", scene, "-o", "-", "--json"}, "standard output");

@@ -193,15 +193,15 @@ TEST_CASE("OrbitCamera: framing and axis views have the whole scene in the pictu
         orbit.frame_all(aspect);
         check_all_in_view(aspect);
         for (const auto axis : {OrbitCamera::Axis::front, OrbitCamera::Axis::right, OrbitCamera::Axis::top}) {
-            orbit.look_along(axis, aspect);
+            orbit.look_along(axis, false, aspect);
             check_all_in_view(aspect);
         }
     }
-    orbit.look_along(OrbitCamera::Axis::front, 1.0);
+    orbit.look_along(OrbitCamera::Axis::front, false, 1.0);
     CHECK(orbit.camera().eye.y < -1.0);
-    orbit.look_along(OrbitCamera::Axis::right, 1.0);
+    orbit.look_along(OrbitCamera::Axis::right, false, 1.0);
     CHECK(orbit.camera().eye.x > 1.0);
-    orbit.look_along(OrbitCamera::Axis::top, 1.0);
+    orbit.look_along(OrbitCamera::Axis::top, false, 1.0);
     CHECK(orbit.camera().eye.z > 1.0);
     orbit.reset();
     CHECK(orbit.camera().eye == Vec3(30, 1, 2));
@@ -245,4 +245,53 @@ TEST_CASE("OrbitCamera: a line is seen where rays through its ends leave the eye
     CHECK((*line)[1][1] == Approx(-0.1));
     CHECK_FALSE(orbit.line(a.origin - a.direction, b.origin - b.direction));
     CHECK(orbit.line(a.origin - a.direction, b.origin + b.direction));
+}
+
+TEST_CASE("OrbitCamera: an orthographic one keeps the target's size, its rays are parallel", "[display]") {
+    OrbitCamera orbit(from_front(), unit_bounds());
+    const ViewRay perspective = orbit.ray(0.3, 0.2);
+    orbit.set_orthographic(true);
+    const ViewRay a = orbit.ray(0.3, 0.2);
+    const ViewRay b = orbit.ray(-0.1, 0.4);
+    check_near(a.direction, b.direction);
+    check_near(a.origin + (a.origin.y / -a.direction.y) * a.direction,
+               perspective.origin + 5.0 * perspective.direction);
+    CHECK(a.origin.y < -1.0); // before all of the scene, wherever the eye is
+    const auto line = orbit.line(a.origin + 9.0 * a.direction, b.origin);
+    REQUIRE(line);
+    CHECK((*line)[0][0] == Approx(0.3));
+    CHECK((*line)[0][1] == Approx(0.2));
+    CHECK((*line)[1][0] == Approx(-0.1));
+    CHECK((*line)[1][1] == Approx(0.4));
+
+    const Vec3 pivot = a.origin + 6.0 * a.direction;
+    orbit.grab(pivot);
+    orbit.zoom(0.5);
+    const ViewRay zoomed = orbit.ray(0.3, 0.2);
+    CHECK(glm::length(glm::cross(pivot - zoomed.origin, zoomed.direction)) < 1e-12);
+    orbit.grab(pivot);
+    orbit.pan(0.1, -0.2);
+    const ViewRay panned = orbit.ray(0.4, 0.0);
+    CHECK(glm::length(glm::cross(pivot - panned.origin, panned.direction)) < 1e-12);
+}
+
+TEST_CASE("OrbitCamera: the field of view stays within what can be chosen", "[display]") {
+    OrbitCamera orbit(from_front(), unit_bounds());
+    orbit.set_fov(70.0);
+    CHECK(orbit.camera().fov == 70.0);
+    CHECK(orbit.camera().eye == from_front().eye);
+    orbit.set_fov(500.0);
+    CHECK(orbit.camera().fov == OrbitCamera::largest_fov);
+    orbit.set_fov(-1.0);
+    CHECK(orbit.camera().fov == OrbitCamera::smallest_fov);
+}
+
+TEST_CASE("OrbitCamera: axis views have a side each to look from", "[display]") {
+    OrbitCamera orbit(from_front(), unit_bounds());
+    orbit.look_along(OrbitCamera::Axis::front, true, 1.0);
+    CHECK(orbit.camera().eye.y > 1.0);
+    orbit.look_along(OrbitCamera::Axis::right, true, 1.0);
+    CHECK(orbit.camera().eye.x < -1.0);
+    orbit.look_along(OrbitCamera::Axis::top, true, 1.0);
+    CHECK(orbit.camera().eye.z < -1.0);
 }

@@ -207,6 +207,61 @@ TEST_CASE("Picture: backs are not drawn, both sides of a two-sided sheet are", "
     CHECK(linear(below, 4, 8) == Approx(0.5));
 }
 
+TEST_CASE("Picture: backs that are shown are striped, and no light", "[display][gl]") {
+    SceneBuilder builder;
+    builder.add("faces down", {{-1, -1, 0}, {-1, 1, 0}, {0, 1, 0}, {0, -1, 0}});
+    builder.add("sheet", {{0, -1, 0}, {0, 1, 0}, {1, 1, 0}, {1, -1, 0}}).two_sided = true;
+    builder.floor("below", -1, -1, 1, 1);
+    for (Vec3& vertex : builder.scene.surfaces[2].vertices) {
+        vertex.z = -1.0;
+    }
+    const PatchMesh mesh = builder.mesh();
+    const PictureMesh drawn =
+        make_picture_mesh(mesh, 1, std::vector<double>{0.3, 0.5, 0.8, 0.9}, {}, {0, 0, 0});
+    PictureSettings settings = plain(48, 48);
+    CHECK(linear(draw_picture(drawn, from_above(), settings, "osmesa"), 12, 24) == Approx(0.9));
+    settings.backs = true;
+    const Picture above = draw_picture(drawn, from_above(), settings, "osmesa");
+    std::vector<Pixel> stripes;
+    for (std::uint32_t y = 4; y < 44; ++y) {
+        for (std::uint32_t x = 2; x < 22; ++x) {
+            stripes.push_back(pixel(above, x, y));
+            CHECK(linear(above, x, y) == 0.0);
+            CHECK(linear(above, x + 24, y) == Approx(0.8)); // both sides of the sheet are fronts
+        }
+    }
+    CHECK(std::find(stripes.begin(), stripes.end(), Pixel{encoded(0.35), encoded(0.04), encoded(0.16)}) !=
+          stripes.end());
+    CHECK(std::find(stripes.begin(), stripes.end(), Pixel{encoded(0.12), encoded(0.02), encoded(0.06)}) !=
+          stripes.end());
+}
+
+TEST_CASE("Picture: an orthographic camera shows everything at the scale of its target", "[display][gl]") {
+    SceneBuilder builder;
+    builder.floor("near", -0.5, -0.5, 0.5, 0.0);
+    builder.floor("far", -0.5, 0.0, 0.5, 0.5);
+    for (Vec3& vertex : builder.scene.surfaces[0].vertices) {
+        vertex.z = 7.0; // behind the eye
+    }
+    const PatchMesh mesh = builder.mesh();
+    const PictureMesh drawn = make_picture_mesh(mesh, 1, std::vector<double>{0.3, 0.6}, {}, {0, 0, 0});
+    Camera camera = from_above();
+    camera.orthographic = true;
+    const Picture picture = draw_picture(drawn, camera, plain(32, 32), "osmesa");
+    for (std::uint32_t y = 0; y < 32; ++y) {
+        for (std::uint32_t x = 0; x < 32; ++x) {
+            const bool inside = x >= 8 && x < 24 && y >= 8 && y < 24;
+            CHECK(linear(picture, x, y) == Approx(inside ? (y < 16 ? 0.6 : 0.3) : 0.0));
+        }
+    }
+    // Larger pictures are drawn in tiles.
+    const Picture large = draw_picture(drawn, camera, plain(640, 640), "osmesa");
+    CHECK(linear(large, 161, 400) == Approx(0.3));
+    CHECK(linear(large, 158, 400) == 0.0);
+    CHECK(linear(large, 478, 161) == Approx(0.6));
+    CHECK(linear(large, 478, 158) == 0.0);
+}
+
 TEST_CASE("Picture: nearer surfaces hide farther ones, down to a millionth of the distance",
           "[display][gl]") {
     for (const double gap : {1.0, 1e-3, 1e-5}) {

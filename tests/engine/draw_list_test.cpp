@@ -6,7 +6,9 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 #include <set>
 
 using namespace hemi;
@@ -78,6 +80,66 @@ TEST_CASE("insert_touching_vertices: a vertex on an edge is inserted, near misse
     CHECK(outlines[0][1].vertex == 4);
     CHECK(outlines[0][1].u == Approx(1.0));
     CHECK(outlines[0][2].vertex == 5);
+}
+
+TEST_CASE("insert_touching_vertices: finds what a look at every vertex finds, crowded or spread",
+          "[engine]") {
+    std::mt19937 random(7);
+    const auto whole = [&random](int below) {
+        return static_cast<double>(random() % static_cast<unsigned>(below));
+    };
+    std::vector<Vec3> positions;
+    for (int k = 0; k < 1500; ++k) { // many on lines with others: in a small corner, and far out
+        const double scale = k % 3 == 0 ? 100.0 : 1.0;
+        positions.emplace_back(scale * whole(8), scale * whole(8), scale * whole(4));
+    }
+    std::sort(positions.begin(), positions.end(), [](const Vec3& a, const Vec3& b) {
+        return std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z};
+    });
+    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    std::vector<Outline> outlines;
+    for (int k = 0; k < 2000; ++k) {
+        const auto any = [&] { return static_cast<std::uint32_t>(random() % positions.size()); };
+        outlines.push_back({{any(), 0, 0}, {any(), 1, 0}, {any(), 0, 1}});
+    }
+    std::vector<bool> used(positions.size(), false);
+    for (const Outline& outline : outlines) {
+        for (const OutlinePoint& corner : outline) {
+            used[corner.vertex] = true;
+        }
+    }
+    std::vector<std::vector<std::uint32_t>> expected;
+    for (const Outline& outline : outlines) {
+        auto& order = expected.emplace_back();
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Vec3& a = positions[outline[c].vertex];
+            const Vec3 along = positions[outline[(c + 1) % 3].vertex] - a;
+            order.push_back(outline[c].vertex);
+            std::vector<std::pair<double, std::uint32_t>> on;
+            for (std::uint32_t v = 0; v < positions.size(); ++v) {
+                const Vec3 offset = positions[v] - a;
+                const double t = glm::dot(offset, along) / glm::dot(along, along);
+                if (used[v] && glm::length(glm::cross(offset, along)) == 0.0 && t > 0.0 && t < 1.0) {
+                    on.emplace_back(t, v);
+                }
+            }
+            std::sort(on.begin(), on.end());
+            for (const auto& [t, v] : on) {
+                order.push_back(v);
+            }
+        }
+    }
+    insert_touching_vertices(outlines, positions, TouchingTolerance(1300.0, 1e-12));
+    std::size_t inserted = 0;
+    for (std::size_t k = 0; k < outlines.size(); ++k) {
+        std::vector<std::uint32_t> found;
+        for (const OutlinePoint& point : outlines[k]) {
+            found.push_back(point.vertex);
+        }
+        REQUIRE(found == expected[k]);
+        inserted += found.size() - 3;
+    }
+    CHECK(inserted > 500);
 }
 
 TEST_CASE("insert_touching_vertices: detail far smaller than the scene is left alone", "[engine]") {

@@ -113,9 +113,9 @@ void judge(const KnownScene& scene, const Method& method, std::uint64_t seed, Ta
     std::vector<std::uint32_t> patches(scene.mesh.size());
     std::iota(patches.begin(), patches.end(), 0u);
     const auto engine = make_hemicube_engine(scene.mesh, settings, {"osmesa", 1, ""});
-    FormFactorMatrix factors = method.hybrid ? compute_hybrid(*engine, scene.mesh, patches,
-                                                              ExchangeRule::standard, Enclosure::automatic)
-                                             : compute_matrix(*engine, patches);
+    FormFactorMatrix factors =
+        method.hybrid ? compute_hybrid(*engine, scene.mesh, patches, HybridSettings{}, Enclosure::automatic)
+                      : compute_matrix(*engine, patches);
     (void)repair(factors, scene.mesh.areas(), method.repair);
     const auto better = make_hemicube_engine(scene.mesh, reference_settings(settings), {"osmesa", 1, ""});
     const auto reference = compute_reference(

@@ -27,11 +27,16 @@ struct Computed {
 };
 
 /// All factors of a scene by a preset of the program.
-Computed compute(const Scene& scene, const std::string& preset) {
+Computed compute(const Scene& scene, const std::string& preset, const std::vector<std::string>& more = {}) {
     const Directory directory;
     const std::string file = directory.path("a.hff");
-    const Outcome run = run_hemi({"factors", directory.write("scene.json", scene_json(scene)), "--preset",
-                                  preset, "--device", "osmesa", "-o", file, "--json"});
+    std::vector<std::string> arguments{"factors",  directory.write("scene.json", scene_json(scene)),
+                                       "--preset", preset,
+                                       "--device", "osmesa",
+                                       "-o",       file,
+                                       "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome run = run_hemi(arguments);
     INFO(run.err);
     REQUIRE(run.status == 0);
     return {io::read_hff(file).factors, run.json()["seconds"]["factors"]};
@@ -105,8 +110,13 @@ TEST_CASE("hybrid: a room with two turned boxes, 5,790 patches", "[engine][gl][s
     const RowErrors default_errors = compare(fair.factors, reference, patches);
     const Computed best = compute(scene, "exact");
     const RowErrors exact_errors = compare(best.factors, reference, patches);
-    INFO(told("default", default_errors, fair.seconds) << "; " << told("exact", exact_errors, best.seconds));
+    const Computed without = compute(scene, "default", {"--shadow-rays", "0"});
+    const RowErrors errors_without = compare(without.factors, reference, patches);
+    INFO(told("default", default_errors, fair.seconds)
+         << "; " << told("exact", exact_errors, best.seconds) << "; "
+         << told("no rays", errors_without, without.seconds));
     CHECK(default_errors.rms <= 8e-6);
+    CHECK(default_errors.rms <= 0.8 * errors_without.rms); // what shadow rays are for
     CHECK(exact_errors.rms <= 3e-6);
 }
 

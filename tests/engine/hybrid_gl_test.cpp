@@ -36,7 +36,7 @@ FormFactorMatrix hybrid(const PatchMesh& mesh, const HemicubeSettings& settings,
                         std::span<const std::uint32_t> patches, Enclosure enclosure = Enclosure::automatic,
                         std::uint32_t jobs = 2) {
     const auto engine = make_hemicube_engine(mesh, settings, {"osmesa", jobs, HEMI_PROGRAM});
-    return compute_hybrid(*engine, mesh, patches, ExchangeRule::standard, enclosure);
+    return compute_hybrid(*engine, mesh, patches, HybridSettings{}, enclosure);
 }
 
 /// Whether a ray from an eye on `from` meets the front of patch `to`, whatever lies between.

@@ -25,6 +25,7 @@ io::FactorFile sample(std::uint32_t size, bool with_visibility = true) {
     file.method = "montecarlo";
     file.resolution = 512;
     file.eye_points = 9;
+    file.shadow_rays = 16;
     file.seed = std::numeric_limits<std::uint64_t>::max();
     file.renderer = "Some Renderer (line, 4.5)";
     file.enclosure = "closed";
@@ -60,6 +61,7 @@ void require_equal(const io::FactorFile& a, const io::FactorFile& b) {
     REQUIRE(a.method == b.method);
     REQUIRE(a.resolution == b.resolution);
     REQUIRE(a.eye_points == b.eye_points);
+    REQUIRE(a.shadow_rays == b.shadow_rays);
     REQUIRE(a.seed == b.seed);
     REQUIRE(a.renderer == b.renderer);
     REQUIRE(a.enclosure == b.enclosure);

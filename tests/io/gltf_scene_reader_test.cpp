@@ -324,7 +324,7 @@ TEST_CASE("glTF reader: what is wrong is named with its place, its value and wha
         {R"({"op": "remove", "path": "/buffers/0/uri"})", {"buffers[0]: no \"uri\""}},
         {R"({"op": "replace", "path": "/buffers/0/uri", "value": "no.bin"})", {"buffers[0].uri: ", "no.bin"}},
         {R"({"op": "replace", "path": "/buffers/0/uri", "value": "/etc/hostname"})",
-         {"buffers[0].uri: \"/etc/hostname\"; must be a data URI or a file in the scene's folder"}},
+         {"buffers[0].uri: \"/etc/hostname\"; must be in the scene's folder or below it"}},
         {R"({"op": "replace", "path": "/buffers/0/uri", "value": "%2e%2e/x.bin"})",
          {"in the scene's folder"}},
         {R"({"op": "replace", "path": "/buffers/0/uri", "value": "link/passwd"})", {"in the scene's folder"}},

@@ -308,8 +308,8 @@ TEST_CASE("JSON reader: what is wrong is named with its place, its value and wha
          {"camera: up is 0 or along the view"}},
         {scene(square, white, R"(, "camera": {"eye": [0,0,0], "target": [0,1,0], "fov": 180})"),
          {"camera.fov: 180"}},
-        {scene(R"({"material": "white", "mesh": "cube.stl"})"),
-         {"surfaces[0].mesh: \"cube.stl\"; must be the path of an OBJ"}},
+        {scene(R"({"material": "white", "mesh": "cube.3ds"})"),
+         {"surfaces[0].mesh: \"cube.3ds\"; must be the path of a mesh: .obj, .msh, .ply or .stl"}},
         {scene(R"({"material": "white", "mesh": "cube.obj", "transform": {"scale": 0}})"),
          {"surfaces[0].transform.scale: 0 makes a mesh flat"}},
         {scene(R"({"material": "white", "mesh": "cube.obj", "transform": {"rotation": 0}})"),
@@ -328,6 +328,45 @@ TEST_CASE("JSON reader: a mesh that is missing or broken is named by its own fil
     require_parts(
         message_of<InputError>([&] { read(folder, scene(R"({"material": "white", "mesh": "bad.obj"})")); }),
         {"bad.obj:1: a vertex of 2 numbers; must have 3"});
+}
+
+TEST_CASE("JSON reader: meshes and MTL files outside the scene's folder are opened only when allowed",
+          "[io]") {
+    const Folder outside;
+    const Folder folder;
+    std::filesystem::create_directories(folder / "meshes");
+    const std::string faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
+    outside.write("o.obj", faces);
+    outside.write("m.mtl", "newmtl m\nKd 0.25\n");
+    folder.write("shared.mtl", "newmtl m\nKd 0.25\n");
+    folder.write("meshes/below.obj", "mtllib ../shared.mtl\n" + faces);
+    folder.write("meshes/bad.obj", "mtllib " + (outside / "m.mtl").string() + "\n" + faces);
+    std::filesystem::create_symlink(outside / "o.obj", folder / "link.obj");
+    const auto read_mesh = [&](const std::string& name, bool allow) {
+        Diagnostics unused;
+        io::SceneReaderOptions options;
+        options.allow_outside = allow;
+        return io::read_scene(folder.write("room.json", scene(R"({"mesh": ")" + name + R"("})")), options,
+                              unused);
+    };
+    REQUIRE(read_mesh("meshes/below.obj", false).materials.back().reflectance ==
+            std::vector<double>{0.25, 0.25, 0.25});
+    for (const std::string& name : {(outside / "o.obj").string(), std::string("link.obj"),
+                                    "../" + (outside / "").parent_path().filename().string() + "/o.obj"}) {
+        INFO(name);
+        require_parts(message_of<InputError>([&] { (void)read_mesh(name, false); }),
+                      {"room.json: surfaces[0].mesh: ", "; must be in the scene's folder or below it "
+                                                        "(--allow-outside opens others)"});
+        REQUIRE(read_mesh(name, true).surfaces.size() == 1);
+    }
+    require_parts(message_of<InputError>([&] { (void)read_mesh("meshes/bad.obj", false); }),
+                  {"bad.obj:1: mtllib ", "m.mtl\"; must be in the scene's folder or below it"});
+    REQUIRE(read_mesh("meshes/bad.obj", true).surfaces.size() == 1);
+    const io::SceneReaderOptions none;
+    Diagnostics unused;
+    require_parts(
+        message_of<InputError>([&] { (void)io::read_scene(folder / "meshes/bad.obj", none, unused); }),
+        {"bad.obj:1: mtllib "});
 }
 
 } // namespace hemi::io_test

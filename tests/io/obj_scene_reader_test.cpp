@@ -347,9 +347,9 @@ TEST_CASE("read_scene: goes by the extension, whatever its case, and lists what 
     const auto refusal = [&](const char* name) {
         return message_of<InputError>([&] { (void)io::read_scene(folder / name, {}, diagnostics); });
     };
-    require_parts(
-        refusal("a.stl"),
-        {"a.stl: unknown extension \".stl\"; scenes are read from .json, .obj, .gltf, .glb, .vs3 files"});
+    require_parts(refusal("a.3ds"), {"a.3ds: unknown extension \".3ds\"; scenes are read from .json, .obj, "
+                                     ".gltf, .glb, .vs3, .msh, .ply, "
+                                     ".stl files"});
     require_parts(refusal("a"), {"a: no extension; scenes are read from"});
     require_parts(refusal("no.obj"), {"no.obj: cannot be read: No such file"});
     require_parts(refusal("no.json"), {"no.json: cannot be read: No such file"});

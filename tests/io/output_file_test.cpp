@@ -166,6 +166,15 @@ TEST_CASE("read_file: says what is wrong with missing files and directories", "[
     require_parts(message_of<InputError>([&] { (void)io::read_file(folder / ""); }), {"Is a directory"});
 }
 
+TEST_CASE("read_file: a file larger than the machine's memory is refused before memory is asked for",
+          "[io]") {
+    const Folder folder;
+    const auto path = folder.write("huge.obj", "");
+    std::filesystem::resize_file(path, std::uint64_t{1} << 42); // takes no space
+    require_parts(message_of<InputError>([&] { (void)io::read_file(path); }),
+                  {"huge.obj: 4398046511104 bytes; this machine has"});
+}
+
 TEST_CASE("Pictures: PNG and HDR are written with the right size", "[io]") {
     const Folder folder;
     io::write_png(folder / "a.png", 3, 2, std::vector<std::uint8_t>(18, 200));

@@ -84,6 +84,28 @@ TEST_CASE("solve_radiosity: parallel plates under an open sky", "[solver]") {
     CHECK(solution.radiosity[0] == Approx(e[0] + rho * arriving[0]).epsilon(1e-12));
 }
 
+TEST_CASE("solve_radiosity: who watches sees every sweep's radiosity, the last one's being the solution",
+          "[solver]") {
+    const OwnedProblem problem{dense_matrix({{0.0, 0.5}, {0.125, 0.0}}), 1, {0.8, 0.3}, {2.0, 7.0}, {}};
+    for (const SolverMethod method : methods) {
+        SolverSettings settings = tight(method);
+        std::vector<std::vector<double>> seen;
+        settings.watch = [&](std::uint32_t sweep, double residual, const auto& radiosity) {
+            CHECK(sweep == seen.size() + 1);
+            CHECK(residual >= 0.0);
+            seen.push_back(radiosity());
+        };
+        const RadiositySolution solution = solve_radiosity(problem.view(), settings);
+        REQUIRE(seen.size() == solution.sweeps);
+        CHECK(seen.back() == solution.radiosity);
+        CHECK(seen[0][0] == Approx(2.0 + 0.8 * 0.5 * 7.0));
+        CHECK(seen[0][1] == Approx(7.0 + 0.3 * 0.125 * (method == SolverMethod::jacobi ? 2.0 : seen[0][0])));
+    }
+    SolverSettings settings = tight();
+    settings.watch = [](std::uint32_t, double, const auto&) { throw Cancelled(); };
+    CHECK_THROWS_AS(solve_radiosity(problem.view(), settings), Cancelled);
+}
+
 TEST_CASE("solve_radiosity: agrees with Gaussian elimination", "[solver]") {
     for (const std::uint32_t channels : {1u, 2u, 3u, 4u, 5u, 8u, 9u}) {
         for (const std::uint32_t size : {1u, 2u, 7u, 64u, 101u}) {

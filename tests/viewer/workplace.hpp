@@ -64,10 +64,13 @@ public:
     /// `hemi view` with a script on a virtual display.
     [[nodiscard]] int view(const std::string& script, const std::string& options = "--size 300x200") const {
         write("script.txt", script);
-        return run(
-            fmt::format("xvfb-run -a -s '-screen 0 1280x1024x24' '{}' view room.json --script script.txt "
-                        "--device osmesa {}",
-                        HEMI_PROGRAM, options));
+        return run(view_command("room.json", "--device osmesa " + options));
+    }
+
+    /// The command line for that.
+    [[nodiscard]] static std::string view_command(const std::string& file, const std::string& options) {
+        return fmt::format("xvfb-run -a -s '-screen 0 1280x1024x24' '{}' view {} --script script.txt {}",
+                           HEMI_PROGRAM, file, options);
     }
 
 private:

@@ -1,5 +1,7 @@
 // Times hemicube rows against the naive design. Run by tools/bench.
 
+#include "benchmark/files.hpp"
+#include "benchmark/frames.hpp"
 #include "benchmark/measurements.hpp"
 #include "benchmark/program.hpp"
 #include "gl/context.hpp"
@@ -24,6 +26,7 @@ struct Options {
     std::string scenes = "scenes";
     std::string json;
     bool quick = false;
+    bool files = false;
 };
 
 void declare(CLI::App& app, Options& options) {
@@ -31,6 +34,7 @@ void declare(CLI::App& app, Options& options) {
     app.add_option("--scenes", options.scenes, "folder of the scene files (default scenes)");
     app.add_option("--json", options.json, "write the figures to this file too");
     app.add_flag("--quick", options.quick, "no table, small samples");
+    app.add_flag("--files", options.files, "only writers and readers of files");
 }
 
 void print_table(Measurements& measurements, const Report& report, const Case& office, const Case& city) {
@@ -42,7 +46,7 @@ void print_table(Measurements& measurements, const Report& report, const Case& o
     measurements.table(city);
 }
 
-void print_findings(Measurements& measurements, const Report& report, const Case& office, const Case& city,
+void print_findings(Measurements& measurements, Report& report, const Case& office, const Case& city,
                     const Options& options) {
     report.findings_head();
     measurements.naive_target(10000, 20.0);
@@ -53,6 +57,7 @@ void print_findings(Measurements& measurements, const Report& report, const Case
     measurements.solve_target(this_program().parent_path() / "hemi",
                               std::filesystem::path(options.scenes) / "cornell-box.json",
                               options.quick ? 3 : 5, 3.0);
+    frame_target(this_program(), options.device, report);
 }
 
 Setup make_setup(const Options& options, unsigned workers) {
@@ -86,10 +91,13 @@ void run(const Options& options) {
     };
     write_json(); // a file that cannot be written is told now, not after minutes
     Measurements measurements(setup, report);
-    if (!options.quick) {
+    if (!options.quick && !options.files) {
         print_table(measurements, report, office, city);
     }
-    print_findings(measurements, report, office, city, options);
+    if (!options.files) {
+        print_findings(measurements, report, office, city, options);
+    }
+    measure_files(report, setup.effort.rounds);
     write_json();
 }
 
@@ -98,6 +106,9 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == worker_argument) {
         return run_hemicube_worker();
+    }
+    if (argc == 3 && std::string_view(argv[1]) == frames_argument) {
+        return run_frames(argv[2]);
     }
     // One thread a context, naive or not; read when the first context is made.
     setenv("LP_NUM_THREADS", "0", 1);

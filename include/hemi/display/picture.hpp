@@ -24,6 +24,9 @@ struct PictureSettings {
     ToneMapping tone_mapping = ToneMapping::filmic;
     double exposure = 1.0; ///< factor on radiosity before tone mapping
     bool outlines = false; ///< patch outlines on top
+    /// Show the backs of one-sided surfaces, striped; else one looks through them. Nothing radiates from
+    /// them.
+    bool backs = false;
 };
 
 /// Radiosity prepared for drawing: three linear sRGB channels a patch corner and a patch.

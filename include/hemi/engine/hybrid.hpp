@@ -19,12 +19,22 @@ struct HybridEstimate {
 [[nodiscard]] HybridEstimate estimate_hybrid(RowProvider& visibility, std::span<const std::uint32_t> patches,
                                              std::uint32_t samples = 64);
 
+struct HybridSettings {
+    ExchangeRule rule = ExchangeRule::standard; ///< of F0
+    /// Rays between the two patches of every pair that is partly hidden, if fewer than four times as many
+    /// texels tell how much; both are then weighed by their numbers. 0: none.
+    std::uint32_t shadow_rays = 0;
+
+    bool operator==(const HybridSettings&) const = default;
+};
+
 /// Rows of `patches` by the hybrid: A_i F(i, j) = F0(i, j)·V(i, j).
 ///
 /// F0 is the exact exchange area of the two polygons as if nothing lay between, found once a pair; V is the
 /// visible share of the delta form factors that hemicubes on i and on j spend on each other, weighted by the
-/// texels that either rests on. So the factors of pairs that see all of each other carry F0's error alone,
-/// and A_i F(i, j) = A_j F(j, i) up to the rounding to float. Every entry has its visibility beside it.
+/// texels that either rests on, and sharpened by shadow rays where it is between. So the factors of pairs
+/// that see all of each other carry F0's error alone, and A_i F(i, j) = A_j F(j, i) up to the rounding to
+/// float. Every entry has its visibility beside it.
 ///
 /// Balance: where a row sees nothing of the environment, e is 0 and b what was measured, and the sum is what
 /// comes out, for repair() to close. Where it does, e is what the sum and b leave of 1, since F0 knows that
@@ -34,11 +44,13 @@ struct HybridEstimate {
 /// Memory: 2 bytes for every pair of one of `patches` with any patch, and the matrix.
 /// @param visibility  gives rows of RowQuantity::visibility
 /// @param rows_done   called after every row of visibility; may be empty
+/// @param rays_done   called after every 64 rows whose shadow rays were traced; may be empty
 /// @param pairs_done  called after every 64 rows of pairs; may be empty
-/// @throws Cancelled when either returns false.
+/// @throws Cancelled when one of them returns false.
 [[nodiscard]] FormFactorMatrix compute_hybrid(RowProvider& visibility, const PatchMesh& mesh,
-                                              std::span<const std::uint32_t> patches, ExchangeRule rule,
-                                              Enclosure enclosure, const Progress& rows_done = {},
+                                              std::span<const std::uint32_t> patches,
+                                              const HybridSettings& settings, Enclosure enclosure,
+                                              const Progress& rows_done = {}, const Progress& rays_done = {},
                                               const Progress& pairs_done = {});
 
 } // namespace hemi

@@ -17,4 +17,11 @@ namespace hemi::io {
 void write_baked_glb(const std::filesystem::path& path, const PatchMesh& mesh,
                      std::span<const float> radiosity, double exposure);
 
+/// The same as PLY, binary little endian: every patch a face with vertices of its own, in the patches' order,
+/// quadrilaterals as such. Vertex properties: x, y, z (double), red, green, blue (uchar, sRGB of `exposure`
+/// times radiosity) and radiosity_red, radiosity_green, radiosity_blue (float, as it is, W/m²).
+/// @throws InvalidArgument as write_baked_glb, and for more vertices than 32 bits count; IoError
+void write_baked_ply(const std::filesystem::path& path, const PatchMesh& mesh,
+                     std::span<const float> radiosity, double exposure);
+
 } // namespace hemi::io

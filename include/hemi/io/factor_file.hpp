@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/core/diagnostics.hpp"
 #include "hemi/matrix/error_estimate.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 #include "hemi/scene/patch_mesh.hpp"
@@ -25,6 +26,7 @@ struct FactorFile {
     std::string method = "hemicube";
     std::uint32_t resolution = 0;
     std::uint32_t eye_points = 1;
+    std::uint32_t shadow_rays = 0; ///< for each pair that is partly hidden
     std::uint64_t seed = 0;
     std::string renderer;           ///< what computed the rows
     std::string enclosure = "auto"; ///< auto, closed or open, as the scene said
@@ -61,10 +63,37 @@ enum class View3dFormat { text, binary };
 void write_view3d(const std::filesystem::path& path, const FactorFile& file, View3dFormat format,
                   std::span<const double> emissivity = {});
 
-/// The readers of the first three formats. Row balance is not in these files: environment and blocked are 0.
-/// .csv needs the matrix' size: one more than the largest index.
+/// EnergyPlus' ZoneProperty:UserViewFactors:BySurfaceName (.idf): a triple from, to, F for every pair of
+/// groups, which are the surfaces. The zone has the name of the file; 9 significant digits.
+/// @param diagnostics  warned of rows that do not sum to 1, which EnergyPlus changes
+/// @throws InvalidArgument for unknown rows, areas or groups that do not fit, names that EnergyPlus has not
+///   (with `,` `;` `!` or a line end, of more than 100 characters, equal but for their case); IoError
+void write_energyplus(const std::filesystem::path& path, const FactorFile& file, Diagnostics& diagnostics);
+
+enum class ElmerFormat { text, binary };
+
+/// Elmer's ViewFactors.dat, 1-based. Text: for every row a line with the number k of its entries and k lines
+/// `i j F`, 9 significant digits. Binary: int32 N, for every row int32 k and k times int32 j, float64 F,
+/// little endian. Patches must be Elmer's boundary elements in their order.
+/// @throws InvalidArgument for unknown rows; IoError
+void write_elmer(const std::filesystem::path& path, const FormFactorMatrix& factors, ElmerFormat format);
+
+/// HDF5, chunked and compressed. /factors: data (float32), indices (uint32), indptr (int64) of the rows, with
+/// attributes format ("csr") and shape. /patches, where areas are known: area, group (index into
+/// /groups/name), row_sum, environment, blocked, known, and row_error where it is known. /groups: name.
+/// Attributes say what made the rows and, as `units`, in what numbers are.
+/// @param repair  what was made true of the rows, for the attribute: none, reciprocity, closure
+/// @throws InvalidArgument if areas or groups do not fit the rows; IoError
+void write_h5(const std::filesystem::path& path, const FactorFile& file, const std::string& repair);
+
+/// Readers. Row balance is not in these files: environment and blocked are 0. .csv and Elmer's text do not
+/// say the size: it is one more than the largest index, or the number of rows.
+/// @throws ParseError or InputError with file, place and value
 [[nodiscard]] FormFactorMatrix read_mtx(const std::filesystem::path& path);
 [[nodiscard]] FormFactorMatrix read_csv(const std::filesystem::path& path);
 [[nodiscard]] FormFactorMatrix read_npz(const std::filesystem::path& path);
+[[nodiscard]] FormFactorMatrix read_elmer(const std::filesystem::path& path, ElmerFormat format);
+/// Factors, areas and enclosure, nothing else; factors that include reflection are refused.
+[[nodiscard]] FactorFile read_view3d(const std::filesystem::path& path, View3dFormat format);
 
 } // namespace hemi::io

@@ -39,7 +39,8 @@ private:
 };
 
 /// The whole file as bytes.
-/// @throws InputError naming the path and the reason (missing, a directory, not readable).
+/// @throws InputError naming the path and the reason (missing, a directory, not readable, larger than the
+///   machine's memory).
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 
 } // namespace hemi::io

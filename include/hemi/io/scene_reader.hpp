@@ -12,10 +12,11 @@ namespace hemi::io {
 struct SceneReaderOptions {
     std::vector<std::string> two_sided_groups; ///< groups whose faces radiate on both sides
     bool skip_degenerate = false; ///< leave out faces of zero area, with a warning, instead of refusing
+    bool allow_outside = false;   ///< open files outside the scene's folder that the scene names
 };
 
-/// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3
-/// (View3D).
+/// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3 (View3D),
+/// .msh (Gmsh), .ply, .stl. Files that the scene names must be in its folder or below it, unless allowed.
 /// @throws ParseError or InputError with file, place, value and what would be right.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                Diagnostics& diagnostics);
@@ -40,6 +41,22 @@ struct SceneReaderOptions {
 /// combined with), reflectance 1 - emissivity, exitance 0. Every `O` is a black two-sided surface of the
 /// group "obstruction": it blocks, and nothing comes from it. Control `encl` is the enclosure.
 [[nodiscard]] Scene read_vs3_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                   Diagnostics& diagnostics);
+
+/// Gmsh MSH 2.2, ASCII: every 3-node triangle and 4-node quadrilateral a surface, in the file's order; its
+/// group is its physical surface, and so is its material's name, reflectance 0.5, exitance 0. Points, lines
+/// and volumes are left out with a warning, curved elements refused.
+[[nodiscard]] Scene read_msh_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                   Diagnostics& diagnostics);
+
+/// PLY, ASCII or binary: every face a surface, in the file's order, all of the group "default"; reflectance
+/// 0.5, exitance 0. Positions and faces are used, nothing else.
+[[nodiscard]] Scene read_ply_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                   Diagnostics& diagnostics);
+
+/// STL, ASCII or binary: every triangle a surface, in the file's order; groups are solids ("default" in
+/// binary files); reflectance 0.5, exitance 0. The front is told by the order of vertices, not by normals.
+[[nodiscard]] Scene read_stl_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                    Diagnostics& diagnostics);
 
 /// The extensions that read_scene knows, as a message lists them: ".json, .obj".

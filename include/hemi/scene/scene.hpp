@@ -40,12 +40,15 @@ struct Surface {
     [[nodiscard]] std::span<const Vec3> polygon() const { return {vertices.data(), vertex_count}; }
 };
 
-/// Perspective camera; `fov` is the vertical field of view in degrees.
+/// `fov` is the vertical field of view in degrees. An orthographic camera shows what a perspective one shows
+/// at the target's depth, at that size everywhere, and nothing is too near for it: also what lies behind its
+/// eye.
 struct Camera {
     Vec3 eye{0.0};
     Vec3 target{0.0, 1.0, 0.0};
     Vec3 up{0.0, 0.0, 1.0};
     double fov = 40.0;
+    bool orthographic = false; ///< else perspective
 };
 
 enum class Enclosure { automatic, closed, open };

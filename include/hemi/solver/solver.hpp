@@ -43,6 +43,11 @@ enum class SolverMethod {
 /// "gauss-seidel", "jacobi", "cg" or "auto".
 [[nodiscard]] std::string_view solver_name(SolverMethod method);
 
+/// Shown after every sweep: its number, the estimate of the residual, and a function that gives the radiosity
+/// as it is then, N·channels, valid during the call.
+using SweepWatcher = std::function<void(std::uint32_t sweep, double residual,
+                                        const std::function<std::vector<double>()>& radiosity)>;
+
 struct SolverSettings {
     SolverMethod method = SolverMethod::automatic;
     double tolerance = 1e-6;           ///< on the relative residual, see RadiositySolution
@@ -50,6 +55,7 @@ struct SolverSettings {
     /// Where sweeps begin, N·channels: the solution of a problem that was much the same. Empty: the sources.
     /// Conjugate gradients do not look at it.
     std::span<const double> start = {};
+    SweepWatcher watch = {}; ///< for those who want to see it converge; may be empty, may throw Cancelled
 };
 
 struct RadiositySolution {

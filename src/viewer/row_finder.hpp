@@ -10,27 +10,30 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace hemi::viewer {
 
-/// Runs ViewerInput::solve on a thread of its own, and tells how far it is.
-class LiveSolver {
+/// Runs ViewerInput::find_rows on a thread of its own, and tells how far it is.
+class RowFinder {
 public:
-    /// @param changed  called on the other thread when status() or finished() has something new
-    LiveSolver(std::function<Solved(const SolveProgress&)> solve, std::function<void()> changed);
+    /// @param changed  called on the other thread when something new is to be had
+    RowFinder(std::function<FoundRows(const RowListener&)> find, std::function<void()> changed);
     /// Stops what is under way, and waits until it has.
-    ~LiveSolver();
-    LiveSolver(const LiveSolver&) = delete;
-    LiveSolver& operator=(const LiveSolver&) = delete;
+    ~RowFinder();
+    RowFinder(const RowFinder&) = delete;
+    RowFinder& operator=(const RowFinder&) = delete;
 
     /// What is being done, and how fast.
     /// @param share  becomes the part of it that is done
     [[nodiscard]] std::string status(double& share) const;
     void cancel();
 
+    /// What the light will be about, once it is known; once.
+    [[nodiscard]] std::optional<std::vector<double>> take_preview();
     /// The result, once; afterwards, and where there is none, nothing.
-    /// @throws what the solution threw, but Cancelled
-    [[nodiscard]] std::optional<Solved> take();
+    /// @throws what the search threw, but Cancelled
+    [[nodiscard]] std::optional<FoundRows> take();
     [[nodiscard]] bool finished() const;
 
 private:
@@ -44,11 +47,12 @@ private:
 
     void work(const std::stop_token& stop);
 
-    std::function<Solved(const SolveProgress&)> solve_;
+    std::function<FoundRows(const RowListener&)> find_;
     std::function<void()> changed_;
     mutable std::mutex mutex_;
     Progress progress_;
-    std::optional<Solved> result_;
+    std::optional<std::vector<double>> preview_;
+    std::optional<FoundRows> result_;
     std::exception_ptr problem_;
     bool finished_ = false;
     std::jthread thread_; ///< last: it uses all of the above

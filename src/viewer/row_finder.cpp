@@ -1,4 +1,4 @@
-#include "viewer/live_solver.hpp"
+#include "viewer/row_finder.hpp"
 
 #include "hemi/core/error.hpp"
 
@@ -9,13 +9,13 @@
 
 namespace hemi::viewer {
 
-LiveSolver::LiveSolver(std::function<Solved(const SolveProgress&)> solve, std::function<void()> changed)
-    : solve_(std::move(solve)), changed_(std::move(changed)),
+RowFinder::RowFinder(std::function<FoundRows(const RowListener&)> find, std::function<void()> changed)
+    : find_(std::move(find)), changed_(std::move(changed)),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
-LiveSolver::~LiveSolver() = default;
+RowFinder::~RowFinder() = default;
 
-std::string LiveSolver::status(double& share) const {
+std::string RowFinder::status(double& share) const {
     if (thread_.get_stop_token().stop_requested()) {
         return "stopping";
     }
@@ -29,16 +29,21 @@ std::string LiveSolver::status(double& share) const {
     return text;
 }
 
-void LiveSolver::cancel() {
+void RowFinder::cancel() {
     thread_.request_stop();
 }
 
-bool LiveSolver::finished() const {
+bool RowFinder::finished() const {
     const std::lock_guard lock(mutex_);
     return finished_;
 }
 
-std::optional<Solved> LiveSolver::take() {
+std::optional<std::vector<double>> RowFinder::take_preview() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(preview_, std::nullopt);
+}
+
+std::optional<FoundRows> RowFinder::take() {
     const std::lock_guard lock(mutex_);
     if (problem_) {
         std::rethrow_exception(std::exchange(problem_, nullptr));
@@ -46,7 +51,7 @@ std::optional<Solved> LiveSolver::take() {
     return std::exchange(result_, std::nullopt);
 }
 
-void LiveSolver::work(const std::stop_token& stop) {
+void RowFinder::work(const std::stop_token& stop) {
     using Clock = std::chrono::steady_clock;
     constexpr std::chrono::milliseconds interval{100};
     Clock::time_point began;
@@ -70,17 +75,24 @@ void LiveSolver::work(const std::stop_token& stop) {
         }
         return !stop.stop_requested();
     };
-    std::optional<Solved> solved;
+    const auto preview = [&](std::vector<double> radiosity) {
+        {
+            const std::lock_guard lock(mutex_);
+            preview_ = std::move(radiosity);
+        }
+        changed_();
+    };
+    std::optional<FoundRows> found;
     std::exception_ptr problem;
     try {
-        solved = solve_(progress);
+        found = find_({progress, preview});
     } catch (const Cancelled&) { // as was asked for
     } catch (...) {
         problem = std::current_exception();
     }
     {
         const std::lock_guard lock(mutex_);
-        result_ = std::move(solved);
+        result_ = std::move(found);
         problem_ = problem;
         finished_ = true;
     }

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <memory>
+
+namespace hemi {
+
+/// Visibility of pairs of patches by rays between them, by Embree.
+///
+/// Sobol points on both patches; each pair of points is weighted by cos·cos / r², so that V is the share of
+/// the unoccluded factor that nothing hides. Surfaces in whose plane either end lies hide nothing, and backs
+/// hide as fronts do: as hemicubes have it. Thread-safe after construction.
+class ShadowRays {
+public:
+    /// @param mesh  must outlive this.
+    /// @throws Error if Embree cannot be set up.
+    explicit ShadowRays(const PatchMesh& mesh);
+    ~ShadowRays();
+
+    struct Estimate {
+        double visibility;
+        double rays; ///< of equal weight that it is worth: few where patches are near; 0: none goes front to
+                     ///< front
+    };
+    /// The same for (i, j) and (j, i).
+    /// @param rays  to trace; powers of two are spread best
+    [[nodiscard]] Estimate visibility(std::uint32_t i, std::uint32_t j, std::uint32_t rays) const;
+
+private:
+    struct Handles;
+    struct Query;
+
+    [[nodiscard]] bool occluded(const Vec3& from, const Vec3& to) const;
+
+    const PatchMesh& mesh_;
+    Vec3 centre_;
+    double scale_;
+    double rounding_;
+    std::unique_ptr<Handles> handles_;
+};
+
+} // namespace hemi

@@ -1,0 +1,532 @@
+#include "viewer/application.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
+#include "hemi/io/image_file.hpp"
+#include "hemi/io/scene_writer.hpp"
+#include "viewer/command_line.hpp"
+#include "viewer/keys.hpp"
+#include "viewer/overlays.hpp"
+#include "viewer/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace hemi::viewer {
+
+namespace {
+
+/// Lines in the list of partners.
+constexpr std::size_t partner_count = 8;
+/// After so long without an event the picture is drawn in full quality, seconds.
+constexpr double rest = 0.2;
+
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code error;
+    return a == b || std::filesystem::equivalent(a, b, error);
+}
+
+} // namespace
+
+Application::Application(ViewerInput input, const ViewerSettings& settings)
+    : settings_(settings),
+      window_(input.title, input.picture.width, input.picture.height, !settings.script.empty()),
+      navigator_(settings.controls, input.mesh, input.camera), opener_(settings.open, Window::wake) {
+    choices_.look.shading = input.picture.shading;
+    choices_.look.tone_mapping = input.picture.tone_mapping;
+    choices_.look.outlines = input.picture.outlines;
+    choices_.look.backs = input.picture.backs;
+    choices_.samples = input.picture.samples;
+    exchange(std::move(input));
+}
+
+/// Another scene, or the same one after a change.
+void Application::exchange(ViewerInput input) {
+    const bool again = document_ && same_file(document_->input().file, input.file);
+    const bool same_patches =
+        document_ && document_->input().mesh->geometry_hash() == input.mesh->geometry_hash();
+    if (again) {
+        navigator_.exchange(input.mesh, input.camera);
+    } else {
+        navigator_ = Navigator(settings_.controls, input.mesh, input.camera);
+        watch_.emplace(input.file, Window::wake);
+    }
+    if (!again || !same_patches) {
+        choices_.picked.reset();
+    }
+    choices_.pointed_at.reset();
+    choices_.materials = input.scene->materials;
+    inset_.reset();
+    document_.reset(); // whose threads end first
+    document_ = std::make_unique<Document>(std::move(input), Window::wake);
+    const auto channels = document_->input().channels;
+    if (choices_.look.channel && *choices_.look.channel >= channels) {
+        choices_.look.channel.reset();
+    }
+    saved_result_.clear();
+    shown_look_.reset();
+    message_.clear();
+    settle();
+}
+
+void Application::run() {
+    while (!closing_) {
+        draw();
+        const bool preview = moving_ && window_.software();
+        moving_ = navigator_.dragging();
+        const std::vector<Event> events = window_.wait(preview && !navigator_.holds() ? rest : 0.0);
+        for (std::size_t k = 0; k < events.size() && !closing_; ++k) {
+            // Of cursor moves in a row only the last counts.
+            const bool passed = std::holds_alternative<CursorEvent>(events[k]) && k + 1 < events.size() &&
+                                std::holds_alternative<CursorEvent>(events[k + 1]);
+            if (!passed) {
+                handle(events[k]);
+            }
+        }
+        attempt([this] { update(); });
+        stop_if_interrupted();
+        if (watch_->take()) {
+            open(document_->input().file);
+        }
+        // Nothing came: the preview on the screen is drawn anew in full quality.
+        picture_changed_ = picture_changed_ || (preview && !moving_);
+    }
+}
+
+void Application::watch(double seconds) {
+    for (const Event& event : seconds > 0.0 ? window_.wait(seconds) : window_.poll()) {
+        if (std::holds_alternative<CloseEvent>(event) || std::holds_alternative<RefreshEvent>(event)) {
+            handle(event);
+        }
+    }
+}
+
+void Application::wait_for_work() {
+    update();
+    while (!closing_ && (opener_.busy() || document_->busy())) {
+        draw();
+        watch(0.05);
+        update();
+    }
+}
+
+/// The panels see every event first; a drag that began in the view stays the view's.
+void Application::handle(const Event& event) {
+    gui_.feed(event);
+    describe_panels();
+    const bool of_mouse =
+        std::holds_alternative<ButtonEvent>(event) || std::holds_alternative<ScrollEvent>(event);
+    if (!(of_mouse && gui_.has_mouse() && !navigator_.holds())) {
+        act_on(event);
+    }
+    grant_wishes();
+    settle();
+}
+
+void Application::act_on(const Event& event) {
+    std::visit(Overloaded{[this](const CursorEvent& e) {
+                              if (navigator_.on_cursor(e)) {
+                                  moved();
+                              }
+                          },
+                          [this](const ButtonEvent& e) {
+                              if (const auto pixel = navigator_.on_button(e)) {
+                                  pick(*pixel);
+                              }
+                          },
+                          [this](const ScrollEvent& e) {
+                              if (navigator_.on_scroll(e)) {
+                                  moved();
+                              }
+                          },
+                          [this](const KeyEvent& e) { on_key(e); },
+                          [this](const RefreshEvent&) { refresh(); },
+                          [this](const CloseEvent&) { closing_ = true; },
+                          [this](const DropEvent& e) { open(e.path); }},
+               event);
+}
+
+void Application::on_key(const KeyEvent& event) {
+    navigator_.let_go();
+    if (apply_camera_key(event, navigator_.aspect(), navigator_.orbit())) {
+        picture_changed_ = true;
+    } else if (!apply_look_key(event, document_->input(), choices_)) {
+        other_key(event);
+    }
+}
+
+void Application::other_key(const KeyEvent& event) {
+    Wishes& wishes = choices_.wishes;
+    if (event.key == 'P') {
+        numbered_screenshot(event.shift);
+    } else if (event.key == 'X') {
+        wishes.copy_command = true;
+    } else if (event.key == 'G') {
+        (event.shift ? wishes.run_on : wishes.step) = true;
+    } else if (event.key == reload_key) {
+        wishes.reload = true;
+    } else if (event.key == tab_key) {
+        choices_.panel = !choices_.panel;
+        picture_changed_ = true;
+    } else if (event.key == 'C') {
+        choices_.hemicube = !choices_.hemicube;
+    } else if (event.key == help_key) {
+        choices_.help = !choices_.help;
+    } else if (event.key == escape_key && choices_.help) {
+        choices_.help = false;
+    } else if (event.key == escape_key && !message_.empty()) {
+        message_.clear();
+    } else if (event.key == escape_key && choices_.picked) {
+        choices_.picked.reset();
+    } else if (event.key == 'Q' || event.key == escape_key) {
+        closing_ = true;
+    }
+}
+
+template <typename Action>
+void Application::attempt(const Action& action) {
+    try {
+        action();
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const GlError&) {
+        throw;
+    } catch (const Error& error) {
+        message_ = error.what();
+        std::fprintf(stderr, "%s\n", error.what());
+    }
+}
+
+/// Does what buttons in the panel have asked for.
+void Application::grant_wishes() {
+    const Wishes wishes = std::exchange(choices_.wishes, {});
+    if (wishes.cancel) {
+        document_->cancel();
+    }
+    if (wishes.start_over) {
+        document_->start_over();
+    }
+    if (wishes.step) {
+        document_->step();
+    }
+    if (wishes.run_on) {
+        document_->run_on();
+    }
+    if (wishes.camera_key) {
+        on_key({*wishes.camera_key, false});
+    }
+    if (wishes.fov) {
+        navigator_.orbit().set_fov(*wishes.fov);
+        moved();
+    }
+    if (wishes.orthographic) {
+        navigator_.orbit().set_orthographic(*wishes.orthographic);
+        picture_changed_ = true;
+    }
+    if (wishes.screenshot) {
+        numbered_screenshot(false);
+    }
+    if (wishes.save_result) {
+        attempt([this] { save_result(free_name(document_->input().file.stem().string(), ".hres")); });
+    }
+    if (wishes.save_camera) {
+        attempt([this] { save_camera(); });
+    }
+    if (wishes.copy_command) {
+        attempt([this] {
+            const std::string command = command_line();
+            window_.copy_text(command);
+            note_ = "command line copied";
+            std::fprintf(stderr, "%s\n", command.c_str());
+        });
+    }
+    if (wishes.reload) {
+        open(document_->input().file);
+    }
+}
+
+void Application::pick(std::array<double, 2> pixel) {
+    const auto size = view_size();
+    if (pixel[0] >= 0.0 && pixel[0] < size[0] && pixel[1] >= 0.0 && pixel[1] < size[1]) {
+        choices_.picked = view_.item(navigator_.camera(), size, static_cast<std::uint32_t>(pixel[0]),
+                                     static_cast<std::uint32_t>(pixel[1]));
+    }
+}
+
+void Application::moved() {
+    picture_changed_ = true;
+    moving_ = true;
+}
+
+void Application::open(const std::filesystem::path& file) {
+    note_ = fmt::format("reading {}", file.filename().string());
+    opener_.open(file);
+}
+
+void Application::take_opened() {
+    std::optional<Opened> opened = opener_.take();
+    if (!opened) {
+        return;
+    }
+    if (!opened->input) { // what was open stays
+        note_.clear();
+        message_ = opened->problem;
+        return;
+    }
+    note_ = fmt::format("{} read", opened->file.filename().string());
+    exchange(std::move(*opened->input));
+}
+
+void Application::update() {
+    take_opened();
+    const bool changed = document_->update();
+    if (changed) {
+        saved_result_.clear();
+        note_.clear();
+        shown_look_.reset();
+        settle();
+    }
+}
+
+std::array<std::uint32_t, 2> Application::view_size() const {
+    const auto size = window_.size();
+    return {size[0] - panel_width(size, choices_.panel), size[1]};
+}
+
+void Application::settle() {
+    const ViewerInput& input = document_->input();
+    navigator_.set_view(view_size());
+    if (why_not(choices_.look.quantity, input, choices_.picked) != nullptr) {
+        choices_.look.quantity = Quantity::picture;
+    }
+    document_->set_materials(choices_.materials);
+    const bool other_patch = shown_pick_ != choices_.picked;
+    const bool other_look = shown_look_ != choices_.look;
+    const HemicubeChoice hemicube{choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
+    const bool other_hemicube = shown_hemicube_ != hemicube;
+    const bool other_order = shown_by_light_ != choices_.partners_by_light;
+    if (!other_patch && !other_look && !other_order && !other_hemicube) {
+        return;
+    }
+    const Quantity quantity = choices_.look.quantity;
+    const bool of_patch = quantity == Quantity::row || quantity == Quantity::column;
+    if (other_look || (other_patch && of_patch)) {
+        view_.show(*document_, choices_.look, choices_.picked);
+        picture_changed_ = true;
+    }
+    picked_.reset();
+    if (choices_.picked) {
+        picked_ = PickedPatch{*choices_.picked, {}};
+        if (input.rows.factors != nullptr) {
+            picked_->partners =
+                largest_partners(input, document_->light(), *choices_.picked, quantity == Quantity::column,
+                                 choices_.partners_by_light, partner_count);
+        }
+    }
+    if (other_patch) {
+        choices_.hemicube_eye = 0;
+    }
+    shown_pick_ = choices_.picked;
+    shown_look_ = choices_.look;
+    shown_by_light_ = choices_.partners_by_light;
+    shown_hemicube_ = {choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
+    draw_hemicube();
+    update_title();
+}
+
+/// The picked patch's hemicube, where it is wanted and there is room for it.
+void Application::draw_hemicube() {
+    if (!choices_.hemicube || !choices_.picked || panel_width(window_.size(), choices_.panel) == 0) {
+        return;
+    }
+    const ViewerInput& input = document_->input();
+    if (!inset_) {
+        inset_.emplace(*input.mesh, input.hemicube, window_);
+    }
+    inset_->look(*choices_.picked, choices_.hemicube_eye);
+    inset_->paint(choices_.hemicube_ids ? item_colours(*input.mesh) : view_.colours());
+}
+
+void Application::update_title() {
+    const std::string title = fmt::format(
+        "{} - exposure {:.3g}, {} - {}", document_->input().title,
+        document_->exposure() * std::exp2(choices_.look.stops),
+        choices_.look.tone_mapping == ToneMapping::filmic ? "filmic" : "linear", window_.renderer());
+    if (title != title_) {
+        title_ = title;
+        window_.set_title(title);
+    }
+}
+
+void Application::describe_panels() {
+    const auto size = window_.size();
+    const auto view = view_size();
+    const PatchMesh& mesh = *document_->input().mesh;
+    gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
+    if (view[0] < size[0]) {
+        side_panel({*document_, picked_, navigator_.camera(), note_, status_}, size, choices_);
+    }
+    if (view[0] > 0 && view[1] > 0) {
+        if (choices_.pointed_at) {
+            mark_patch(mesh, *choices_.pointed_at, navigator_.orbit(), view, false);
+        }
+        if (choices_.picked) {
+            mark_patch(mesh, *choices_.picked, navigator_.orbit(), view, true);
+        }
+        if (view_.field()) {
+            legend(*view_.field(), view);
+        }
+        if (inset_ && choices_.hemicube && choices_.picked && view[0] < size[0]) {
+            hemicube_window(inset_->picture(), view, choices_);
+        }
+        if (choices_.help) {
+            help_window(view, settings_.controls, choices_.help);
+        }
+        bool open = true;
+        if (!message_.empty()) {
+            message_window(message_, view, open);
+        }
+        if (!open) {
+            message_.clear();
+        }
+    }
+    gui_.end();
+}
+
+void Application::draw() {
+    const auto view = view_size();
+    const auto size = window_.size();
+    if (view[0] == 0 || view[1] == 0) {
+        return;
+    }
+    navigator_.set_view(view);
+    if (picture_changed_ || target_.size() != view) {
+        draw_picture(target_, view, window_.software() && (moving_ || !settings_.script.empty()));
+        picture_changed_ = false;
+        lost_ = true;
+    }
+    // Twice, since a frame may learn from the one before how large its text is.
+    describe_panels();
+    describe_panels();
+    grant_wishes();
+    settle();
+    window_.check_debug_messages();
+    if (picture_changed_) { // by a button: once more
+        Window::wake();
+    }
+    if (!lost_ && !gui_.changed()) {
+        return;
+    }
+    target_.copy_to(0, size[1]);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    gui_.draw();
+    gl::check_errors("drawing the window");
+    window_.swap();
+    lost_ = false;
+}
+
+void Application::draw_picture(SceneTarget& target, std::array<std::uint32_t, 2> size, bool preview) {
+    const auto start = std::chrono::steady_clock::now();
+    target.resize(size);
+    view_.draw(navigator_.camera(), target, preview ? 1 : document_->input().picture.samples);
+    glFinish();
+    const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
+    status_ = fmt::format("{} patches, {:.0f} ms a picture{}", document_->input().mesh->size(), time.count(),
+                          preview ? " (preview)" : "");
+}
+
+void Application::screenshot(const std::filesystem::path& path, std::array<std::uint32_t, 2> size,
+                             std::uint32_t samples) {
+    const Picture picture = view_.picture(navigator_.camera(), size, samples);
+    if (path.extension() == ".hdr") {
+        io::write_hdr(path, picture.width, picture.height, picture.linear);
+    } else {
+        io::write_png(path, picture.width, picture.height, picture.srgb);
+    }
+    note_ = fmt::format("{} ({} x {})", path.filename().string(), size[0], size[1]);
+    std::fprintf(stderr, "%s\n", path.string().c_str());
+}
+
+void Application::windowshot(const std::filesystem::path& path) {
+    const auto size = window_.size();
+    const auto view = view_size();
+    if (view[0] == 0 || view[1] == 0) {
+        return;
+    }
+    SceneTarget picture;
+    draw_picture(picture, view, false);
+    describe_panels();
+    describe_panels();
+    SceneTarget whole;
+    whole.resize(size);
+    picture.copy_to(whole.framebuffer(), size[1]);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, whole.framebuffer());
+    gui_.draw();
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    gl::check_errors("drawing the window");
+    lost_ = true;
+    io::write_png(path, size[0], size[1], whole.pixels());
+    note_ = path.filename().string();
+    std::fprintf(stderr, "%s\n", path.string().c_str());
+}
+
+/// Under the first free number; a folder that cannot be written to is no reason to close the window.
+void Application::numbered_screenshot(bool of_window) {
+    const std::filesystem::path path = free_name(document_->input().file.stem().string(), ".png");
+    attempt([&] {
+        if (of_window) {
+            windowshot(path);
+            return;
+        }
+        const PictureSize& chosen = picture_sizes()[choices_.picture_size];
+        const auto view = view_size();
+        const std::array<std::uint32_t, 2> size =
+            chosen.width == 0 ? std::array{view[0] * chosen.scale, view[1] * chosen.scale}
+                              : std::array{chosen.width, chosen.height};
+        screenshot(path, size, choices_.samples);
+    });
+}
+
+void Application::report(const std::filesystem::path& path) const {
+    const bool hemicube = inset_ && choices_.picked && choices_.hemicube;
+    write_report(path, {*document_, choices_, view_.field(), picked_, navigator_.camera(), message_,
+                        hemicube ? inset_->seen() : std::vector<std::uint32_t>()});
+}
+
+void Application::save_camera() {
+    io::write_scene_camera(document_->input().file, navigator_.camera());
+    note_ = fmt::format("camera saved into {}", document_->input().file.filename().string());
+}
+
+void Application::save_result(const std::filesystem::path& path) {
+    document_->save_result(path);
+    saved_result_ = path;
+    note_ = fmt::format("{} saved", path.filename().string());
+    std::fprintf(stderr, "%s\n", path.string().c_str());
+}
+
+std::string Application::command_line() const {
+    if (choices_.look.quantity != Quantity::picture) {
+        throw InvalidArgument("a command line draws nothing but the light: choose that first (V)");
+    }
+    std::string command = document_->input().command;
+    if (!saved_result_.empty()) {
+        command = "hemi render " + quoted(saved_result_.string());
+    } else if (!document_->as_opened()) {
+        throw InvalidArgument(
+            "the materials are no longer those of the file: save the result, then copy the command line");
+    }
+    PictureSettings picture =
+        picture_settings(choices_.look, document_->input().picture,
+                         document_->exposure() * std::exp2(choices_.look.stops), view_size());
+    picture.samples = choices_.samples;
+    return command + " -o " + quoted(document_->input().file.stem().string() + ".png") +
+           picture_options(picture, navigator_.camera());
+}
+
+} // namespace hemi::viewer

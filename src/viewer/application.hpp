@@ -1,0 +1,123 @@
+#pragma once
+
+#include "viewer/document.hpp"
+#include "viewer/file_watch.hpp"
+#include "viewer/gui.hpp"
+#include "viewer/hemicube_inset.hpp"
+#include "viewer/navigator.hpp"
+#include "viewer/opener.hpp"
+#include "viewer/panels.hpp"
+#include "viewer/scene_target.hpp"
+#include "viewer/scene_view.hpp"
+#include "viewer/window.hpp"
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hemi::viewer {
+
+/// The window, what it shows and what the user does to it. Real input and scripts come in by the same door,
+/// handle(). Draws only what has changed.
+class Application {
+public:
+    Application(ViewerInput input, const ViewerSettings& settings);
+
+    /// Until the window is closed.
+    void run();
+
+    // For scripts.
+
+    void handle(const Event& event);
+    void draw();
+    /// Takes in what was done beside the window.
+    void update();
+    /// Waits at most `seconds` for something to happen. Of the events, only those count that a watcher of a
+    /// script may cause.
+    void watch(double seconds);
+    /// Until nothing goes on by itself.
+    void wait_for_work();
+    /// Reads a file, beside the window; the one that is open where it is the same.
+    void open(const std::filesystem::path& file);
+    /// Whether the open file has changed on the disk since the last call.
+    [[nodiscard]] bool file_changed() { return watch_->take(); }
+    [[nodiscard]] bool closing() const { return closing_; }
+    [[nodiscard]] Document& document() { return *document_; }
+    [[nodiscard]] Choices& choices() { return choices_; }
+    [[nodiscard]] Window& window() { return window_; }
+    [[nodiscard]] Navigator& navigator() { return navigator_; }
+    /// Brings what is shown in line with the choices.
+    void settle();
+    /// The picture is to be drawn again.
+    void refresh() { picture_changed_ = lost_ = true; }
+    void screenshot(const std::filesystem::path& path, std::array<std::uint32_t, 2> size,
+                    std::uint32_t samples);
+    /// The window in full quality, panels included.
+    void windowshot(const std::filesystem::path& path);
+    /// What is shown, as JSON.
+    void report(const std::filesystem::path& path) const;
+    /// Writes the camera into the scene's file. @throws InvalidArgument where that holds none; IoError
+    void save_camera();
+    void save_result(const std::filesystem::path& path);
+    /// Command line that draws the picture. @throws InvalidArgument where none does
+    [[nodiscard]] std::string command_line() const;
+    /// Pixels of the window that show the scene, from its upper left.
+    [[nodiscard]] std::array<std::uint32_t, 2> view_size() const;
+    /// What the window says of the last thing that went wrong.
+    [[nodiscard]] const std::string& message() const { return message_; }
+
+private:
+    void act_on(const Event& event);
+    void on_key(const KeyEvent& event);
+    void other_key(const KeyEvent& event);
+    void pick(std::array<double, 2> pixel);
+    void moved();
+    void grant_wishes();
+    void take_opened();
+    void exchange(ViewerInput input);
+    /// Does it, and shows what went wrong in the window.
+    template <typename Action>
+    void attempt(const Action& action);
+    void numbered_screenshot(bool of_window);
+
+    void show();
+    void draw_hemicube();
+    void update_title();
+    void describe_panels();
+    void draw_picture(SceneTarget& target, std::array<std::uint32_t, 2> size, bool preview);
+
+    const ViewerSettings& settings_;
+    Window window_; // before everything that lives in its context
+    SceneView view_;
+    SceneTarget target_;
+    Gui gui_;
+    std::optional<HemicubeInset> inset_; ///< made when it is first needed
+    Navigator navigator_;
+    Choices choices_;
+
+    // What the screen shows: follows the choices, see settle().
+    std::optional<Look> shown_look_;
+    std::optional<std::uint32_t> shown_pick_;
+    bool shown_by_light_ = false;
+    HemicubeChoice shown_hemicube_;
+    std::optional<PickedPatch> picked_;
+    std::string status_;
+    std::string note_;
+    std::string message_;
+    std::string title_;
+    std::filesystem::path saved_result_; ///< of the light as it is; empty: it was not saved
+
+    bool moving_ = false;
+    bool picture_changed_ = true;
+    bool lost_ = true; ///< what the window holds is not what was drawn last
+    bool closing_ = false;
+
+    std::unique_ptr<Document> document_;
+    Opener opener_;
+    std::optional<FileWatch> watch_;
+};
+
+} // namespace hemi::viewer

@@ -1,0 +1,37 @@
+#include "viewer/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace hemi::viewer {
+
+std::string picture_options(const PictureSettings& settings, const Camera& camera) {
+    const auto point = [](const Vec3& p) { return fmt::format("{},{},{}", p.x, p.y, p.z); };
+    std::string text = fmt::format(" --size {}x{} --camera {}:{}:{}:{}", settings.width, settings.height,
+                                   point(camera.eye), point(camera.target), point(camera.up), camera.fov);
+    text += fmt::format(" --exposure {} --tone-mapping {}", settings.exposure,
+                        settings.tone_mapping == ToneMapping::filmic ? "filmic" : "linear");
+    text += settings.shading == Shading::flat ? " --flat" : "";
+    text += camera.orthographic ? " --orthographic" : "";
+    text += settings.outlines ? " --outlines" : "";
+    text += settings.backs ? " --backs" : "";
+    text +=
+        settings.samples != PictureSettings{}.samples ? fmt::format(" --samples {}", settings.samples) : "";
+    return text;
+}
+
+std::string quoted(const std::string& word) {
+    constexpr std::string_view plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,=+";
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
+        return word;
+    }
+    std::string text = "'";
+    for (const char letter : word) {
+        text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    }
+    return text + "'";
+}
+
+} // namespace hemi::viewer

@@ -1,0 +1,90 @@
+#pragma once
+
+#include "viewer/look.hpp"
+#include "viewer/relighter.hpp"
+#include "viewer/row_finder.hpp"
+#include "viewer/viewer.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hemi::viewer {
+
+/// How far work beside the window is.
+struct Work {
+    std::string doing;             ///< what is under way; empty: no rows are looked for
+    double share = 0.0;            ///< of that
+    std::string light;             ///< on the light that is shown
+    std::vector<double> residuals; ///< after every sweep of the last solution
+    bool waits = false;            ///< for the next step
+};
+
+/// A scene and its light as they stand: what was opened, found, solved and changed since.
+class Document {
+public:
+    /// @param wake  called on other threads when update() has something to do
+    Document(ViewerInput input, std::function<void()> wake);
+
+    [[nodiscard]] const ViewerInput& input() const { return input_; }
+    [[nodiscard]] const Light& light() const { return light_; }
+    [[nodiscard]] const PictureMesh& light_mesh() const { return light_mesh_; }
+    /// Where stops count from.
+    [[nodiscard]] double exposure() const { return exposure_; }
+    /// Median of the rows' largest factors, see usual_largest_factor().
+    [[nodiscard]] double usual_factor() const { return usual_factor_; }
+    /// Whether there is no light yet but that of the lamps by themselves.
+    [[nodiscard]] bool lamps_only() const { return state_ == State::lamps; }
+    [[nodiscard]] const Work& work() const { return work_; }
+
+    /// Takes in what was found and solved beside the window.
+    /// @return whether there is something new to see
+    /// @throws what the search for rows threw, and Cancelled if the user has interrupted the program
+    bool update();
+    /// Whether something is under way that goes on by itself.
+    [[nodiscard]] bool busy() const;
+    /// Stops the search for rows.
+    void cancel();
+
+    /// Asks for the light of other materials, from the light that is there on.
+    void set_materials(const std::vector<Material>& materials);
+    /// Back to the light of the lamps, and a sweep at a time from there. Needs rows.
+    void start_over();
+    /// The next sweep; starts over where nothing waits for one.
+    void step();
+    void run_on();
+
+    /// Why the light cannot be stored; null if it can.
+    [[nodiscard]] const char* why_not_save() const;
+    /// @throws InvalidArgument where why_not_save() has a reason; IoError
+    void save_result(const std::filesystem::path& path);
+    /// Whether the light is that of the file as it was opened.
+    [[nodiscard]] bool as_opened() const { return materials_ == input_.scene->materials; }
+
+private:
+    enum class State { lamps, preview, converging, solved };
+
+    void take_rows();
+    void take_light();
+    void show_light(std::vector<double> radiosity, State state);
+    [[nodiscard]] Light of_materials() const;
+
+    ViewerInput input_;
+    std::function<void()> wake_;
+    std::vector<Material> materials_;
+    Light light_;
+    PictureMesh light_mesh_;
+    double exposure_ = 1.0;
+    bool exposure_settled_ = false;
+    double usual_factor_ = 0.0;
+    State state_ = State::lamps;
+    Work work_;
+    bool changed_ = false;
+    std::optional<Relit> solved_;        ///< the last solution
+    std::optional<Relighter> relighter_; ///< where there are form factors
+    std::optional<RowFinder> finder_;    ///< while it is at work
+};
+
+} // namespace hemi::viewer

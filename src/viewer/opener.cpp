@@ -1,0 +1,43 @@
+#include "viewer/opener.hpp"
+
+#include <exception>
+#include <utility>
+
+namespace hemi::viewer {
+
+Opener::Opener(std::function<ViewerInput(const std::filesystem::path&)> open, std::function<void()> done)
+    : open_(std::move(open)), done_(std::move(done)) {}
+
+void Opener::open(const std::filesystem::path& file) {
+    if (thread_.joinable()) {
+        thread_.join();
+    }
+    working_ = true;
+    opened_.reset();
+    thread_ = std::jthread([this, file] {
+        Opened opened{file, {}, {}};
+        try {
+            opened.input = open_(file);
+        } catch (const std::exception& error) {
+            opened.problem = error.what();
+        }
+        {
+            const std::lock_guard lock(mutex_);
+            opened_ = std::move(opened);
+            working_ = false;
+        }
+        done_();
+    });
+}
+
+bool Opener::busy() const {
+    const std::lock_guard lock(mutex_);
+    return working_ || opened_;
+}
+
+std::optional<Opened> Opener::take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(opened_, std::nullopt);
+}
+
+} // namespace hemi::viewer

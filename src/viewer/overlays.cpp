@@ -1,0 +1,155 @@
+#include "viewer/overlays.hpp"
+
+#include "viewer/keys.hpp"
+#include "viewer/widgets.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace hemi::viewer {
+
+void legend(const Field& field, std::array<std::uint32_t, 2> view) {
+    constexpr float margin = 10.0F;
+    constexpr float pad = 9.0F;
+    const float width = std::min(380.0F, static_cast<float>(view[0]) - 2.0F * margin);
+    const float line_height = ImGui::GetTextLineHeight();
+    const float height = 2.0F * line_height + 12.0F + 2.0F * pad + 8.0F;
+    if (width < 150.0F || static_cast<float>(view[1]) < 3.0F * height) {
+        return;
+    }
+    ImDrawList* list = ImGui::GetBackgroundDrawList();
+    const ImVec2 origin{margin, static_cast<float>(view[1]) - margin - height};
+    list->AddRectFilled(origin, {origin.x + width, origin.y + height}, IM_COL32(22, 24, 26, 225), 3.0F);
+    const ImU32 ink = IM_COL32(235, 235, 235, 255);
+    const bool has_none =
+        std::any_of(field.values.begin(), field.values.end(), [](double v) { return std::isnan(v); });
+    const std::string title =
+        field.title + (has_none ? "; grey: 0" : "") + (field.unit.empty() ? "" : "  [" + field.unit + "]");
+    list->AddText({origin.x + pad, origin.y + pad - 2.0F}, ink, title.c_str());
+
+    const float left = origin.x + pad + 14.0F;
+    const float right = origin.x + width - pad - 20.0F;
+    const float top = origin.y + pad + line_height + 3.0F;
+    const float bottom = top + 12.0F;
+    const auto colour = [](double position) {
+        const std::array<float, 3> linear = scale_colour(position);
+        const auto encode = [](float value) {
+            const float srgb =
+                value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;
+            return static_cast<int>(std::lround(255.0F * srgb));
+        };
+        return IM_COL32(encode(linear[0]), encode(linear[1]), encode(linear[2]), 255);
+    };
+    constexpr int steps = 40;
+    for (int k = 0; k < steps; ++k) {
+        const float from = left + (right - left) * static_cast<float>(k) / steps;
+        const float to = left + (right - left) * static_cast<float>(k + 1) / steps;
+        const ImU32 first = colour(static_cast<double>(k) / steps);
+        const ImU32 last = colour(static_cast<double>(k + 1) / steps);
+        list->AddRectFilledMultiColor({from, top}, {to, bottom}, first, last, last, first);
+    }
+    for (const double mark : field.scale.marks()) {
+        const float x = left + (right - left) * static_cast<float>(field.scale.position(mark));
+        list->AddLine({x, bottom}, {x, bottom + 4.0F}, ink);
+        const std::string words = fmt::format("{:.3g}", mark);
+        const float half = 0.5F * ImGui::CalcTextSize(words.c_str()).x;
+        list->AddText({x - half, bottom + 4.0F}, ink, words.c_str());
+    }
+}
+
+void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2> view, Choices& choices) {
+    constexpr float margin = 10.0F;
+    const auto smaller = static_cast<float>(std::min(view[0], view[1]));
+    const float edge = std::floor(std::clamp(0.36F * smaller, 120.0F, 420.0F));
+    ImGui::SetNextWindowPos({static_cast<float>(view[0]) - margin, margin}, ImGuiCond_Always, {1.0F, 0.0F});
+    ImGui::SetNextWindowBgAlpha(0.88F);
+    ImGui::Begin("hemicube", nullptr, fixed_window | ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushTextWrapPos(edge + 8.0F);
+    text(fmt::format("Hemicube of patch {}", picture.patch));
+    ImGui::PopTextWrapPos();
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip(
+            "%d texels along an edge. The top is in the middle, the four sides are folded out;\n"
+            "the patch's own plane is all round. Turned about its normal, as it was drawn.\n"
+            "Dark grey: nothing, the environment. Dark red: back faces.",
+            static_cast<int>(picture.resolution));
+    }
+    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), {edge, edge});
+    choice("as shown", false, choices.hemicube_ids);
+    ImGui::SameLine();
+    choice("ids", true, choices.hemicube_ids);
+    if (picture.eyes > 1) {
+        auto eye = static_cast<int>(choices.hemicube_eye) + 1;
+        ImGui::SetNextItemWidth(edge);
+        if (ImGui::SliderInt("##eye", &eye, 1, static_cast<int>(picture.eyes),
+                             fmt::format("eye point %d of {}", picture.eyes).c_str(),
+                             ImGuiSliderFlags_NoInput)) {
+            choices.hemicube_eye = static_cast<std::uint32_t>(eye - 1);
+        }
+    }
+    ImGui::End();
+}
+
+void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view, bool picked) {
+    ImDrawList* list = ImGui::GetBackgroundDrawList();
+    const auto pixel = [&view](const std::array<double, 2>& place) {
+        return ImVec2(static_cast<float>(0.5 * view[0] + place[0] * view[1]),
+                      static_cast<float>((0.5 - place[1]) * view[1]));
+    };
+    const PatchCorners corners = mesh.corners(patch);
+    for (std::size_t k = 0; k < corners.count; ++k) {
+        if (const auto line = orbit.line(corners.points[k], corners.points[(k + 1) % corners.count])) {
+            const ImVec2 a = pixel((*line)[0]);
+            const ImVec2 b = pixel((*line)[1]);
+            list->AddLine(a, b, IM_COL32(0, 0, 0, 255), 4.0F);
+            list->AddLine(a, b, picked ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 80, 200, 255), 2.0F);
+        }
+    }
+}
+
+void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& open) {
+    ImGui::SetNextWindowPos({0.5F * static_cast<float>(view[0]), 0.5F * static_cast<float>(view[1])},
+                            ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowBgAlpha(0.95F);
+    if (!ImGui::Begin("Mouse and keys", &open,
+                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                          ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+        ImGui::End();
+        return;
+    }
+    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+        for (const GuideLine& line : guide(controls)) {
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(line.keys);
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(line.meaning);
+        }
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+void message_window(const std::string& message, std::array<std::uint32_t, 2> view, bool& open) {
+    constexpr float margin = 10.0F;
+    const float width = std::min(620.0F, static_cast<float>(view[0]) - 2.0F * margin);
+    ImGui::SetNextWindowPos({margin, margin});
+    ImGui::SetNextWindowSize({width, 0.0F});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.34F, 0.08F, 0.08F, 0.95F));
+    ImGui::Begin("message", nullptr, fixed_window | ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushTextWrapPos(width - 62.0F);
+    text(message);
+    ImGui::PopTextWrapPos();
+    ImGui::SameLine(width - 54.0F);
+    open = !ImGui::SmallButton("Close");
+    ImGui::End();
+    ImGui::PopStyleColor();
+}
+
+} // namespace hemi::viewer

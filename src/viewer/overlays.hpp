@@ -1,0 +1,33 @@
+#pragma once
+
+#include "display/orbit_camera.hpp"
+#include "viewer/panels.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+/// What lies over the scene. Between Gui::begin() and Gui::end().
+namespace hemi::viewer {
+
+/// The colours of a field, in the lower left of the view.
+void legend(const Field& field, std::array<std::uint32_t, 2> view);
+/// The outline of a patch, in front of everything.
+/// @param picked  else pointed at: another colour
+void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view, bool picked);
+/// A hemicube unfolded, as a texture of the window's context.
+struct HemicubePicture {
+    std::uint32_t texture;
+    std::uint32_t patch;
+    std::uint32_t resolution;
+    std::uint32_t eyes; ///< eye points of the patch
+};
+/// In the upper right of the view, with what it is and how it is coloured.
+void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2> view, Choices& choices);
+/// Mouse and keys.
+void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& open);
+/// What went wrong, in the upper left of the view.
+void message_window(const std::string& message, std::array<std::uint32_t, 2> view, bool& open);
+
+} // namespace hemi::viewer

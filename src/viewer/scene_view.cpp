@@ -1,0 +1,57 @@
+#include "viewer/scene_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hemi::viewer {
+
+void SceneView::show(const Document& document, const Look& look, std::optional<std::uint32_t> picked) {
+    const ViewerInput& input = document.input();
+    const double exposure = document.exposure() * std::exp2(look.stops);
+    const bool unlit = document.lamps_only() && look.quantity == Quantity::picture;
+    field_ = make_field(look, input, document.light(), picked, document.usual_factor());
+    colours_.clear();
+    if (field_) {
+        colours_ = field_colours(*field_, *input.mesh);
+    } else if (look.quantity == Quantity::items) {
+        colours_ = item_colours(*input.mesh);
+    } else if (look.quantity == Quantity::outlines) {
+        colours_ = plain_colours(*input.mesh);
+    } else if (unlit) {
+        colours_ = lamp_colours(*input.mesh, document.light_mesh(), exposure, look.tone_mapping);
+    }
+    Look drawn = look;
+    if (unlit) {
+        drawn.quantity = Quantity::items; // as other colours that are painted
+    }
+    settings_ = picture_settings(drawn, input.picture, exposure, {1, 1});
+    light_ = document.light_mesh();
+    renderer_.upload(colours_.empty() ? light_ : painted(light_, colours_));
+}
+
+std::vector<std::array<float, 3>> SceneView::colours() const {
+    return colours_.empty() ? light_colours(light_, settings_.exposure, settings_.tone_mapping) : colours_;
+}
+
+PictureSettings SceneView::settings(std::array<std::uint32_t, 2> size, std::uint32_t samples) const {
+    PictureSettings settings = settings_;
+    settings.width = std::max(size[0], 1U);
+    settings.height = std::max(size[1], 1U);
+    settings.samples = samples;
+    return settings;
+}
+
+void SceneView::draw(const Camera& camera, SceneTarget& target, std::uint32_t samples) {
+    renderer_.draw(camera, settings(target.size(), samples), target.framebuffer());
+}
+
+Picture SceneView::picture(const Camera& camera, std::array<std::uint32_t, 2> size, std::uint32_t samples) {
+    return renderer_.picture(camera, settings(size, samples));
+}
+
+std::optional<std::uint32_t> SceneView::item(const Camera& camera, std::array<std::uint32_t, 2> size,
+                                             std::uint32_t x, std::uint32_t y) {
+    return renderer_.item(camera, settings(size, 1), x, y);
+}
+
+} // namespace hemi::viewer

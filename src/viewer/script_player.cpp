@@ -1,0 +1,155 @@
+#include "viewer/script_player.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/io/output_file.hpp"
+#include "viewer/material_change.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace hemi::viewer {
+
+namespace {
+
+/// How long things outside may take, seconds.
+constexpr std::chrono::seconds resize_patience{2};
+constexpr std::chrono::seconds change_patience{60};
+
+class Player {
+public:
+    explicit Player(Application& application) : application_(application) {}
+
+    void perform(const DragCommand& drag) {
+        application_.handle(CursorEvent{drag.path[0][0], drag.path[0][1]});
+        application_.handle(ButtonEvent{drag.button, true, drag.shift, drag.control});
+        for (std::size_t i = 1; i < drag.path.size(); ++i) {
+            application_.handle(CursorEvent{drag.path[i][0], drag.path[i][1]});
+        }
+        application_.handle(ButtonEvent{drag.button, false, drag.shift, drag.control});
+    }
+    void perform(const ClickCommand& click) {
+        application_.handle(CursorEvent{click.x, click.y});
+        application_.handle(ButtonEvent{Button::left, true, false});
+        application_.handle(ButtonEvent{Button::left, false, false});
+    }
+    void perform(const MoveCommand& move) { application_.handle(CursorEvent{move.x, move.y}); }
+    void perform(const ScrollCommand& scroll) {
+        application_.handle(CursorEvent{scroll.x, scroll.y});
+        application_.handle(ScrollEvent{scroll.amount});
+    }
+    void perform(const KeyCommand& key) {
+        application_.handle(key.event);
+        if (key.event.key == 'G') {
+            application_.wait_for_work();
+        }
+    }
+    void perform(const ShowCommand& show) {
+        const Quantity quantity = quantity_by_word(show.quantity).value_or(Quantity::picture);
+        Choices& choices = application_.choices();
+        if (const char* problem = why_not(quantity, application_.document().input(), choices.picked)) {
+            throw InvalidArgument(fmt::format("show {}: {}", show.quantity, problem));
+        }
+        choices.look.quantity = quantity;
+        application_.settle();
+    }
+    void perform(const SetCommand& set) {
+        apply_set(set, application_.document().input(), application_.choices());
+        application_.settle();
+        application_.wait_for_work();
+    }
+    void perform(const FovCommand& fov) {
+        application_.navigator().orbit().set_fov(fov.degrees);
+        application_.refresh();
+    }
+    void perform(const ResizeCommand& resize) {
+        Window& window = application_.window();
+        window.resize(resize.width, resize.height);
+        // A window manager takes its time, or has its own ideas.
+        const auto late = std::chrono::steady_clock::now() + resize_patience;
+        while (window.size() != std::array{resize.width, resize.height} &&
+               std::chrono::steady_clock::now() < late && !application_.closing()) {
+            application_.watch(0.05);
+        }
+        application_.refresh();
+        application_.settle();
+    }
+    void perform(const MinimiseCommand& command) {
+        application_.window().minimise(command.minimised);
+        application_.watch(0.2);
+    }
+    void perform(const ScreenshotCommand& command) {
+        application_.screenshot(command.path, command.size[0] == 0 ? application_.view_size() : command.size,
+                                command.samples);
+    }
+    void perform(const WindowshotCommand& command) { application_.windowshot(command.path); }
+    void perform(const ReportCommand& command) { application_.report(command.path); }
+    void perform(const CommandLineCommand& command) {
+        io::OutputFile file(command.path);
+        file.write(application_.command_line() + "\n");
+        file.commit();
+    }
+    void perform(const SaveResultCommand& command) { application_.save_result(command.path); }
+    void perform(const SaveCameraCommand&) { application_.save_camera(); }
+    void perform(const DropCommand& drop) {
+        application_.handle(DropEvent{drop.path});
+        application_.wait_for_work();
+    }
+    void perform(const ReloadCommand&) {
+        application_.open(application_.document().input().file);
+        application_.wait_for_work();
+    }
+    void perform(const ChangedCommand&) {
+        const auto late = std::chrono::steady_clock::now() + change_patience;
+        while (!application_.closing() && !application_.file_changed()) {
+            if (std::chrono::steady_clock::now() > late) {
+                throw IoError("the file does not change");
+            }
+            application_.watch(0.05);
+        }
+        perform(ReloadCommand{});
+    }
+    void perform(const LiveCommand&) {}
+    void perform(const PreviewCommand&) {
+        while (!application_.closing() && application_.document().lamps_only() &&
+               application_.document().busy()) {
+            application_.watch(0.05);
+            application_.update();
+        }
+    }
+    void perform(const WaitCommand&) { application_.wait_for_work(); }
+    void perform(const CancelCommand&) {
+        application_.document().cancel();
+        application_.wait_for_work();
+    }
+    void perform(const QuitCommand&) { application_.handle(CloseEvent{}); }
+
+private:
+    Application& application_;
+};
+
+} // namespace
+
+void play(const std::vector<ScriptCommand>& script, const std::string& file, Application& application) {
+    if (script.empty() || !std::holds_alternative<LiveCommand>(script[0].action)) {
+        application.wait_for_work();
+    }
+    Player player(application);
+    for (const ScriptCommand& command : script) {
+        if (application.closing()) {
+            return;
+        }
+        try {
+            std::visit([&player](const auto& action) { player.perform(action); }, command.action);
+        } catch (const IoError& error) {
+            throw IoError(fmt::format("{}:{}: {}", file, command.line, error.what()));
+        }
+        application.watch(0.0);
+        application.update();
+        if (!application.closing()) {
+            application.draw();
+        }
+    }
+}
+
+} // namespace hemi::viewer

@@ -1,0 +1,68 @@
+#include "hemi/io/scene_writer.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/io/scene_reader.hpp"
+#include "io/io_fixtures.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace hemi;
+using hemi::io_test::Folder;
+
+namespace {
+
+const std::string surfaces =
+    R"("surfaces": [{"name": "a \"camera\": {", "material": "m", "polygon": [[0,0,0],[1,0,0],[0,1,0]]}])";
+
+Camera camera() {
+    return {{0.1, -2.5, 1e-3}, {1.0 / 3.0, 2.0, 0.5}, {0.0, 0.6, 0.8}, 33.3, true};
+}
+
+void check_same(const std::optional<Camera>& read) {
+    REQUIRE(read);
+    CHECK(read->eye == camera().eye);
+    CHECK(read->target == camera().target);
+    CHECK(read->up == camera().up);
+    CHECK(read->fov == camera().fov);
+    CHECK(read->orthographic);
+}
+
+} // namespace
+
+TEST_CASE("write_scene_camera: replaces the camera and nothing else", "[io]") {
+    const std::string before = R"({"hemi": 1,  "materials": {"m": {"reflectance": 0.5}},
+  )" + surfaces + ",\n  \"camera\" :";
+    const std::string after = "  ,\n\t\"name\": \"camera\" }\n\n";
+    const Folder folder;
+    const auto path =
+        folder.write("scene.json", before + R"( {"eye": [0,0,4], "target": [0,0,0], "up": [0,1,0]})" + after);
+    io::write_scene_camera(path, camera());
+    Diagnostics diagnostics;
+    check_same(io::read_scene(path, {}, diagnostics).camera);
+    const std::string text = io::read_file(path);
+    CHECK(text.substr(0, before.size()) == before);
+    CHECK(text.substr(text.size() - after.size()) == after);
+}
+
+TEST_CASE("write_scene_camera: adds a camera behind all else", "[io]") {
+    const std::string before = R"({"hemi": 1, "materials": {"m": {"reflectance": 0.5}}, )" + surfaces;
+    const Folder folder;
+    const auto path = folder.write("scene.json", before + "\n}\n");
+    io::write_scene_camera(path, camera());
+    Diagnostics diagnostics;
+    check_same(io::read_scene(path, {}, diagnostics).camera);
+    CHECK(io::read_file(path).substr(0, before.size()) == before);
+    io::write_scene_camera(path, camera());
+    check_same(io::read_scene(path, {}, diagnostics).camera);
+}
+
+TEST_CASE("write_scene_camera: refuses what is no JSON scene, and leaves it alone", "[io]") {
+    const Folder folder;
+    const auto broken = folder.write("broken.json", R"({"hemi": 1, )");
+    CHECK_THROWS_AS(io::write_scene_camera(broken, camera()), ParseError);
+    CHECK(io::read_file(broken) == R"({"hemi": 1, )");
+    CHECK_THROWS_AS(io::write_scene_camera(folder.write("list.json", "[1]"), camera()), InputError);
+    CHECK_THROWS_AS(io::write_scene_camera(folder.write("scene.obj", "v 0 0 0\n"), camera()),
+                    InvalidArgument);
+    CHECK_THROWS_AS(io::write_scene_camera("/nowhere/scene.json", camera()), InputError);
+}

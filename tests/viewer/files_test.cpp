@@ -1,0 +1,146 @@
+#include "viewer/workplace.hpp"
+
+using hemi::viewer_test::Workplace;
+
+namespace {
+
+const std::string small = "--size 300x200 --preset plain --resolution 32";
+
+/// Runs commands for a shell while the window is open: each of `steps` once the file named before it is
+/// there.
+int view_while(const Workplace& place, const std::string& script,
+               const std::vector<std::pair<std::string, std::string>>& steps) {
+    place.write("script.txt", script);
+    std::string beside;
+    for (const auto& [file, step] : steps) {
+        beside +=
+            fmt::format("for k in $(seq 600); do test -e {} && break; sleep 0.05; done; {}; ", file, step);
+    }
+    return place.run(fmt::format("{{ ({}) & {}; }}", beside,
+                                 Workplace::view_command("room.json", "--device osmesa " + small)));
+}
+
+int run_in_shell(const Workplace& place, const std::string& file) {
+    return place.run(fmt::format("PATH='{}':$PATH sh {}",
+                                 std::filesystem::path(HEMI_PROGRAM).parent_path().string(), file));
+}
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+    REQUIRE(text.find(from) != std::string::npos);
+    text.replace(text.find(from), from.size(), to);
+}
+
+} // namespace
+
+TEST_CASE("Viewer: follows the file, and keeps the last good picture when that is broken", "[viewer][gl]") {
+    const Workplace place;
+    std::string dim = place.read("room.json");
+    replace(dim, "[20, 18, 12]", "[2, 1.8, 1.2]");
+    place.write("dim.json", dim);
+    place.write("broken.json", dim.substr(0, dim.size() / 2));
+    const int status = view_while(place,
+                                  "drag left 150 100 190 80\nclick 150 100\nreport first.json\n"
+                                  "screenshot first.png\n"
+                                  "changed\nreport broken_report.json\nscreenshot kept.png\n"
+                                  "changed\nreport second.json\nscreenshot second.png\n",
+                                  {{"first.png", "mv broken.json room.json"},
+                                   {"kept.png", "cp dim.json new.json; mv new.json room.json"}});
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto first = place.json("first.json");
+    const auto broken = place.json("broken_report.json");
+    const auto second = place.json("second.json");
+    CHECK(first["message"] == "");
+    CHECK(broken["message"].get<std::string>().find("room.json:") != std::string::npos);
+    CHECK(place.read("kept.png") == place.read("first.png"));
+    CHECK(second["message"] == "");
+    CHECK(second["camera"] == first["camera"]);
+    CHECK(second["picked"] == first["picked"]);
+    CHECK(second["radiosity"][0][0].get<double>() ==
+          Approx(0.1 * first["radiosity"][0][0].get<double>()).epsilon(1e-5));
+}
+
+TEST_CASE("Viewer: a file that is dropped on the window is opened", "[viewer][gl]") {
+    const Workplace place;
+    std::string other = place.read("room.json");
+    replace(other, R"("patches": [6, 6])", R"("patches": [2, 3])");
+    place.write("other room.json", other);
+    const int status =
+        place.view("click 150 100\nsave-result room.hres\nscreenshot room.png\n"
+                   "drop other room.json\nreport other.json\n"
+                   "drop room.hres\nreport result.json\nscreenshot result.png\n"
+                   "drop missing.obj\nreport missing.json\ndrop script.txt\nreport wrong.json\n",
+                   small);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    CHECK(place.json("other.json")["radiosity"].size() == 4 * 36 + 6);
+    CHECK(place.json("other.json")["picked"].is_null());
+    CHECK(place.json("result.json")["radiosity"].size() == 5 * 36);
+    CHECK(place.read("result.png") == place.read("room.png"));
+    CHECK(place.json("missing.json")["message"].get<std::string>().find("missing.obj") != std::string::npos);
+    CHECK(place.json("wrong.json")["message"].get<std::string>().find("script.txt") != std::string::npos);
+    CHECK(place.json("wrong.json")["radiosity"].size() == 5 * 36);
+}
+
+TEST_CASE("Viewer: a result that is saved is drawn by render as the window shows it", "[viewer][gl]") {
+    const Workplace place;
+    const int status =
+        place.view("set reflectance 0.3,0.5,0.6 white\ndrag left 150 100 190 80\nkey 5\nkey B\n"
+                   "key E\nkey S\nkey W\nfov 25\nscreenshot 200x120 2 window.png\n"
+                   "save-result changed.hres\ncommand command.txt\nreport light.json\n",
+                   small);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    // The command draws what the window shows, which is larger and finer.
+    std::string command = place.read("command.txt");
+    CHECK(command.starts_with("hemi render changed.hres -o room.png --size 300x200 "));
+    replace(command, "--size 300x200", "--size 200x120 --samples 2 --device osmesa");
+    place.write("draw.sh", command);
+    REQUIRE(run_in_shell(place, "draw.sh") == 0);
+    CHECK(place.read("room.png") == place.read("window.png"));
+    REQUIRE(place.run(fmt::format("'{}' info changed.hres", HEMI_PROGRAM)) == 0);
+}
+
+TEST_CASE("Viewer: the command line it copies draws the same picture from the scene", "[viewer][gl]") {
+    const Workplace place;
+    const int status =
+        place.view("drag left 150 100 190 80\nkey T\nkey E\nscreenshot window.png\ncommand command.txt\n",
+                   small + " --seed 3 --environment 1,2,0.5");
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const std::string command = place.read("command.txt");
+    CHECK(command.starts_with("hemi solve room.json "));
+    CHECK(command.find("--script") == std::string::npos);
+    place.write("draw.sh", command);
+    REQUIRE(run_in_shell(place, "draw.sh") == 0);
+    CHECK(place.read("room.png") == place.read("window.png"));
+    CHECK(place.view("show items\ncommand a.txt\n", small) == 2);
+    CHECK(place.view("set exitance 1 white\ncommand a.txt\n", small) == 2);
+}
+
+TEST_CASE("Viewer: a camera that is saved into the scene is where it begins next time", "[viewer][gl]") {
+    const Workplace place;
+    REQUIRE(place.view("drag left 150 100 190 80\nscroll 100 100 2\nfov 50\nsave-camera\nreport saved.json\n"
+                       "screenshot saved.png\nkey 7\n",
+                       small) == 0);
+    REQUIRE(place.view("report begun.json\nscreenshot begun.png\nkey 7\nkey R\nscreenshot reset.png\n",
+                       small) == 0);
+    CHECK(place.json("begun.json")["camera"] == place.json("saved.json")["camera"]);
+    CHECK(place.read("begun.png") == place.read("saved.png"));
+    CHECK(place.read("reset.png") == place.read("saved.png"));
+    CHECK(place.json("begun.json")["camera"]["fov"] == 50.0);
+}
+
+TEST_CASE("Viewer: screenshots have the size and the samples that are asked for", "[viewer][gl]") {
+    const Workplace place;
+    REQUIRE(
+        place.view("screenshot 640x77 1 one.png\nscreenshot 640x77 eight.png\nscreenshot 640x77 8 many.png\n"
+                   "screenshot 640x.png\n",
+                   small) == 0);
+    CHECK(place.read("one.png").substr(16, 8) == std::string("\0\0\x02\x80\0\0\0\x4D", 8));
+    CHECK(place.read("one.png") != place.read("many.png"));
+    CHECK(place.read("eight.png") != place.read("many.png"));
+    CHECK(place.has("640x.png"));
+    CHECK(place.view("screenshot 0x77 a.png\n", small) == 3);
+    CHECK(place.view("screenshot 10x77\n", small) == 3);
+}
