@@ -1,6 +1,7 @@
 #include "cli/arguments.hpp"
 
 #include "cli/refused_words.hpp"
+#include "cli/version.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
 #include "hemi/io/scene_reader.hpp"
@@ -68,7 +69,7 @@ void add_positional(CLI::App& app, const std::string& name, std::filesystem::pat
 }
 
 void add_common(CLI::App& app, CommonOptions& common, bool json = true) {
-    app.set_version_flag("--version", "hemi " HEMI_VERSION);
+    app.set_version_flag("--version", version_text(), "version, revision, compiler and OpenGL");
     Options options(app, "General");
     if (json) {
         options.flag("--json", common.json, "one JSON object on stdout instead of text");
@@ -570,7 +571,7 @@ void add_command(CLI::App& app, const std::string& name, const std::string& help
 std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* argv) {
     CLI::App app("hemi: form factors by OpenGL hemicubes, radiosity, pictures", "hemi");
     app.set_help_flag("-h,--help", "this text");
-    app.set_version_flag("--version", "hemi " HEMI_VERSION);
+    app.set_version_flag("--version", version_text(), "version, revision, compiler and OpenGL");
     app.footer("Every command has its own --help. Exit status: 0 ok, 1 failure, 2 usage, 3 bad input,\n"
                "4 no usable OpenGL device, 5 a check is out of tolerance, 130 interrupted.\n\n"
                "Examples:\n"
@@ -607,7 +608,7 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
         const auto commands = app.get_subcommands();
         return Answer{commands.empty() ? help_text(app) : help_text(*commands.front(), "hemi")};
     } catch (const CLI::CallForVersion& version) {
-        return Answer{std::string(version.what()) + "\n"};
+        return Answer{version.what()};
     } catch (const CLI::ParseError& error) {
         const auto commands = app.get_subcommands();
         if (commands.empty()) {

@@ -163,4 +163,8 @@ void check_errors(const char* where) {
     }
 }
 
+const char* loader_version() noexcept {
+    return "glad " GLAD_GENERATOR_VERSION;
+}
+
 } // namespace hemi::gl

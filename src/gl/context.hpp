@@ -57,6 +57,9 @@ void check_device_name(const std::string& device);
 /// @throws GlError
 void load_functions(const char* backend, void (*(*loader)(const char*))());
 
+/// What made the functions' loader: "glad 2.0.2".
+[[nodiscard]] const char* loader_version() noexcept;
+
 /// Throws GlError naming `where` if the current context has a pending error.
 void check_errors(const char* where);
 

@@ -53,6 +53,10 @@ class NpzReader {
 public:
     explicit NpzReader(const std::filesystem::path& path)
         : file_(path.string()), archive_(nullptr, &zip_discard) {
+        std::error_code ignored;
+        if (std::filesystem::is_directory(path, ignored)) {
+            fail("cannot be read: Is a directory");
+        }
         int code = 0;
         archive_.reset(zip_open(path.c_str(), ZIP_RDONLY, &code));
         if (!archive_) {

@@ -23,6 +23,12 @@ TEST_CASE("Command line: help and version answer on stdout at every level", "[cl
     const Outcome version = run_hemi({"--version"});
     CHECK(version.status == 0);
     CHECK(version.out.rfind("hemi ", 0) == 0);
+    for (const char* name : {"\nrevision  ", "\ncompiler  ", "\nOpenGL    4.5 core, loader glad 2."}) {
+        CHECK(version.out_has(name));
+    }
+    CHECK(version.out.ends_with("\n"));
+    CHECK_FALSE(version.out.ends_with("\n\n"));
+    CHECK(run_hemi({"solve", "--version"}).out == version.out);
 
     const Outcome help = run_hemi({"--help"});
     CHECK(help.status == 0);

@@ -1,0 +1,261 @@
+#include "hemi/core/error.hpp"
+#include "hemi/io/baked_mesh_file.hpp"
+#include "hemi/io/factor_file.hpp"
+#include "hemi/io/output_file.hpp"
+#include "hemi/io/result_file.hpp"
+#include "hemi/io/scene_reader.hpp"
+#include "io/row_journal.hpp"
+
+#include <zlib.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+/// Gives bytes to one reader, as a file. Whatever they are, it must read them or throw InputError.
+/// hemi_fuzz --reader=NAME [libFuzzer's options] CORPUS…;  hemi_fuzz --list;  hemi_fuzz --seeds=FOLDER
+/// writes a small sound file, or more, for every reader into a folder of its name.
+namespace {
+
+namespace fs = std::filesystem;
+using namespace hemi;
+
+struct Reader {
+    std::string file; ///< the name by which the bytes are read
+    std::function<void(const fs::path&)> read;
+    std::function<void(const fs::path& folder)> seed; ///< besides the project's own files; may be empty
+    bool has_checksums = false;
+};
+
+void write(const fs::path& path, std::string_view text) {
+    io::OutputFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+void read_as_scene(const fs::path& path) {
+    Diagnostics diagnostics;
+    (void)io::read_scene(path, {}, diagnostics);
+    (void)io::read_scene(path, {.skip_degenerate = true}, diagnostics);
+}
+
+FormFactorMatrix small_matrix(bool visibility) {
+    FormFactorMatrix matrix(2);
+    RowBlock block;
+    block.begin = {0, 1, 2};
+    block.columns = {1, 0};
+    block.values = {0.25f, 0.5f};
+    block.visibility = visibility ? std::vector<std::uint8_t>{255, 100} : std::vector<std::uint8_t>{};
+    block.environment = {0.75, 0.5};
+    block.blocked = {0.0, 0.0};
+    block.known = {1, 1};
+    matrix.set_block(std::move(block));
+    return matrix;
+}
+
+/// Two patches that face each other.
+Scene small_scene() {
+    Scene scene;
+    scene.materials = {{"white", {0.5}, {1.0}}};
+    scene.groups = {"floor", "ceiling"};
+    scene.environment = {0.0};
+    Surface floor;
+    floor.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
+    Surface ceiling;
+    ceiling.vertices = {Vec3(0, 0, 1), Vec3(0, 1, 1), Vec3(1, 1, 1), Vec3(1, 0, 1)};
+    ceiling.group = 1;
+    scene.surfaces = {floor, ceiling};
+    return scene;
+}
+
+void seed_hff(const fs::path& folder) {
+    io::FactorFile file;
+    file.factors = small_matrix(true);
+    file.areas = {1.0, 0.5};
+    file.groups = {"floor", "ceiling"};
+    file.group_of = {0, 1};
+    file.contacts = {1};
+    io::write_hff(folder / "plain.hff", file);
+    file.reference = small_matrix(true);
+    file.error = FactorError{2, 1e-5, 1e-3, 1e-4, 1e-2, {0.1, 0.2}};
+    io::write_hff(folder / "judged.hff", file);
+}
+
+void seed_hres(const fs::path& folder) {
+    io::ResultFile result;
+    result.scene = small_scene();
+    result.radiosity = {1.5, 1.25};
+    result.irradiance = {1.0, 0.5};
+    result.row_sum = result.environment = {0.5, 0.5};
+    result.blocked = {0.0, 0.0};
+    io::write_hres(folder / "a.hres", result);
+}
+
+void seed_rows(const fs::path& folder) {
+    io::RowJournal journal(folder / "a", false);
+    journal.start({{"seed", "0"}}, 2, {});
+    journal.append(small_matrix(true).blocks().front());
+}
+
+void seed_glb(const fs::path& folder) {
+    const PatchMesh mesh(small_scene());
+    io::write_baked_glb(folder / "a.glb", mesh, std::vector<float>(2 * 12, 0.5f), 1.0);
+}
+
+constexpr std::string_view gltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"name":"floor","mesh":0,"children":[1],"rotation":[0,0,0,1]},{"camera":0,"translation":[0,0,2]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],
+"materials":[{"name":"paint","doubleSided":true,"emissiveFactor":[1,1,1],"pbrMetallicRoughness":
+{"baseColorFactor":[0.5,0.25,0.75,1]},"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":5}}}],
+"cameras":[{"type":"perspective","perspective":{"yfov":0.8,"znear":0.1}}],
+"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":4},
+{"bufferView":1,"componentType":5123,"type":"SCALAR","count":6}],
+"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
+"buffers":[{"byteLength":60,"uri":"square.bin"}]})";
+
+constexpr std::string_view vs3 = "T Two squares\n! a comment\nC encl=0 list=3\nF 3\n"
+                                 "V 1 0 0 0\nV 2 1 0 0\nV 3 1 1 0\nV 4 0 1 0\n"
+                                 "V 5 0. 0. 1.\nV 6 1 0 1\nv 7 1.e0 1 1\nV 8 0 1 1\n"
+                                 "S 1  1  2  3  4 0 0 0.5  low\ns 2  7  6  5  8 0 1 0.75 high\n"
+                                 "O 3  1 2 3  0\nEnd of data\n";
+
+constexpr std::string_view mtl = "newmtl white\nKd 0.5 0.5 0.5\nKe 1 2 3\n# end\nnewmtl dark\nKd 0\n";
+
+/// Companions of the file that is fuzzed: what it may name.
+void write_companions(const fs::path& folder) {
+    std::string square(60, '\0');
+    const float corners[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    const std::uint16_t indices[6] = {0, 1, 2, 0, 2, 3};
+    std::memcpy(square.data(), corners, sizeof corners);
+    std::memcpy(square.data() + 48, indices, sizeof indices);
+    write(folder / "square.bin", square);
+    write(folder / "white.mtl", mtl);
+    const std::string faces = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl white\nf 1 2 3 4\n";
+    write(folder / "square.obj", "mtllib white.mtl\n" + faces);
+    write(folder / "fuzzed.obj", "mtllib fuzzed.mtl\n" + faces);
+}
+
+const std::map<std::string, Reader> readers{
+    {"json",
+     {"fuzzed.json", read_as_scene,
+      [](const fs::path& folder) {
+          write(folder / "mesh.json", R"({"hemi":1,"materials":{"w":{"reflectance":0.5}},"surfaces":[
+{"mesh":"square.obj","material":"w","transform":{"scale":2,"rotate":[0,90,0],"translate":[1,2,3]}}]})");
+      }}},
+    {"obj",
+     {"fuzzed.obj", read_as_scene,
+      [](const fs::path& folder) {
+          write(folder / "material.obj",
+                "mtllib white.mtl\no a b\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv .5 2 0\nv 0 1 0\nusemtl white\n"
+                "f 1/1 2//2 \\\n3/3/3 4 5\ng\nf -1 -2 -3\n");
+      }}},
+    {"mtl",
+     {"fuzzed.mtl", [](const fs::path& path) { read_as_scene(path.parent_path() / "fuzzed.obj"); },
+      [](const fs::path& folder) { write(folder / "a.mtl", mtl); }}},
+    {"gltf", {"fuzzed.gltf", read_as_scene, [](const fs::path& folder) { write(folder / "a.gltf", gltf); }}},
+    {"glb", {"fuzzed.glb", read_as_scene, seed_glb}},
+    {"vs3", {"fuzzed.vs3", read_as_scene, [](const fs::path& folder) { write(folder / "a.vs3", vs3); }}},
+    {"hff", {"fuzzed.hff", [](const fs::path& path) { (void)io::read_hff(path); }, seed_hff, true}},
+    {"hres", {"fuzzed.hres", [](const fs::path& path) { (void)io::read_hres(path); }, seed_hres, true}},
+    {"rows",
+     {"fuzzed.rows",
+      [](const fs::path& path) {
+          io::RowJournal journal(path.parent_path() / "fuzzed", true);
+          journal.start({{"seed", "0"}}, 2, [](std::uint32_t, const RowView& row) { (void)row.sum(); });
+      },
+      seed_rows, true}},
+    {"mtx",
+     {"fuzzed.mtx", [](const fs::path& path) { (void)io::read_mtx(path); },
+      [](const fs::path& folder) { io::write_mtx(folder / "a.mtx", small_matrix(false)); }}},
+    {"csv",
+     {"fuzzed.csv", [](const fs::path& path) { (void)io::read_csv(path); },
+      [](const fs::path& folder) { io::write_csv(folder / "a.csv", small_matrix(false)); }}},
+    {"npz",
+     {"fuzzed.npz", [](const fs::path& path) { (void)io::read_npz(path); },
+      [](const fs::path& folder) { io::write_npz(folder / "a.npz", small_matrix(false)); }}},
+};
+
+/// Makes the checksums of a chunk file right, so that what is behind them is reached.
+void seal(std::string& bytes) {
+    for (std::size_t start = 16; start + 16 <= bytes.size();) {
+        std::uint64_t length = 0;
+        std::memcpy(&length, bytes.data() + start + 8, 8);
+        if (length > bytes.size() - start - 16) {
+            return;
+        }
+        const auto* data = reinterpret_cast<const unsigned char*>(bytes.data()) + start;
+        const auto crc =
+            static_cast<std::uint32_t>(crc32_z(crc32_z(crc32_z(0, data, 4), data + 8, 8), data + 16, length));
+        std::memcpy(bytes.data() + start + 4, &crc, 4);
+        start += 16 + (length + 7) / 8 * 8;
+    }
+}
+
+const Reader* chosen = nullptr;
+fs::path workplace;
+
+} // namespace
+
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+    for (int k = 1; k < *argc; ++k) {
+        const std::string_view word = (*argv)[k];
+        if (word == "--list") {
+            for (const auto& [name, reader] : readers) {
+                std::puts(name.c_str());
+            }
+            std::exit(0);
+        }
+        if (word.starts_with("--seeds=")) {
+            for (const auto& [name, reader] : readers) {
+                const fs::path folder = fs::path(word.substr(8)) / name;
+                fs::create_directories(folder);
+                reader.seed(folder);
+            }
+            std::exit(0);
+        }
+        if (word.starts_with("--reader=")) {
+            const auto found = readers.find(std::string(word.substr(9)));
+            chosen = found == readers.end() ? nullptr : &found->second;
+        }
+    }
+    if (chosen == nullptr) {
+        std::fputs("hemi_fuzz: --reader=NAME is missing, or there is no such reader (--list)\n", stderr);
+        std::exit(2);
+    }
+    std::string name = (fs::temp_directory_path() / "hemi-fuzz-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+        std::abort();
+    }
+    workplace = name;
+    write_companions(workplace);
+    std::atexit([] {
+        std::error_code ignored;
+        fs::remove_all(workplace, ignored);
+    });
+    return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    std::string bytes(reinterpret_cast<const char*>(data), size);
+    if (chosen->has_checksums) {
+        seal(bytes);
+    }
+    const fs::path path = workplace / chosen->file;
+    std::FILE* file = std::fopen(path.c_str(), "wb");
+    if (file == nullptr || std::fwrite(bytes.data(), 1, size, file) != size || std::fclose(file) != 0) {
+        std::abort();
+    }
+    try {
+        chosen->read(path);
+    } catch (const InputError&) { // anything else is a bug
+    } catch (const IoError&) {    // a journal that is none
+        if (chosen->file != "fuzzed.rows") {
+            throw;
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,185 @@
+"""Reads hemi's files into numpy arrays and scipy matrices.
+
+>>> import hemi_files
+>>> file = hemi_files.read_hff("box.hff")
+>>> file.factors[12].toarray()            # F(12, j): what leaves patch 12 and arrives at j
+>>> patches = hemi_files.read_table("patches.csv")
+>>> patches["area"], patches["group"]
+
+Needs python3-numpy and python3-scipy. Index i is the patch that light leaves, j where it arrives; both from 0.
+"""
+
+import csv
+import dataclasses
+import json
+import struct
+import zlib
+
+import numpy
+import scipy.io
+import scipy.sparse
+
+_ALIGNMENT = 8
+
+
+class FileError(ValueError):
+    """A file is not what it should be. The message names it and the place."""
+
+
+@dataclasses.dataclass
+class Factors:
+    """Form factors with what belongs to them: the content of a `.hff`.
+
+    factors      scipy.sparse.csr_matrix, N x N, float32, as computed: `hemi convert F.hff F.npz` writes them repaired
+    visibility   uint8 an entry of `factors.data`, 255: nothing hidden, else 254ths; None where it is not known
+    known        bool, N: rows that were computed
+    environment  float64, N: share of a row that meets nothing
+    blocked      float64, N: share that meets the backs of one-sided surfaces
+    areas        float64, N
+    groups       names
+    group_of     uint32, N: index into groups
+    settings     dict: preset, method, resolution, eye_points, seed, renderer, enclosure, geometry, error ...
+    """
+
+    factors: scipy.sparse.csr_matrix
+    visibility: numpy.ndarray
+    known: numpy.ndarray
+    environment: numpy.ndarray
+    blocked: numpy.ndarray
+    areas: numpy.ndarray
+    groups: list
+    group_of: numpy.ndarray
+    settings: dict
+
+    def by_group(self):
+        """F between groups, area-weighted: [g, h] is the share of what leaves g that arrives at h."""
+        members = scipy.sparse.csr_matrix(
+            (numpy.ones(len(self.areas)), (self.group_of, numpy.arange(len(self.areas)))),
+            shape=(len(self.groups), len(self.areas)))
+        leaving = members.multiply(self.areas[numpy.newaxis, :])
+        sums = (leaving @ self.factors.astype(numpy.float64) @ members.T).toarray()
+        return sums / (members @ self.areas)[:, numpy.newaxis]
+
+
+def _chunks(path, magic, version):
+    """Tag and payload of every chunk of one of hemi's binary files, checksums tested."""
+    with open(path, "rb") as file:
+        start = file.read(16)
+        if len(start) < 16 or start[:8] != magic:
+            raise FileError(f"{path}: does not start as such a file")
+        if struct.unpack("<II", start[8:]) != (version, 0):
+            raise FileError(f"{path}: version {struct.unpack('<I', start[8:12])[0]}; {version} can be read")
+        while True:
+            head = file.read(16)
+            if len(head) < 16:
+                raise FileError(f"{path}: cut short at byte {file.tell()}")
+            tag, checksum, length = struct.unpack("<4sIQ", head)
+            payload = file.read(length)
+            if len(payload) < length:
+                raise FileError(f"{path}: chunk {tag.decode('ascii', 'replace')}: cut short")
+            if zlib.crc32(payload, zlib.crc32(head[8:], zlib.crc32(head[:4]))) != checksum:
+                raise FileError(f"{path}: chunk {tag.decode('ascii', 'replace')}: damaged")
+            file.read(-length % _ALIGNMENT)
+            if tag == b"END ":
+                return
+            yield tag, payload
+
+
+class _Payload:
+    def __init__(self, path, payload):
+        self.path, self.payload, self.used = path, payload, 0
+
+    def take(self, dtype, count):
+        size = numpy.dtype(dtype).itemsize * int(count)
+        if size > len(self.payload) - self.used:
+            raise FileError(f"{self.path}: a chunk is shorter than its own counts say")
+        values = numpy.frombuffer(self.payload, dtype, int(count), self.used)
+        self.used += size
+        return values
+
+
+def _take_rows(path, payload):
+    rows = _Payload(path, payload)
+    _, count = rows.take("<u4", 2)
+    entries, visibilities = rows.take("<u8", 2)
+    return {"begin": rows.take("<u8", count + 1), "environment": rows.take("<f8", count),
+            "blocked": rows.take("<f8", count), "columns": rows.take("<u4", entries),
+            "values": rows.take("<f4", entries), "visibility": rows.take("u1", visibilities),
+            "known": rows.take("u1", count).astype(bool)}
+
+
+def read_hff(path):
+    """The Factors in a `.hff`. Raises FileError if it is none."""
+    head, areas, group_of, blocks = None, None, None, []
+    for tag, payload in _chunks(path, b"HEMIFF\r\n", 3):
+        if tag == b"HEAD":
+            head = json.loads(payload)
+        elif tag == b"AREA":
+            areas = _Payload(path, payload).take("<f8", head["size"])
+        elif tag == b"GRUP":
+            group_of = _Payload(path, payload).take("<u4", head["size"])
+        elif tag == b"ROWS":
+            blocks.append(_take_rows(path, payload))
+    size = head["size"]
+
+    def joined(name, dtype):
+        return numpy.concatenate([block[name] for block in blocks] or [numpy.empty(0, dtype)])
+
+    begin = numpy.zeros(size + 1, numpy.int64)
+    begin[1:] = numpy.cumsum(numpy.concatenate(
+        [numpy.diff(block["begin"].astype(numpy.int64)) for block in blocks] or [numpy.empty(0, numpy.int64)]))
+    values = joined("values", "<f4")
+    visibility = joined("visibility", "u1")
+    return Factors(
+        factors=scipy.sparse.csr_matrix((values, joined("columns", "<u4"), begin), shape=(size, size)),
+        visibility=visibility if len(visibility) == len(values) else None,
+        known=joined("known", bool), environment=joined("environment", "<f8"), blocked=joined("blocked", "<f8"),
+        areas=areas, groups=head["groups"], group_of=group_of,
+        settings={name: value for name, value in head.items() if name not in ("size", "groups", "block_rows")})
+
+
+def read_factors(path):
+    """F as a scipy.sparse.csr_matrix, from `.hff` (as computed), `.npz`, `.mtx` or `.csv` (all repaired)."""
+    extension = str(path).rsplit(".", 1)[-1].lower()
+    if extension == "hff":
+        return read_hff(path).factors
+    if extension == "npz":
+        return scipy.sparse.load_npz(path)
+    if extension == "mtx":
+        return scipy.io.mmread(path).tocsr()
+    if extension == "csv":
+        triples = numpy.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
+        size = int(triples[:, :2].max()) + 1
+        columns = (triples[:, 2], (triples[:, 0].astype(int), triples[:, 1].astype(int)))
+        return scipy.sparse.csr_matrix(columns, shape=(size, size))
+    raise FileError(f"{path}: form factors end in .hff, .npz, .mtx or .csv")
+
+
+def read_table(path):
+    """A table of patches (`--patches`, `--radiosity`): column name -> array, `group` as text, all else float64."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    if not rows or rows[0][:2] != ["index", "group"]:
+        raise FileError(f"{path}: is no table of patches: its first line must begin with index,group")
+    columns = list(zip(*rows[1:])) or [()] * len(rows[0])
+    return {name: numpy.array(values, dtype=str if name == "group" else numpy.float64)
+            for name, values in zip(rows[0], columns)}
+
+
+def read_json(path):
+    """What `--json` printed, its lists of numbers as arrays."""
+    with open(path, encoding="utf-8") as file:
+        document = json.load(file)
+
+    def convert(value):
+        if isinstance(value, dict):
+            return {name: convert(item) for name, item in value.items()}
+        if isinstance(value, list):
+            try:
+                array = numpy.array(value, dtype=numpy.float64)
+            except (TypeError, ValueError):
+                return [convert(item) for item in value]
+            return array if array.size else value
+        return value
+
+    return convert(document)
