@@ -46,9 +46,10 @@ FormFactorMatrix rows_of(const LoadedScene& loaded, const Contender& contender,
         rows_taken = watch.seconds();
         return !interrupted();
     };
+    const auto go_on = [](std::size_t, std::size_t) { return !interrupted(); };
     const bool hybrid = !contender.yardstick && plan.hybrid;
     FormFactorMatrix rows = hybrid ? compute_hybrid(*provider, loaded.mesh, patches, *plan.hybrid,
-                                                    loaded.scene.enclosure, rows_done)
+                                                    loaded.scene.enclosure, rows_done, go_on, go_on)
                                    : compute_matrix(*provider, patches, rows_done);
     const double pairs_taken = hybrid ? watch.seconds() - rows_taken : 0.0;
     // The hybrid takes each pair once.

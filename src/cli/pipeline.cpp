@@ -366,7 +366,7 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
     if (plan.hybrid) {
         ProgressBar seen(terminal, "visibility", "rows");
         // These start their clocks when their turn has come.
-        std::optional<ProgressBar> traced;
+        std::optional<ProgressBar> combined;
         std::optional<ProgressBar> paired;
         const auto in_turn = [&terminal](std::optional<ProgressBar>& bar, const char* name) {
             return [&bar, &terminal, name](std::size_t done, std::size_t total) {
@@ -378,7 +378,7 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
         };
         rows.file.factors =
             compute_hybrid(source.provider, loaded.mesh, patches, *plan.hybrid, loaded.scene.enclosure,
-                           seen.callback(), in_turn(traced, "shadow rays"), in_turn(paired, "form factors"));
+                           seen.callback(), in_turn(combined, "pairs"), in_turn(paired, "form factors"));
     } else {
         ProgressBar bar(terminal, "form factors", "rows");
         rows.file.factors = compute_matrix(source.provider, patches, bar.callback());

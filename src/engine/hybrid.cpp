@@ -211,7 +211,7 @@ public:
     }
 
     /// One code for both directions of every pair; sightings become codes.
-    void combine_pairs(const Progress& rays_done) {
+    void combine_pairs(const Progress& pairs_combined) {
         const Neighbours neighbours(mesh_);
         std::optional<ShadowRays> rays;
         if (shadow_rays_ > 0) {
@@ -265,7 +265,7 @@ public:
                     combine_row(first + k);
                 }
             });
-            if (rays && rays_done && !rays_done(first + count, patches_.size())) {
+            if (pairs_combined && !pairs_combined(first + count, patches_.size())) {
                 throw Cancelled();
             }
         }
@@ -495,11 +495,11 @@ HybridEstimate estimate_hybrid(RowProvider& visibility, std::span<const std::uin
 
 FormFactorMatrix compute_hybrid(RowProvider& visibility, const PatchMesh& mesh,
                                 std::span<const std::uint32_t> patches, const HybridSettings& settings,
-                                Enclosure enclosure, const Progress& rows_done, const Progress& rays_done,
-                                const Progress& pairs_done) {
+                                Enclosure enclosure, const Progress& rows_done,
+                                const Progress& pairs_combined, const Progress& pairs_done) {
     Hybrid hybrid(mesh, patches, settings);
     hybrid.see(visibility, rows_done);
-    hybrid.combine_pairs(rays_done);
+    hybrid.combine_pairs(pairs_combined);
     return hybrid.factors(enclosure, pairs_done);
 }
 

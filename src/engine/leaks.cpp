@@ -9,7 +9,7 @@ namespace hemi {
 std::vector<std::optional<Vec3>> leak_directions(const PatchMesh& mesh,
                                                  std::span<const std::uint32_t> patches) {
     constexpr std::uint32_t rays = 65536;
-    constexpr double least_length = 1e-6; // of a mean that is more than rounding
+    constexpr std::uint32_t fewest = 8; // a ray or two may slip through where edges meet
     std::vector<std::optional<Vec3>> directions(patches.size());
     if (patches.empty()) {
         return directions;
@@ -19,14 +19,16 @@ std::vector<std::optional<Vec3>> leak_directions(const PatchMesh& mesh,
         for (std::size_t k = begin; k < end; ++k) {
             const PatchRays sequence(mesh, patches[k], 0);
             Vec3 sum(0.0);
+            std::uint32_t escaped = 0;
             for (std::uint32_t index = 0; index < rays; ++index) {
                 const PatchRays::Ray ray = sequence[index];
                 if (tracer.trace(ray.origin, ray.direction).side == RayTracer::Side::nothing) {
                     sum += ray.direction;
+                    ++escaped;
                 }
             }
-            if (const double length = glm::length(sum); length > least_length) {
-                directions[k] = sum / length;
+            if (escaped >= fewest) {
+                directions[k] = glm::normalize(sum);
             }
         }
     });

@@ -283,8 +283,8 @@ private:
         const auto feed = [&](WorkerProcess& worker) {
             // One job ahead, so that a worker never waits for the next; but near the end nobody hoards what
             // another could begin.
-            const std::uint32_t at_once = jobs.size() - next > workers_.size() ? 2 : 1;
-            while (worker.jobs < at_once && next < jobs.size()) {
+            const auto at_once = [&] { return jobs.size() - next > workers_.size() ? 2u : 1u; };
+            while (next < jobs.size() && worker.jobs < at_once()) {
                 ToWorker message;
                 message.count = static_cast<std::uint32_t>(jobs[next].size());
                 std::copy(jobs[next].begin(), jobs[next].end(), message.patches.begin());

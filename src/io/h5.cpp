@@ -90,7 +90,11 @@ public:
         if (output.temporary().empty()) {
             throw IoError(fmt::format("{}: HDF5 is written to regular files only", path_.string()));
         }
-        Handle h5(H5Fcreate(output.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+        // OutputFile holds a lock of its own on what is not finished.
+        Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+        check(access.id());
+        check(H5Pset_file_locking(access.id(), false, true));
+        Handle h5(H5Fcreate(output.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
         check(h5.id());
         write_head(h5.id());
         write_rows(h5.id());

@@ -196,7 +196,7 @@ TEST_CASE("HFF: other files, other versions and directories are told apart", "[i
     require_parts(refusal(""), {"a.hff: 0 bytes; too short"});
     require_parts(refusal("v 0 0 0\nv 1 0 0\nv 1 1 0\n"), {"does not hold form factors (.hff)", "v 0 0 0"});
     require_parts(refusal("HEMIFF\n" + std::string(20, '\0')), {"does not hold form factors"});
-    require_parts(refusal("HEMIFF\r\n\1" + std::string(20, '\0')), {"version 1", "reads version 3"});
+    require_parts(refusal("HEMIFF\r\n\1" + std::string(20, '\0')), {"version 1", "reads version 4"});
     require_parts(message_of<InputError>([&] { (void)io::read_hff(folder / ""); }), {"cannot be read"});
     require_parts(message_of<InputError>([&] { (void)io::read_hff(folder / "no.hff"); }), {"No such file"});
 }

@@ -41,16 +41,16 @@ struct HybridSettings {
 /// better than hemicubes do; but in a closed scene (`enclosure`, or automatic and no row sees more than 1e-4
 /// of it), e stays what was measured: a leak.
 ///
-/// Memory: 2 bytes for every pair of one of `patches` with any patch, and the matrix.
+/// Memory: for every pair of one of `patches` with any patch 4 bytes until pairs are combined, then 2; and
+/// the matrix.
 /// @param visibility  gives rows of RowQuantity::visibility
 /// @param rows_done   called after every row of visibility; may be empty
-/// @param rays_done   called after every 64 rows whose shadow rays were traced; may be empty
+/// @param pairs_combined  called after every 64 rows whose visibility was combined; may be empty
 /// @param pairs_done  called after every 64 rows of pairs; may be empty
 /// @throws Cancelled when one of them returns false.
-[[nodiscard]] FormFactorMatrix compute_hybrid(RowProvider& visibility, const PatchMesh& mesh,
-                                              std::span<const std::uint32_t> patches,
-                                              const HybridSettings& settings, Enclosure enclosure,
-                                              const Progress& rows_done = {}, const Progress& rays_done = {},
-                                              const Progress& pairs_done = {});
+[[nodiscard]] FormFactorMatrix
+compute_hybrid(RowProvider& visibility, const PatchMesh& mesh, std::span<const std::uint32_t> patches,
+               const HybridSettings& settings, Enclosure enclosure, const Progress& rows_done = {},
+               const Progress& pairs_combined = {}, const Progress& pairs_done = {});
 
 } // namespace hemi
