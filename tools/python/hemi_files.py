@@ -111,7 +111,7 @@ def _take_rows(path, payload):
 def read_hff(path):
     """The Factors in a `.hff`. Raises FileError if it is none."""
     head, areas, group_of, blocks = None, None, None, []
-    for tag, payload in _chunks(path, b"HEMIFF\r\n", 3):
+    for tag, payload in _chunks(path, b"HEMIFF\r\n", 4):
         if tag == b"HEAD":
             head = json.loads(payload)
         elif tag == b"AREA":
