@@ -123,6 +123,38 @@ constexpr std::string_view vs3 = "T Two squares\n! a comment\nC encl=0 list=3\nF
                                  "S 1  1  2  3  4 0 0 0.5  low\ns 2  7  6  5  8 0 1 0.75 high\n"
                                  "O 3  1 2 3  0\nEnd of data\n";
 
+constexpr std::string_view ply =
+    "ply\nformat ascii 1.0\ncomment two faces\nelement vertex 4\nproperty float x\nproperty float "
+    "y\nproperty float z\n"
+    "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+    "3 0 1 2\n3 0 2 3\n";
+
+constexpr std::string_view stl = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                                 "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+
+constexpr std::string_view msh =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"floor\"\n$EndPhysicalNames\n$Nodes\n4\n"
+    "1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n2\n1 2 2 1 1 1 2 3\n2 3 2 1 1 1 2 3 4\n"
+    "$EndElements\n";
+
+/// One triangle, 134 bytes.
+std::string binary_stl() {
+    std::string text(80, ' ');
+    text += std::string("\1\0\0\0", 4);
+    const float numbers[12] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+    text.append(reinterpret_cast<const char*>(numbers), sizeof numbers);
+    return text + std::string(2, '\0');
+}
+
+void seed_view3d(const fs::path& folder, const char* name, io::View3dFormat format) {
+    io::FactorFile file;
+    file.factors = small_matrix(false);
+    file.areas = {1.0, 0.5};
+    file.groups = {"floor", "ceiling"};
+    file.group_of = {0, 1};
+    io::write_view3d(folder / name, file, format);
+}
+
 constexpr std::string_view mtl = "newmtl white\nKd 0.5 0.5 0.5\nKe 1 2 3\n# end\nnewmtl dark\nKd 0\n";
 
 /// Companions of the file that is fuzzed: what it may name.
@@ -159,6 +191,30 @@ const std::map<std::string, Reader> readers{
     {"gltf", {"fuzzed.gltf", read_as_scene, [](const fs::path& folder) { write(folder / "a.gltf", gltf); }}},
     {"glb", {"fuzzed.glb", read_as_scene, seed_glb}},
     {"vs3", {"fuzzed.vs3", read_as_scene, [](const fs::path& folder) { write(folder / "a.vs3", vs3); }}},
+    {"ply", {"fuzzed.ply", read_as_scene, [](const fs::path& folder) { write(folder / "a.ply", ply); }}},
+    {"stl",
+     {"fuzzed.stl", read_as_scene,
+      [](const fs::path& folder) {
+          write(folder / "a.stl", stl);
+          write(folder / "b.stl", binary_stl());
+      }}},
+    {"msh", {"fuzzed.msh", read_as_scene, [](const fs::path& folder) { write(folder / "a.msh", msh); }}},
+    {"view3d-text",
+     {"fuzzed.txt", [](const fs::path& path) { (void)io::read_view3d(path, io::View3dFormat::text); },
+      [](const fs::path& folder) { seed_view3d(folder, "a.txt", io::View3dFormat::text); }}},
+    {"view3d-binary",
+     {"fuzzed.vf", [](const fs::path& path) { (void)io::read_view3d(path, io::View3dFormat::binary); },
+      [](const fs::path& folder) { seed_view3d(folder, "a.vf", io::View3dFormat::binary); }}},
+    {"elmer-text",
+     {"fuzzed.dat", [](const fs::path& path) { (void)io::read_elmer(path, io::ElmerFormat::text); },
+      [](const fs::path& folder) {
+          io::write_elmer(folder / "a.dat", small_matrix(false), io::ElmerFormat::text);
+      }}},
+    {"elmer-binary",
+     {"fuzzed.dat", [](const fs::path& path) { (void)io::read_elmer(path, io::ElmerFormat::binary); },
+      [](const fs::path& folder) {
+          io::write_elmer(folder / "a.dat", small_matrix(false), io::ElmerFormat::binary);
+      }}},
     {"hff", {"fuzzed.hff", [](const fs::path& path) { (void)io::read_hff(path); }, seed_hff, true}},
     {"hres", {"fuzzed.hres", [](const fs::path& path) { (void)io::read_hres(path); }, seed_hres, true}},
     {"rows",
