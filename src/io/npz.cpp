@@ -130,9 +130,11 @@ private:
             fail(fmt::format("has no member {}, so it is not a sparse matrix of SciPy", name));
         }
         // Deflate cannot shrink more than 1032 times: a larger promise is a lie, and no memory is spent on
-        // it.
+        // it. How much there is to expand can be a lie as well; the file's own length is none.
         constexpr std::uint64_t most = 1032;
-        if (status.size / most > status.comp_size + 64) {
+        std::error_code error;
+        const std::uint64_t file_size = std::filesystem::file_size(file_, error);
+        if (status.size / most > std::min<std::uint64_t>(status.comp_size, error ? 0 : file_size) + 64) {
             fail(fmt::format("{}: {} bytes from {} compressed ones; that cannot be", name, status.size,
                              status.comp_size));
         }
