@@ -52,7 +52,7 @@ void Relighter::run_on() {
 
 bool Relighter::busy() const {
     const std::lock_guard lock(mutex_);
-    return result_ || ((working_ || wanted_) && !(waiting_ && steps_ == 0));
+    return result_ || ((working_ || wanted_) && !(waiting_ && stepwise_ && steps_ == 0));
 }
 
 bool Relighter::waits() const {

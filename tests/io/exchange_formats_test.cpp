@@ -245,6 +245,14 @@ TEST_CASE("NPZ: files cut short, flipped bits and other files are refused or rea
     require_parts(message_of<InputError>([&] { (void)io::read_npz(folder / "no.npz"); }), {"No such file"});
 }
 
+TEST_CASE("NPZ: a lie about the compressed size costs no memory", "[io]") {
+    // Found by fuzzing: 1.5 kB that say to hold 4 GB, and to expand to 1 TB.
+    const std::string path = HEMI_TEST_DATA "/io/false-compressed-size.npz";
+    require_parts(message_of<InputError>([&] { (void)io::read_npz(path); }),
+                  {"false-compressed-size.npz: ",
+                   "1099511627907 bytes from 4294967296 compressed ones; that cannot be"});
+}
+
 TEST_CASE("View3D factors: header, areas, rows and emissivities are where View3D's readers look", "[io]") {
     const Folder folder;
     io::FactorFile file;
