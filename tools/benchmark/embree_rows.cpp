@@ -34,6 +34,9 @@ struct EmbreeRows::Scene {
             geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * patch_of.size()));
         auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
             geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), patch_of.size()));
+        if (vertices == nullptr || indices == nullptr) {
+            throw Error("Embree: no memory for the scene");
+        }
         for (std::uint32_t k = 0; k < patch_of.size(); ++k) {
             // A triangle is a quadrilateral whose last two corners are equal.
             const PatchCorners corners = mesh.corners(patch_of[k]);
@@ -49,6 +52,9 @@ struct EmbreeRows::Scene {
         rtcAttachGeometry(scene, geometry);
         rtcReleaseGeometry(geometry);
         rtcCommitScene(scene);
+        if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+            throw Error(fmt::format("Embree: the scene cannot be built (error {})", static_cast<int>(error)));
+        }
     }
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
