@@ -185,9 +185,9 @@ void Measurements::growth(std::uint32_t workers, const Case& few, const Case& ma
     const std::string what = fmt::format("cost of a row, {} patches over {}, {}", many.mesh.size(),
                                          few.mesh.size(), workers_text(workers));
     static_cast<void>(subjects[1]()); // touches what the runs that count write
-    report_.finding({what, ratio(), "x", Bound::at_most, most_ratio});
+    report_.finding({what + ", memory touched before", ratio(), "x"});
     const FreshMemory fresh;
-    report_.finding({"  the same, every matrix in fresh memory", ratio(), "x"});
+    report_.finding({"  the same, every matrix in fresh memory", ratio(), "x", Bound::at_most, most_ratio});
 }
 
 void Measurements::workers_target(std::uint32_t patches, double least_ratio) {
