@@ -28,7 +28,8 @@ struct HybridEstimate {
 struct HybridSettings {
     ExchangeRule rule = ExchangeRule::standard; ///< of F0
     /// Rays between the two patches of every pair that is partly hidden, if fewer than four times as many
-    /// texels tell how much; both are then weighed by their numbers. 0: none.
+    /// texels (counted to 256) tell how much; both are then weighed by their numbers. Pairs that matter
+    /// least, with together a twentieth of the variance of all such pairs, get none. 0: none at all.
     std::uint32_t shadow_rays = 0;
 
     bool operator==(const HybridSettings&) const = default; ///< member by member

@@ -28,6 +28,9 @@ public:
     /// Computes the rows of `patches` (ascending, no duplicates) and hands each to `sink`, from the calling
     /// thread. Rows of one block of FormFactorMatrix::block_rows come in order; blocks come in any order.
     virtual void rows(std::span<const std::uint32_t> patches, const RowSink& sink) = 0;
+
+    /// Hemicubes drawn so far for rows that were delivered; 0 by a method that draws none.
+    [[nodiscard]] virtual std::uint64_t hemicubes() const { return 0; }
 };
 
 /// Rows of `patches` as a matrix; the other rows stay unknown.

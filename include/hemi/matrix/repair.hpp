@@ -26,7 +26,7 @@ struct RepairSettings {
     /// the exact one. Pairs that see each other clearly may move by about this, and partly hidden ones may
     /// exceed F0 by it.
     double unoccluded_error = 1e-3;
-    double tolerance = 1e-10;            ///< of a row sum, before it is rounded to floats
+    double tolerance = 1e-9;             ///< of a row sum, before it is rounded to floats
     std::uint32_t max_passes = 20;       ///< with more and more pairs held at their bounds
     std::uint32_t max_iterations = 2000; ///< of conjugate gradients, a pass
 };
