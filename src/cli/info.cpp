@@ -71,7 +71,7 @@ Cost rule_of_thumb(const PatchMesh& mesh, const RowOptions& options) {
     const double in_view = 0.5 * patches;
     Cost cost;
     cost.cores = options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency());
-    const auto polygons = static_cast<double>(make_draw_list(mesh, options.merge).polygons.size());
+    const auto polygons = static_cast<double>(count_draw_polygons(mesh, options.merge));
     const double hemicube = 0.1e-3 + 0.4e-3 * resolution * resolution / (128.0 * 128.0) + 1e-6 * polygons;
     const double hemicubes = patches * plan.hemicube.eye_points;
     if (plan.hybrid) {

@@ -33,6 +33,18 @@ public:
         : mesh_(mesh), merge_lattices_(merge_lattices) {}
 
     DrawList run() {
+        add_polygons();
+        finish_outlines();
+        return std::move(list_);
+    }
+
+    std::size_t count() {
+        add_polygons();
+        return list_.polygons.size();
+    }
+
+private:
+    void add_polygons() {
         list_.tolerance = mesh_.rounding();
         weld();
         list_.item_of_id = {item_nothing, item_blocked};
@@ -48,11 +60,8 @@ public:
                 add_surface(s);
             }
         }
-        finish_outlines();
-        return std::move(list_);
     }
 
-private:
     void weld() {
         Welder welder(std::max(list_.tolerance, 1e-9 * mesh_.bounds().diagonal()));
         surface_vertices_.reserve(mesh_.surfaces().size());
@@ -309,6 +318,10 @@ private:
 
 DrawList make_draw_list(const PatchMesh& mesh, bool merge_lattices) {
     return DrawListBuilder(mesh, merge_lattices).run();
+}
+
+std::size_t count_draw_polygons(const PatchMesh& mesh, bool merge_lattices) {
+    return DrawListBuilder(mesh, merge_lattices).count();
 }
 
 } // namespace hemi

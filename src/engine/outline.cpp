@@ -14,8 +14,12 @@ namespace {
 /// in a large scene as where they are spread evenly.
 class VertexTree {
 public:
-    VertexTree(std::span<const Vec3> positions, std::vector<std::uint32_t> vertices)
-        : positions_(positions), vertices_(std::move(vertices)) {
+    struct Vertex {
+        Vec3 position;
+        std::uint32_t index;
+    };
+
+    explicit VertexTree(std::vector<Vertex> vertices) : vertices_(std::move(vertices)) {
         nodes_.reserve(4 * (vertices_.size() / leaf + 1));
         if (!vertices_.empty()) {
             split(0, static_cast<std::uint32_t>(vertices_.size()));
@@ -25,11 +29,11 @@ public:
     /// Calls `visit(vertex)` for all vertices within `distance` of the segment, and for some others.
     template <typename Visit>
     void near_segment(const Vec3& a, const Vec3& b, double distance, const Visit& visit) const {
-        const Vec3 along = b - a;
+        const Vec3 inverse = 1.0 / (b - a);
         std::uint32_t at = 0;
         while (at < nodes_.size()) { // depth first; a node that is missed is skipped with all below it
             const Node& node = nodes_[at];
-            if (!is_near(node.bounds, a, along, distance)) {
+            if (!is_near(node.bounds, a, inverse, distance)) {
                 at = node.after;
                 continue;
             }
@@ -49,21 +53,21 @@ private:
         std::uint32_t after = 0;          ///< the node that follows all below this one
     };
 
-    /// Whether the segment from a to a + along meets the box, made larger by `distance` on all sides.
-    static bool is_near(const Bounds& box, const Vec3& a, const Vec3& along, double distance) {
+    /// Whether the segment from a to a + 1 / inverse meets the box, made larger by `distance` on all sides.
+    static bool is_near(const Bounds& box, const Vec3& a, const Vec3& inverse, double distance) {
         double enter = 0.0;
         double leave = 1.0;
         for (int axis = 0; axis < 3; ++axis) {
             const double low = box.lower[axis] - distance - a[axis];
             const double high = box.upper[axis] + distance - a[axis];
-            if (along[axis] == 0.0) {
+            if (std::isinf(inverse[axis])) {
                 if (low > 0.0 || high < 0.0) {
                     return false;
                 }
                 continue;
             }
-            const double t0 = low / along[axis];
-            const double t1 = high / along[axis];
+            const double t0 = low * inverse[axis];
+            const double t1 = high * inverse[axis];
             enter = std::max(enter, std::min(t0, t1));
             leave = std::min(leave, std::max(t0, t1));
         }
@@ -75,7 +79,7 @@ private:
         nodes_.emplace_back();
         Bounds bounds;
         for (std::uint32_t k = first; k < end; ++k) {
-            bounds.add(positions_[vertices_[k]]);
+            bounds.add(vertices_[k].position);
         }
         nodes_[node].bounds = bounds;
         if (end - first <= leaf) {
@@ -88,16 +92,15 @@ private:
             const std::uint32_t middle = first + (end - first) / 2;
             std::nth_element(
                 vertices_.begin() + first, vertices_.begin() + middle, vertices_.begin() + end,
-                [&](std::uint32_t u, std::uint32_t v) { return positions_[u][axis] < positions_[v][axis]; });
+                [axis](const Vertex& u, const Vertex& v) { return u.position[axis] < v.position[axis]; });
             split(first, middle);
             split(middle, end);
         }
         nodes_[node].after = static_cast<std::uint32_t>(nodes_.size());
     }
 
-    std::span<const Vec3> positions_;
-    std::vector<std::uint32_t> vertices_; ///< in the order of the leaves
-    std::vector<Node> nodes_;             ///< in depth-first order
+    std::vector<Vertex> vertices_; ///< in the order of the leaves
+    std::vector<Node> nodes_;      ///< in depth-first order
 };
 
 double cross(const OutlinePoint& a, const OutlinePoint& b, const OutlinePoint& c) {
@@ -126,15 +129,15 @@ void refine(Outline& outline, std::span<const Vec3> positions, const VertexTree&
         }
         const double slack = tolerance.at(std::sqrt(length_squared));
         touching.clear();
-        tree.near_segment(a, b, 2.0 * slack, [&](std::uint32_t v) {
-            if (v == from.vertex || v == to.vertex) {
+        tree.near_segment(a, b, 2.0 * slack, [&](const VertexTree::Vertex& v) {
+            if (v.index == from.vertex || v.index == to.vertex) {
                 return;
             }
-            const Vec3 offset = positions[v] - a;
+            const Vec3 offset = v.position - a;
             const double t = glm::dot(offset, along) / length_squared;
             const Vec3 gap = offset - t * along;
             if (t > 0.0 && t < 1.0 && glm::dot(gap, gap) <= slack * slack) {
-                touching.emplace_back(t, v);
+                touching.emplace_back(t, v.index);
             }
         });
         std::sort(touching.begin(), touching.end());
@@ -155,13 +158,14 @@ void insert_touching_vertices(std::vector<Outline>& outlines, std::span<const Ve
             used[corner.vertex] = true;
         }
     }
-    std::vector<std::uint32_t> vertices;
+    std::vector<VertexTree::Vertex> vertices;
+    vertices.reserve(positions.size());
     for (std::uint32_t v = 0; v < positions.size(); ++v) {
         if (used[v]) {
-            vertices.push_back(v);
+            vertices.push_back({positions[v], v});
         }
     }
-    const VertexTree tree(positions, std::move(vertices));
+    const VertexTree tree(std::move(vertices));
 
     constexpr std::size_t at_once = 4096;
     parallel_for(outlines.size(), at_once, [&](std::size_t begin, std::size_t end) {

@@ -29,9 +29,8 @@ TEST_CASE("Welder: the tolerance is a distance and not one of each coordinate", 
 }
 
 TEST_CASE("Welder: finds neighbours across every cell boundary and below zero", "[core]") {
-    // Cells are four tolerances wide; pairs that straddle their faces, edges and corners on both sides of
-    // zero.
-    for (const double boundary : {-8.0, -4.0, 0.0, 4.0, 8.0}) {
+    // Cells are 16 tolerances wide; pairs that straddle their faces, edges and corners on both sides of zero.
+    for (const double boundary : {-32.0, -16.0, 0.0, 16.0, 32.0}) {
         for (const Vec3& step :
              {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 0), Vec3(1, -1, 1), Vec3(-1, 1, 1)}) {
             Welder welder(1.0);

@@ -44,7 +44,10 @@ Scene wall(int n, bool triangles, double noise) {
 }
 
 std::size_t polygons(const Scene& scene) {
-    return make_draw_list(PatchMesh(scene), true).polygons.size();
+    const PatchMesh mesh(scene);
+    const std::size_t drawn = make_draw_list(mesh, true).polygons.size();
+    CHECK(count_draw_polygons(mesh, true) == drawn);
+    return drawn;
 }
 
 } // namespace
