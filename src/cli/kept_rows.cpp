@@ -46,14 +46,18 @@ public:
 private:
     void compute(std::span<const std::uint32_t> missing, const RowSink& sink) {
         std::map<std::uint32_t, OpenBlock> open;
+        std::size_t expected_entries = 0; // of a block: what the last one had, and a little more
         provider_.rows(missing, [&](std::uint32_t patch, const RowView& row) {
             const std::uint32_t first = patch - patch % FormFactorMatrix::block_rows;
             const std::uint32_t count = std::min(FormFactorMatrix::block_rows, size() - first);
             OpenBlock& block =
-                open.try_emplace(first, first, count, rows_of_block(missing, first), 0).first->second;
+                open.try_emplace(first, first, count, rows_of_block(missing, first), expected_entries)
+                    .first->second;
             block.add(patch, row);
             if (block.complete()) {
-                append(block.finish());
+                const RowBlock finished = block.finish();
+                expected_entries = finished.columns.size() + finished.columns.size() / 16;
+                append(finished);
                 open.erase(first);
             }
             sink(patch, row);
