@@ -13,7 +13,7 @@ namespace hemi {
 namespace {
 
 /// Patches farther apart than so many times their radii see each other as points do.
-constexpr double far = 4.0;
+constexpr float far = 2.0F;
 
 } // namespace
 
@@ -38,28 +38,31 @@ Gathering::Gathering(const PatchMesh& mesh, RowQuantity quantity, std::uint32_t 
     }
     areas_.emplace(mesh);
     places_.reserve(mesh.size());
+    const Vec3 middle = mesh.bounds().centre();
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         const PatchCorners corners = mesh.corners(i);
-        Place place{mesh.centres()[i], 0.0, mesh.normal(i), mesh.areas()[i]};
+        double radius = 0.0;
         for (std::size_t k = 0; k < corners.count; ++k) {
-            place.radius = std::max(place.radius, glm::distance(corners.points[k], place.centre));
+            radius = std::max(radius, glm::distance(corners.points[k], mesh.centres()[i]));
         }
-        places_.push_back(place);
+        places_.push_back({glm::vec3(mesh.centres()[i] - middle), static_cast<float>(radius),
+                           glm::vec3(mesh.normal(i)), static_cast<float>(mesh.areas()[i])});
     }
 }
 
-double Gathering::unoccluded_factor(std::uint32_t i, std::uint32_t j) const {
+float Gathering::unoccluded_factor(std::uint32_t i, std::uint32_t j) const {
     const Place& from = places_[i];
     const Place& to = places_[j];
-    const Vec3 way = to.centre - from.centre;
-    const double square = glm::dot(way, way);
-    const double reach = far * (from.radius + to.radius);
+    const glm::vec3 way = to.centre - from.centre;
+    const float square = glm::dot(way, way);
+    const float reach = far * (from.radius + to.radius);
     if (square < reach * reach) {
-        return (*areas_)(i, j) / from.area;
+        return static_cast<float>((*areas_)(i, j)) / from.area;
     }
-    const double leaving = std::max(0.0, glm::dot(from.normal, way));
-    const double arriving = std::max(0.0, -glm::dot(to.normal, way));
-    return leaving * arriving * to.area / (std::numbers::pi * square * square);
+    // Each divided by the square, so that no scale of the scene is too large or too small for floats.
+    const float leaving = std::max(0.0F, glm::dot(from.normal, way)) / square;
+    const float arriving = std::max(0.0F, -glm::dot(to.normal, way)) / square;
+    return leaving * arriving * to.area * std::numbers::inv_pi_v<float>;
 }
 
 void Gathering::gather(std::uint32_t patch, const RowView& row, std::span<double> irradiance) const {
@@ -72,7 +75,7 @@ void Gathering::gather(std::uint32_t patch, const RowView& row, std::span<double
         if (bright_[j] == 0 || value == 0.0) {
             continue;
         }
-        const double factor = areas_ ? value * unoccluded_factor(patch, j) : value;
+        const double factor = areas_ ? value * static_cast<double>(unoccluded_factor(patch, j)) : value;
         const double* const sent = radiosity_.data() + std::size_t{j} * channels_;
         for (std::uint32_t c = 0; c < channels_; ++c) {
             irradiance[c] += factor * sent[c];

@@ -16,9 +16,10 @@ namespace hemi {
 /// all of them: sum_j F(i, j) B_j + e_i B_env, W/m².
 ///
 /// Rows of form factors say it exactly. Of rows of visibility F(i, j) is made as the hybrid makes it, by what
-/// i alone sees: exact exchange areas where patches are near each other, from centre to centre (within about
-/// 1 %) where they are far. So it is provisional: rows that are combined and repaired differ a little.
-/// Thread-safe. Memory: N·channels, and for visibility about 400 bytes a patch.
+/// i alone sees: exact exchange areas where patches are near each other, from centre to centre (within a few
+/// percent, sums of them within one) where they are far. So it is provisional: rows that are combined and
+/// repaired differ a little.
+/// Thread-safe. Memory: N·channels, and for visibility about 350 bytes a patch.
 class Gathering {
 public:
     /// @param mesh         is read here and not kept
@@ -33,13 +34,14 @@ public:
     void gather(std::uint32_t patch, const RowView& row, std::span<double> irradiance) const;
 
 private:
+    /// Small, since every row goes through all of them.
     struct Place {
-        Vec3 centre;
-        double radius; ///< of the sphere about the centre that holds the patch
-        Vec3 normal;
-        double area;
+        glm::vec3 centre; ///< from the middle of the scene
+        float radius;     ///< of the sphere about it that holds the patch
+        glm::vec3 normal;
+        float area;
     };
-    [[nodiscard]] double unoccluded_factor(std::uint32_t i, std::uint32_t j) const;
+    [[nodiscard]] float unoccluded_factor(std::uint32_t i, std::uint32_t j) const;
 
     std::uint32_t channels_;
     std::vector<double> radiosity_;

@@ -28,7 +28,7 @@ constexpr std::chrono::milliseconds rest{200};
 /// Rows that have come are put on the picture no more often than this, and so that it takes no more than a
 /// part of the time that they take.
 constexpr std::chrono::milliseconds gather_interval{100};
-constexpr int gather_part = 12;
+constexpr int gather_part = 20;
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code error;
@@ -181,6 +181,8 @@ void Application::other_key(const KeyEvent& event) {
         choices_.hemicube = !choices_.hemicube;
     } else if (event.key == help_key) {
         choices_.help = !choices_.help;
+    } else if (event.key == escape_key && gui_.close_list()) {
+        return;
     } else if (event.key == escape_key && choices_.help) {
         choices_.help = false;
     } else if (event.key == escape_key && !message_.empty()) {

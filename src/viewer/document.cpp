@@ -145,15 +145,16 @@ void Document::take_light() {
         return;
     }
     work_.residuals = relighter_->residuals();
+    const std::string steps =
+        std::string(relit->solver == "cg" ? "iteration" : "sweep") + (relit->sweeps == 1 ? "" : "s");
     if (!relit->problem.empty()) {
         work_.light = "no solution: " + relit->problem;
         changed_ = true;
         return;
     }
-    work_.light = relit->converged
-                      ? fmt::format("solved in {:.2f} s: {} {} to {:.1e}", relit->seconds, relit->sweeps,
-                                    relit->solver == "cg" ? "iterations" : "sweeps", relit->residual)
-                      : fmt::format("sweep {}: residual {:.1e}", relit->sweeps, relit->residual);
+    work_.light = relit->converged ? fmt::format("solved in {:.2f} s: {} {} to {:.1e}", relit->seconds,
+                                                 relit->sweeps, steps, relit->residual)
+                                   : fmt::format("sweep {}: residual {:.1e}", relit->sweeps, relit->residual);
     light_.reflectance = relit->light.reflectance;
     light_.exitance = relit->light.exitance;
     input_.radiosity_error = relit->error ? relit->error->patches : std::vector<double>();

@@ -98,7 +98,7 @@ Field light_field(const Look& look, const ViewerInput& input, const Light& light
         field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
         return field;
     }
-    Field field{"Radiosity" + channel, "W/m²", take(light.radiosity), {}};
+    Field field{"Radiosity" + channel, "W/m²", take(light.radiosity), {}, "not known"};
     field.scale =
         scale_to(most_reflected(field.values, take(light.exitance)), look.logarithmic, radiosity_range);
     for (std::uint32_t i = 0; i < field.values.size(); ++i) {

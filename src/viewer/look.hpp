@@ -73,6 +73,7 @@ struct Field {
     std::string unit;
     std::vector<double> values;
     ColourScale scale;
+    const char* grey = "0"; ///< what it means that there is none
 };
 
 /// Why a quantity cannot be shown of this input; null if it can.

@@ -329,8 +329,7 @@ void residual_plot(const std::vector<double>& residuals) {
     const float low = std::floor(*least);
     const float high = std::max(std::ceil(*most), low + 1.0F);
     const std::string words =
-        fmt::format("residual, {:.0e} to {:.0e}", std::pow(10.0, static_cast<double>(high)),
-                    std::pow(10.0, static_cast<double>(low)));
+        fmt::format("residual, 1e{} to 1e{}", static_cast<int>(high), static_cast<int>(low));
     ImGui::PlotLines("##residuals", decades.data(), static_cast<int>(decades.size()), 0, words.c_str(), low,
                      high, {ImGui::GetContentRegionAvail().x, plot_height});
 }

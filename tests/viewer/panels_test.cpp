@@ -188,6 +188,22 @@ TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
     CHECK(place.read("bare.png") == place.read("bare_too.png"));
 }
 
+TEST_CASE("Viewer: Escape closes what is open before it quits", "[viewer][gl]") {
+    const Workplace place;
+    // The list of quantities stands at the top of the panel, which is 332 wide.
+    const int status = place.view("windowshot start.png\nclick 480 41\nwindowshot list.png\nkey Escape\n"
+                                  "move 100 200\nwindowshot closed.png\n"
+                                  "key F1\nkey Escape\nclick 150 200\nkey Escape\nreport let_go.json\n"
+                                  "key Escape\nreport never.json\n",
+                                  with_panel);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    CHECK(place.read("list.png") != place.read("start.png"));
+    REQUIRE(place.has("closed.png"));
+    CHECK(picked(place.json("let_go.json")) == no_patch);
+    CHECK_FALSE(place.has("never.json"));
+}
+
 TEST_CASE("Viewer: what cannot be shown is refused with the reason", "[viewer][gl]") {
     const Workplace place;
     REQUIRE(place.view("show row\n", small) == 2);
