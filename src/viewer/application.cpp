@@ -406,10 +406,21 @@ void Application::describe_panels() {
     gui_.end();
 }
 
+/// After light that came in was drawn, or put on a scene that is not to be seen.
+void Application::pace_gathering() {
+    if (!took_light_) {
+        return;
+    }
+    const Clock::time_point now = Clock::now();
+    gathers_at_ = now + std::max<Clock::duration>(gather_interval, gather_part * (now - *took_light_));
+    took_light_.reset();
+}
+
 void Application::draw() {
     const auto view = view_size();
     const auto size = window_.size();
     if (view[0] == 0 || view[1] == 0) {
+        pace_gathering();
         return;
     }
     navigator_.set_view(view);
@@ -418,13 +429,8 @@ void Application::draw() {
         draw_picture(target_, view, rough_);
         picture_changed_ = false;
         lost_ = true;
-        const Clock::time_point now = Clock::now();
-        if (took_light_) {
-            gathers_at_ =
-                now + std::max<Clock::duration>(gather_interval, gather_part * (now - *took_light_));
-            took_light_.reset();
-        }
-        rests_at_ = (document_->gathering() ? std::max(gathers_at_, now) : now) + rest;
+        pace_gathering();
+        rests_at_ = (document_->gathering() ? std::max(gathers_at_, Clock::now()) : Clock::now()) + rest;
     }
     // Twice, since a frame may learn from the one before how large its text is.
     describe_panels();

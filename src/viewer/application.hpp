@@ -88,6 +88,7 @@ private:
     void show();
     void draw_hemicube();
     void update_title();
+    void pace_gathering();
     void describe_panels();
     void draw_picture(SceneTarget& target, std::array<std::uint32_t, 2> size, bool preview);
 
