@@ -1,5 +1,6 @@
 #include "cli/arguments.hpp"
 
+#include "cli/completion.hpp"
 #include "cli/refused_words.hpp"
 #include "cli/version.hpp"
 #include "hemi/core/error.hpp"
@@ -21,6 +22,9 @@ namespace {
 
 using Words = std::vector<std::string>;
 
+constexpr const char* help_help = "print this help";
+constexpr const char* version_help = "print version, revision, compiler and OpenGL";
+
 constexpr std::uint64_t any_whole = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t any_index = std::numeric_limits<std::uint32_t>::max() - 1;
 
@@ -32,6 +36,7 @@ public:
     void flag(const std::string& name, bool& target, const std::string& help, bool value = true) {
         app_.add_flag_callback(
                 name, [&target, value] { target = value; }, help)
+            ->option_text(" ")
             ->group(group_);
     }
 
@@ -40,14 +45,24 @@ public:
         return app_.add_option_function<std::string>(name, read, help)->option_text(form)->group(group_);
     }
 
+    /// @param read  takes the number of the word
+    CLI::Option* choice(const std::string& name, const std::string& form, const std::string& help,
+                        const Words& words, const std::function<void(std::size_t)>& read) {
+        return value(name, form, help,
+                     [name, words, read](const std::string& text) { read(parse_choice(name, text, words)); })
+            ->type_name(fmt::format("{}", fmt::join(words, "|")));
+    }
+
     CLI::Option* path(const std::string& name, const std::string& form,
                       std::optional<std::filesystem::path>& target, const std::string& help) {
-        return value(name, form, help, [name, &target](const std::string& text) {
-            if (text.empty()) {
-                throw InvalidArgument(name + " '': a file name is missing");
-            }
-            target = text;
-        });
+        return value(name, form, help,
+                     [name, &target](const std::string& text) {
+                         if (text.empty()) {
+                             throw InvalidArgument(name + " '': a file name is missing");
+                         }
+                         target = text;
+                     })
+            ->type_name(file_type);
     }
 
 private:
@@ -65,22 +80,21 @@ void add_positional(CLI::App& app, const std::string& name, std::filesystem::pat
     app.add_option_function<std::string>(
            name, [&target](const std::string& text) { target = text; }, help)
         ->required()
-        ->option_text(" ");
+        ->option_text(" ")
+        ->type_name(file_type);
 }
 
 void add_common(CLI::App& app, CommonOptions& common, bool json = true) {
-    app.set_version_flag("--version", version_text(), "version, revision, compiler and OpenGL");
+    app.set_version_flag("--version", version_text(), version_help)->group("General");
     Options options(app, "General");
     if (json) {
         options.flag("--json", common.json, "one JSON object on stdout instead of text");
     }
     options.flag("-q,--quiet", common.quiet, "errors only: no progress, warnings or summary");
     options.flag("-v,--verbose", common.verbose, "say more");
-    options.value("--color", "WHEN", "auto, always or never (NO_COLOR is honoured)",
-                  [&common](const std::string& text) {
-                      common.colour = static_cast<ColourChoice>(
-                          parse_choice("--color", text, Words{"auto", "always", "never"}));
-                  });
+    options.choice("--color", "WHEN", "auto, always or never (NO_COLOR is honoured)",
+                   {"auto", "always", "never"},
+                   [&common](std::size_t k) { common.colour = static_cast<ColourChoice>(k); });
 }
 
 /// @param stored  extensions of stored files that do as well
@@ -113,11 +127,9 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
 
 void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows, bool checks = true) {
     Options options(app, "Scene");
-    options.value("--enclosure", "KIND", "auto, closed or open; overrides the scene",
-                  [&scene](const std::string& text) {
-                      scene.enclosure = static_cast<Enclosure>(
-                          parse_choice("--enclosure", text, Words{"auto", "closed", "open"}));
-                  });
+    options.choice("--enclosure", "KIND", "auto, closed or open; overrides the scene",
+                   {"auto", "closed", "open"},
+                   [&scene](std::size_t k) { scene.enclosure = static_cast<Enclosure>(k); });
     if (!checks) {
         return;
     }
@@ -140,15 +152,16 @@ void add_device(CLI::App& app, std::string& device) {
                        }
                    }
                    device = text;
-               });
+               })
+        ->type_name("auto|egl|osmesa");
 }
 
 /// How hemicubes are drawn, whatever their settings.
 void add_drawing(CLI::App& app, RowOptions& rows) {
     Options options(app, "Form factors");
-    options.value("--seed", "N", "of the rotation of every hemicube (0)", [&rows](const std::string& text) {
-        rows.seed = parse_whole("--seed", text, 0, any_whole);
-    });
+    options.value(
+        "--seed", "N", "seed of the rotation of every hemicube (0)",
+        [&rows](const std::string& text) { rows.seed = parse_whole("--seed", text, 0, any_whole); });
     options.flag("--no-merge", rows.merge, "draw every face by itself, even in lattices of coplanar faces",
                  false);
     add_device(app, rows.device);
@@ -159,20 +172,15 @@ void add_drawing(CLI::App& app, RowOptions& rows) {
 
 void add_rows(CLI::App& app, RowOptions& rows) {
     Options options(app, "Form factors");
-    options.value("--preset", "NAME",
-                  "fast, default or exact: exact factors times visibility; plain: the textbook hemicube",
-                  [&rows](const std::string& text) {
-                      (void)parse_choice("--preset", text, Words{"plain", "fast", "default", "exact"});
-                      rows.preset = text;
-                  });
-    options.value("--method", "NAME",
-                  "hemicube (the default); direct, contour (both as if nothing lay between), montecarlo, "
-                  "hemisphere: slow yardsticks",
-                  [&rows](const std::string& text) {
-                      (void)parse_choice("--method", text,
-                                         Words{"hemicube", "direct", "contour", "montecarlo", "hemisphere"});
-                      rows.method = text;
-                  });
+    const Words presets{"plain", "fast", "default", "exact"};
+    options.choice("--preset", "NAME",
+                   "fast, default or exact: exact factors times visibility; plain: the textbook hemicube",
+                   presets, [&rows, presets](std::size_t k) { rows.preset = presets[k]; });
+    const Words methods{"hemicube", "direct", "contour", "montecarlo", "hemisphere"};
+    options.choice("--method", "NAME",
+                   "hemicube (the default); direct, contour (both as if nothing lay between), montecarlo, "
+                   "hemisphere: slow yardsticks",
+                   methods, [&rows, methods](std::size_t k) { rows.method = methods[k]; });
     options.value("--rays", "N", "montecarlo: rays a patch, best a power of two (16384)",
                   [&rows](const std::string& text) { rows.rays = to_index("--rays", text, 1, 1u << 31); });
     options.value("--eye-points", "K", "sample points per patch: 1, 4, 9 ... 64 (as the preset says)",
@@ -198,12 +206,10 @@ void add_rows(CLI::App& app, RowOptions& rows) {
 
 void add_repair(CLI::App& app, std::optional<Repair>& repair) {
     Options(app, "Form factors")
-        .value("--repair", "KIND",
-               "none, reciprocity or closure (closure where factors have visibility, else none)",
-               [&repair](const std::string& text) {
-                   repair = static_cast<Repair>(
-                       parse_choice("--repair", text, Words{"none", "reciprocity", "closure"}));
-               });
+        .choice("--repair", "KIND",
+                "none, reciprocity or closure (closure where factors have visibility, else none)",
+                {"none", "reciprocity", "closure"},
+                [&repair](std::size_t k) { repair = static_cast<Repair>(k); });
 }
 
 /// Estimates of errors, and settings chosen by them. After add_rows.
@@ -223,13 +229,16 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
 /// @param output  the file of form factors beside which rows are kept
 void add_resume(CLI::App& app, RowOptions& rows, CLI::Option* output) {
     Options(app, "Output")
-        .flag("--resume", rows.resume, "go on from the rows that an interrupted run left in FILE.rows");
+        .flag("--resume", rows.resume,
+              fmt::format("with {}: go on from the rows that an interrupted run left in FILE.rows",
+                          output->get_name()));
     app.get_option("--resume")->needs(output)->excludes(app.get_option("--error-target"));
 }
 
 void add_max_memory(CLI::App& app, RowOptions& rows) {
     Options(app, "Computing")
-        .value("--max-memory", "SIZE", "such as 512M or 2G (80 % of what is free)",
+        .value("--max-memory", "SIZE",
+               "refuse to need more than that, such as 512M or 2G (80 % of what is free)",
                [&rows](const std::string& text) { rows.max_memory = parse_memory("--max-memory", text); });
 }
 
@@ -247,15 +256,13 @@ void add_environment(CLI::App& app, SceneOptions& scene) {
 
 void add_solver(CLI::App& app, SolverSettings& solver) {
     Options options(app, "Solver");
-    options.value(
-        "--solver", "NAME",
-        "auto, gauss-seidel, jacobi or cg (auto: cg for high reflectance and reciprocal rows)",
-        [&solver](const std::string& text) {
-            constexpr std::array methods{SolverMethod::automatic, SolverMethod::gauss_seidel,
-                                         SolverMethod::jacobi, SolverMethod::conjugate_gradient};
-            solver.method =
-                methods[parse_choice("--solver", text, Words{"auto", "gauss-seidel", "jacobi", "cg"})];
-        });
+    options.choice("--solver", "NAME",
+                   "auto, gauss-seidel, jacobi or cg (auto: cg for high reflectance and reciprocal rows)",
+                   {"auto", "gauss-seidel", "jacobi", "cg"}, [&solver](std::size_t k) {
+                       constexpr std::array methods{SolverMethod::automatic, SolverMethod::gauss_seidel,
+                                                    SolverMethod::jacobi, SolverMethod::conjugate_gradient};
+                       solver.method = methods[k];
+                   });
     options.value("--tolerance", "T", "relative residual to reach (1e-6)",
                   [&solver](const std::string& text) {
                       solver.tolerance = parse_positive("--tolerance", text);
@@ -272,7 +279,7 @@ std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture) {
     added.push_back(options.value("--show", "A,B,C", "channels shown as red, green, blue; or one, as grey",
                                   [&picture](const std::string& text) { picture.show = parse_list(text); }));
     options.flag("--flat", picture.flat, "one colour a patch instead of smooth shading");
-    added.push_back(app.get_option("--flat")->option_text(" "));
+    added.push_back(app.get_option("--flat"));
     added.push_back(options.value("--exposure", "X", "factor on radiosity, or auto (the default)",
                                   [&picture](const std::string& text) {
                                       picture.exposure.reset();
@@ -288,19 +295,18 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
     std::vector<CLI::Option*> added = add_shown(app, picture);
     Options options(app, "Picture");
     added.push_back(options.value(
-        "--size", "WxH", fmt::format("pixels ({}x{})", picture.size[0], picture.size[1]),
+        "--size", "WxH", fmt::format("size in pixels ({}x{})", picture.size[0], picture.size[1]),
         [&picture](const std::string& text) { picture.size = parse_picture_size("--size", text); }));
     added.push_back(options.value(
-        "--camera", "EYE:TARGET[:UP][:FOV]", "such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
+        "--camera", "EYE:TARGET[:UP][:FOV]", "camera, such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
         [&picture](const std::string& text) { picture.camera = parse_camera("--camera", text); }));
-    added.push_back(options.value(
-        "--tone-mapping", "NAME", "filmic (the default) or linear", [&picture](const std::string& text) {
-            picture.tone_mapping =
-                static_cast<ToneMapping>(parse_choice("--tone-mapping", text, Words{"filmic", "linear"}));
-            picture.tone_mapping_given = true;
-        }));
+    added.push_back(options.choice("--tone-mapping", "NAME", "filmic (the default) or linear",
+                                   {"filmic", "linear"}, [&picture](std::size_t k) {
+                                       picture.tone_mapping = static_cast<ToneMapping>(k);
+                                       picture.tone_mapping_given = true;
+                                   }));
     options.flag("--orthographic", picture.orthographic, "parallel rays, at the scale of the target's depth");
-    options.flag("--outlines", picture.outlines, "outlines of patches");
+    options.flag("--outlines", picture.outlines, "draw outlines of patches");
     options.flag("--backs", picture.backs, "show the backs of one-sided surfaces, striped");
     for (const char* name : {"--orthographic", "--outlines", "--backs"}) {
         added.push_back(app.get_option(name));
@@ -446,14 +452,14 @@ void add_view(CLI::App& app, ViewArguments& a) {
     a.picture.size = {1280, 720};
     add_picture(app, a.picture, nullptr);
     Options window(app, "Window");
-    window.value("--controls", "NAME", "standard (the default) or blender: what the mouse does",
-                 [&a](const std::string& text) {
-                     a.controls = static_cast<viewer::Controls>(
-                         parse_choice("--controls", text, Words{"standard", "blender"}));
-                 });
-    window.value("--script", "FILE",
-                 "drags, keys, screenshots and more from a file, for demonstrations and tests",
-                 [&a](const std::string& text) { a.script = text; });
+    window.choice("--controls", "NAME", "standard (the default) or blender: what the mouse does",
+                  {"standard", "blender"},
+                  [&a](std::size_t k) { a.controls = static_cast<viewer::Controls>(k); });
+    window
+        .value("--script", "FILE",
+               "drags, keys, screenshots and more from a file, for demonstrations and tests",
+               [&a](const std::string& text) { a.script = text; })
+        ->type_name(file_type);
     add_common(app, a.common, false);
     app.footer("Examples:\n"
                "  hemi view scenes/cornell-box.json\n"
@@ -486,9 +492,10 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
     add_positional(
         app, "IN", a.input,
         "form factors: .hff .mtx .csv .npz, View3D's .txt .vf, Elmer's .dat .bin; a solution: .hres");
-    add_positional(app, "OUT", a.output,
-                   "form factors: .mtx .csv .npz .h5 .dat .bin; from .hff also .hff .txt .vf and EnergyPlus' "
-                   ".idf; - for .csv on stdout; from .hres: .vtp, or .csv with the radiosity of every patch");
+    add_positional(
+        app, "OUT", a.output,
+        "form factors: .mtx .csv .npz .h5 .dat .bin; from .hff also .hff .txt .vf and EnergyPlus' "
+        ".idf; - for .csv on stdout; of a solution: .vtp, or .csv with the radiosity of every patch");
     add_repair(app, a.repair);
     Options paraview(app, "ParaView");
     auto* factors =
@@ -513,7 +520,7 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
 }
 
 void add_info(CLI::App& app, InfoArguments& a) {
-    add_scene(app, a.scene, "SCENE|FILE", ".hff, .hres and others");
+    add_scene(app, a.scene, "SCENE|FILE", ".hff, .hres, .mtx, .csv, .npz, .txt, .vf, .dat, .bin");
     add_rows(app, a.rows);
     Options(app, "Output").flag("--measure", a.measure, "compute up to 64 rows for the estimate");
     for (const char* name : {"--device", "--seed", "--no-merge"}) {
@@ -532,11 +539,17 @@ void add_devices(CLI::App& app, DevicesArguments& a) {
                "  hemi devices --json");
 }
 
-/// Help without the double blank lines between groups.
+/// Help without the double blank lines between groups, and with a blank between names of an option.
 std::string help_text(const CLI::App& app, const std::string& previous = "") {
     std::string text = app.help(previous);
     for (std::size_t gap = text.find("\n\n\n"); gap != std::string::npos; gap = text.find("\n\n\n")) {
         text.erase(gap, 1);
+    }
+    for (std::size_t comma = text.find(",--"); comma != std::string::npos; comma = text.find(",--")) {
+        text.insert(comma + 1, " ");
+        if (const std::size_t gap = text.find("  ", comma + 2); gap < text.find('\n', comma)) {
+            text.erase(gap, 1);
+        }
     }
     return text;
 }
@@ -545,8 +558,8 @@ std::string help_text(const CLI::App& app, const std::string& previous = "") {
 template <class A>
 void add_command(CLI::App& app, const std::string& name, const std::string& help, void (*add)(CLI::App&, A&),
                  std::optional<Arguments>& chosen) {
-    CLI::App* command = app.add_subcommand(name, help);
-    command->set_help_flag("-h,--help", "this text")->group("General");
+    CLI::App* command = app.add_subcommand(name, help)->group("Commands");
+    command->set_help_flag("-h,--help", help_help)->group("General");
     const auto values = std::make_shared<A>();
     add(*command, *values);
     command->final_callback([command, values, &chosen] {
@@ -570,8 +583,10 @@ void add_command(CLI::App& app, const std::string& name, const std::string& help
 
 std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* argv) {
     CLI::App app("hemi: form factors by OpenGL hemicubes, radiosity, pictures", "hemi");
-    app.set_help_flag("-h,--help", "this text");
-    app.set_version_flag("--version", version_text(), "version, revision, compiler and OpenGL");
+    app.set_help_flag("-h,--help", help_help);
+    app.set_version_flag("--version", version_text(), version_help);
+    app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+    app.get_formatter()->label("Positionals", "Arguments");
     app.footer("Every command has its own --help. Exit status: 0 ok, 1 failure, 2 usage, 3 bad input,\n"
                "4 no usable OpenGL device, 5 a check is out of tolerance, 130 interrupted.\n\n"
                "Examples:\n"
@@ -594,6 +609,12 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
         const std::vector<const char*> asked = argc > 2 ? std::vector<const char*>{argv[0], argv[2], "--help"}
                                                         : std::vector<const char*>{argv[0], "--help"};
         return parse_arguments(static_cast<int>(asked.size()), asked.data());
+    }
+    if (argc > 1 && std::string_view(argv[1]) == "completion") {
+        if (argc != 3 || std::string_view(argv[2]) != "bash") {
+            throw InvalidArgument("`hemi completion bash` prints a script for bash; no other shell has one");
+        }
+        return Answer{bash_completion(app)};
     }
     if (argc > 1 && argv[1][0] != '-') {
         const auto named =

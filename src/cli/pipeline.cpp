@@ -40,6 +40,7 @@ public:
             sink(patch, row);
         });
     }
+    [[nodiscard]] std::uint64_t hemicubes() const override { return engine_->hemicubes(); }
 
 private:
     std::unique_ptr<RowProvider> engine_;
@@ -324,10 +325,9 @@ Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint
     io::JournalKey key = journal_key(rows.file, plan.hemicube);
     key["rays"] = std::to_string(settings.rays);
     const MaybeKept source(provider, kept, std::move(key));
-    const Stopwatch watch;
     ProgressBar bar(terminal, "form factors", "rows");
     rows.file.factors = compute_matrix(source.provider, patches, bar.callback());
-    rows.seconds = watch.seconds();
+    rows.computed = patches.size() - (kept != nullptr ? kept->reused() : 0);
     rows.file.renderer = provider.renderer();
     rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
     stop_if_interrupted();
@@ -362,7 +362,14 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
     stop_if_interrupted();
     rows.file = describe(loaded, options, plan);
     const MaybeKept source(*engine, kept, journal_key(rows.file, plan.hemicube));
+    const std::uint64_t hemicubes_before = engine->hemicubes(); // of samples
     const Stopwatch watch;
+    const auto timed = [&](const Progress& progress) -> Progress {
+        return [&rows, &watch, progress](std::size_t done, std::size_t total) {
+            rows.drawing_seconds = watch.seconds();
+            return progress(done, total);
+        };
+    };
     if (plan.hybrid) {
         ProgressBar seen(terminal, "visibility", "rows");
         // These start their clocks when their turn has come.
@@ -376,15 +383,15 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
                 return bar->callback()(done, total);
             };
         };
-        rows.file.factors =
-            compute_hybrid(source.provider, loaded.mesh, patches, *plan.hybrid, loaded.scene.enclosure,
-                           seen.callback(), in_turn(combined, "pairs"), in_turn(paired, "form factors"));
+        rows.file.factors = compute_hybrid(source.provider, loaded.mesh, patches, *plan.hybrid,
+                                           loaded.scene.enclosure, timed(seen.callback()),
+                                           in_turn(combined, "pairs"), in_turn(paired, "form factors"));
     } else {
         ProgressBar bar(terminal, "form factors", "rows");
-        rows.file.factors = compute_matrix(source.provider, patches, bar.callback());
+        rows.file.factors = compute_matrix(source.provider, patches, timed(bar.callback()));
     }
-    rows.seconds = watch.seconds();
-    rows.computed = (patches.size() - (kept != nullptr ? kept->reused() : 0)) * plan.hemicube.eye_points;
+    rows.hemicubes = engine->hemicubes() - hemicubes_before;
+    rows.computed = patches.size() - (kept != nullptr ? kept->reused() : 0);
     rows.file.renderer = engine->renderer();
     rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
     stop_if_interrupted();
@@ -483,9 +490,10 @@ std::string rows_summary(const Rows& rows, const RowSums& sums, const EnclosureF
                     plural(rows.file.eye_points, "eye point", "eye points"), rays, rows.file.seed);
     if (rows.reused) {
         cubes += ", rows from a file";
-    } else if (rows.computed > 0) {
-        cubes += fmt::format(", {} in {}: {:.0f}/s", count_text(rows.computed), seconds_text(rows.seconds),
-                             static_cast<double>(rows.computed) / std::max(rows.seconds, 1e-9));
+    } else if (rows.hemicubes > 0) {
+        cubes += fmt::format(", {} in {}: {:.0f}/s", count_text(rows.hemicubes),
+                             seconds_text(rows.drawing_seconds),
+                             static_cast<double>(rows.hemicubes) / std::max(rows.drawing_seconds, 1e-9));
     }
     text += summary_line("hemicubes", cubes);
     const double per_row = static_cast<double>(factors.entries()) / std::max<double>(sums.known, 1.0);

@@ -67,8 +67,9 @@ make_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const RowOp
 /// Rows of F with all that belongs to them, and how they came about.
 struct Rows {
     io::FactorFile file;
-    std::size_t computed = 0;       ///< hemicubes drawn; 0 when the rows came from a file
-    double seconds = 0.0;           ///< of those hemicubes
+    std::size_t computed = 0;       ///< rows, now; those from a file or a journal do not count
+    std::uint64_t hemicubes = 0;    ///< drawn for them; 0 by another method
+    double drawing_seconds = 0.0;   ///< of those hemicubes
     double reference_seconds = 0.0; ///< of better rows for the estimate of errors
     bool reused = false;
 };

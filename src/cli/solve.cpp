@@ -160,7 +160,7 @@ void report_savings(const LoadedScene& loaded, const Rows& rows, const Solution&
     }
     terminal.detail(fmt::format("channels solved: {} of {}{}", solution.channels_solved, solution.channels,
                                 solution.channels_solved < solution.channels ? " (all are equal)" : ""));
-    if (!rows.reused && rows.computed > 0) {
+    if (rows.hemicubes > 0) {
         const std::size_t drawn = make_draw_list(loaded.mesh, options.merge).polygons.size();
         terminal.detail(fmt::format("polygons drawn: {} for {}", count_text(drawn),
                                     plural(loaded.mesh.surfaces().size(), "surface", "surfaces")));

@@ -18,8 +18,12 @@ public:
     [[nodiscard]] std::uint32_t size() const override { return geometry_->eyes.patches(); }
     [[nodiscard]] std::string renderer() const override { return engine().renderer(); }
     void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
-        engine().rows(patches, sink);
+        engine().rows(patches, [&](std::uint32_t patch, const RowView& row) {
+            hemicubes_ += geometry_->eyes.of(patch).size();
+            sink(patch, row);
+        });
     }
+    [[nodiscard]] std::uint64_t hemicubes() const override { return hemicubes_; }
 
 private:
     GlRows& engine() const {
@@ -33,6 +37,7 @@ private:
     HemicubeSettings settings_;
     std::string device_;
     mutable std::unique_ptr<GlRows> engine_;
+    std::uint64_t hemicubes_ = 0;
 };
 
 } // namespace

@@ -213,42 +213,30 @@ public:
     /// One code for both directions of every pair; sightings become codes.
     void combine_pairs(const Progress& pairs_combined) {
         const Neighbours neighbours(mesh_);
-        std::optional<ShadowRays> rays;
-        if (shadow_rays_ > 0) {
-            rays.emplace(mesh_);
-        }
         codes_.resize(patches_.size());
-        std::vector<double> mean(patches_.size());
+        mean_.resize(patches_.size());
         parallel_for(patches_.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
-                mean[k] = mean_share(sightings_[k]);
+                mean_[k] = mean_share(sightings_[k]);
                 codes_[k].assign(size_, pair_hidden);
             }
         });
+        std::optional<ShadowRays> rays;
+        double least = 0.0;
+        if (shadow_rays_ > 0) {
+            rays.emplace(mesh_);
+            least = least_variance(neighbours);
+        }
         // A pair of two rows is combined by the lower one, which alone writes both entries.
-        const auto combine_row = [&](std::size_t k) {
+        const auto combine_part = [&](std::size_t k, std::uint32_t from, std::uint32_t upto) {
             const std::uint32_t i = patches_[k];
-            for (std::uint32_t j = 0; j < size_; ++j) {
+            for (std::uint32_t j = from; j < upto; ++j) {
                 const std::uint32_t other = row_of_[j];
                 if (other != nobody && j <= i) {
                     continue;
                 }
-                const Sighting nothing;
-                Sighting there = sightings_[k][j];
-                Sighting back = other == nobody ? nothing : sightings_[other][i];
-                const auto sees_none = [](Sighting one) { return one.known() && one.share() == 0.0; };
-                if ((sees_none(there) && !back.known()) || (sees_none(back) && !there.known()) ||
-                    !facing_(i, j)) {
-                    continue;
-                }
-                double assumed = 1.0;
-                if (!there.known() && !back.known()) {
-                    there = neighbours.stand_in(sightings_[k], j);
-                    back = other == nobody ? nothing : neighbours.stand_in(sightings_[other], i);
-                    assumed = other == nobody ? mean[k] : 0.5 * (mean[k] + mean[other]);
-                }
-                Combined pair = combine(there, back, assumed);
-                if (rays) {
+                Combined pair = combine_pair(neighbours, k, j);
+                if (rays && wants_rays(pair) && variance(pair, i, j) >= least) {
                     sharpen(*rays, pair, i, j);
                 }
                 codes_[k][j] = pair.code;
@@ -257,15 +245,18 @@ public:
                 }
             }
         };
+        // By tiles, few enough columns for the caches: what lies on the other side of the diagonal is far
+        // apart from column to column, but side by side from row to row.
         constexpr std::size_t rows_at_once = 64;
+        constexpr std::size_t columns_at_once = 128;
         for (std::size_t first = 0; first < patches_.size(); first += rows_at_once) {
-            const std::size_t count = std::min(rows_at_once, patches_.size() - first);
-            parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t k = begin; k < end; ++k) {
-                    combine_row(first + k);
+            const std::size_t end = std::min(first + rows_at_once, patches_.size());
+            parallel_for(size_, columns_at_once, [&](std::size_t from, std::size_t upto) {
+                for (std::size_t k = first; k < end; ++k) {
+                    combine_part(k, static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(upto));
                 }
             });
-            if (pairs_combined && !pairs_combined(first + count, patches_.size())) {
+            if (pairs_combined && !pairs_combined(end, patches_.size())) {
                 throw Cancelled();
             }
         }
@@ -305,17 +296,79 @@ public:
     }
 
 private:
-    /// Weighs shadow rays in where a pair is partly hidden and few texels say how much.
-    void sharpen(const ShadowRays& rays, Combined& pair, std::uint32_t i, std::uint32_t j) const {
-        // Nearly clear or nearly hidden: a few rays know no better.
+    /// What both ends of row k and patch j know of each other.
+    [[nodiscard]] Combined combine_pair(const Neighbours& neighbours, std::size_t k, std::uint32_t j) const {
+        const std::uint32_t i = patches_[k];
+        const std::uint32_t other = row_of_[j];
+        const Sighting nothing;
+        Sighting there = sightings_[k][j];
+        Sighting back = other == nobody ? nothing : sightings_[other][i];
+        const auto sees_none = [](Sighting one) { return one.known() && one.share() == 0.0; };
+        if ((sees_none(there) && !back.known()) || (sees_none(back) && !there.known()) || !facing_(i, j)) {
+            return {pair_hidden, 1.0};
+        }
+        double assumed = 1.0;
+        if (!there.known() && !back.known()) {
+            there = neighbours.stand_in(sightings_[k], j);
+            back = other == nobody ? nothing : neighbours.stand_in(sightings_[other], i);
+            assumed = other == nobody ? mean_[k] : 0.5 * (mean_[k] + mean_[other]);
+        }
+        return combine(there, back, assumed);
+    }
+
+    /// Whether a pair is partly hidden, and few texels say how much.
+    [[nodiscard]] bool wants_rays(const Combined& pair) const {
+        // Nearly clear or nearly hidden, and not just by a guess: a few rays know no better.
         constexpr double sure = 0.005;
         const double visibility = visibility_of(pair.code);
-        if (visibility < sure || visibility > 1.0 - sure || pair.texels >= 4.0 * shadow_rays_) {
-            return;
+        const bool seen_sharply = visibility < sure || visibility > 1.0 - sure;
+        return (pair.texels == 0.0 || !seen_sharply) && pair.texels < 4.0 * shadow_rays_;
+    }
+
+    /// About the variance of the larger of F(i, j) and F(j, i): (F0)² V (1 - V) over the number of texels.
+    [[nodiscard]] double variance(const Combined& pair, std::uint32_t i, std::uint32_t j) const {
+        const Vec3 way = mesh_.centres()[j] - mesh_.centres()[i];
+        const double squared = glm::dot(way, way);
+        const double cosines = -glm::dot(way, mesh_.normal(i)) * glm::dot(way, mesh_.normal(j));
+        const double larger = std::max(mesh_.areas()[i], mesh_.areas()[j]);
+        const double factor = std::min(1.0, std::max(0.0, cosines) * larger / (squared * squared));
+        // Half a texel and even odds where nothing is known.
+        const double visibility = pair.texels == 0.0 ? 0.5 : visibility_of(pair.code);
+        return factor * factor * visibility * (1.0 - visibility) / std::max(pair.texels, 0.5);
+    }
+
+    /// Rays pay where much is to be gained: pairs with less variance than this have together a twentieth of
+    /// the variance of all that want rays, in a sample of rows.
+    [[nodiscard]] double least_variance(const Neighbours& neighbours) const {
+        constexpr double left = 0.05;
+        constexpr std::size_t samples = 64;
+        constexpr int lowest = -160; // powers of two
+        std::array<double, 1 - lowest> sums{};
+        const std::size_t rows = std::min(samples, patches_.size());
+        for (std::size_t sample = 0; sample < rows; ++sample) {
+            const std::size_t k = (2 * sample + 1) * patches_.size() / (2 * rows);
+            for (std::uint32_t j = 0; j < size_; ++j) {
+                const Combined pair = combine_pair(neighbours, k, j);
+                if (const double one = wants_rays(pair) ? variance(pair, patches_[k], j) : 0.0; one > 0.0) {
+                    sums[static_cast<std::size_t>(std::clamp(std::ilogb(one), lowest, 0) - lowest)] += one;
+                }
+            }
         }
+        const double all = std::accumulate(sums.begin(), sums.end(), 0.0);
+        double below = 0.0;
+        int power = lowest;
+        for (; power < 0 && below + sums[static_cast<std::size_t>(power - lowest)] <= left * all; ++power) {
+            below += sums[static_cast<std::size_t>(power - lowest)];
+        }
+        return std::ldexp(1.0, power);
+    }
+
+    /// Weighs shadow rays in.
+    void sharpen(const ShadowRays& rays, Combined& pair, std::uint32_t i, std::uint32_t j) const {
         const ShadowRays::Estimate traced = rays.visibility(i, j, shadow_rays_);
         if (const double all = pair.texels + traced.rays; all > 0.0) {
-            pair.code = pair_code((pair.texels * visibility + traced.rays * traced.visibility) / all);
+            pair.code =
+                pair_code((pair.texels * visibility_of(pair.code) + traced.rays * traced.visibility) / all);
         }
     }
 
@@ -457,6 +510,7 @@ private:
     std::vector<std::uint32_t> row_of_; ///< patch -> position in patches_, or nobody
     std::vector<std::vector<Sighting>> sightings_;
     std::vector<std::vector<PairCode>> codes_;
+    std::vector<double> mean_; ///< of the shares that a row knows
     std::vector<double> environment_, blocked_;
 };
 

@@ -9,9 +9,11 @@
 
 namespace hemi {
 
+class EmbreeScene;
+
 /// Nearest patches along rays, by Embree.
 ///
-/// The scene is moved to the origin and scaled to about 1 before it becomes float. Surfaces in whose plane a
+/// Surfaces in whose plane a
 /// ray starts are not met, and a front at the depth of a back wins, as with the hemicubes.
 /// Thread-safe after construction.
 class RayTracer {
@@ -34,18 +36,15 @@ public:
     [[nodiscard]] static std::string name();
 
 private:
-    struct Handles;
     struct Query;
 
     /// Which side of the surface of `patch`, a front patch, the origin sees; nothing if it lies in its plane.
     [[nodiscard]] Side side(const Vec3& origin, std::uint32_t patch) const;
 
     const PatchMesh& mesh_;
-    Vec3 centre_;
-    double scale_;
     double rounding_;
     std::vector<std::uint32_t> patch_of_; ///< patch of every primitive
-    std::unique_ptr<Handles> handles_;
+    std::unique_ptr<EmbreeScene> scene_;
 };
 
 } // namespace hemi

@@ -2,34 +2,17 @@
 
 #include "core/splitmix.hpp"
 #include "engine/convex_polygon.hpp"
+#include "engine/embree_scene.hpp"
 #include "engine/sobol.hpp"
-#include "hemi/core/error.hpp"
-
-#include <embree3/rtcore.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace hemi {
-
-struct ShadowRays::Handles {
-    RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
-    Handles() = default;
-    Handles(const Handles&) = delete;
-    Handles& operator=(const Handles&) = delete;
-    ~Handles() {
-        if (scene != nullptr) {
-            rtcReleaseScene(scene);
-        }
-        if (device != nullptr) {
-            rtcReleaseDevice(device);
-        }
-    }
-};
 
 struct ShadowRays::Query {
     RTCIntersectContext context; ///< first, so that Embree's pointer to it is one to the query
@@ -52,69 +35,27 @@ struct ShadowRays::Query {
     }
 };
 
-ShadowRays::ShadowRays(const PatchMesh& mesh)
-    : mesh_(mesh), centre_(mesh.bounds().centre()), scale_(2.0 / mesh.bounds().diagonal()),
-      rounding_(mesh.rounding()), handles_(std::make_unique<Handles>()) {
-    // One thread: the trees are small, and rays are traced by the caller's threads.
-    handles_->device = rtcNewDevice("threads=1");
-    if (handles_->device == nullptr) {
-        throw Error(
-            fmt::format("Embree: no device (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
+ShadowRays::ShadowRays(const PatchMesh& mesh) : mesh_(mesh), rounding_(mesh.rounding()) {
+    std::vector<EmbreeScene::Quad> quads;
+    for (const Surface& surface : mesh.surfaces()) {
+        quads.push_back(EmbreeScene::quad(std::span(surface.vertices).first(surface.vertex_count)));
     }
-    handles_->scene = rtcNewScene(handles_->device);
-    rtcSetSceneFlags(handles_->scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
-                                                                 RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
-    const auto& surfaces = mesh.surfaces();
-    RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_QUAD);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * surfaces.size()));
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), surfaces.size()));
-    if (vertices == nullptr || indices == nullptr) {
-        rtcReleaseGeometry(geometry);
-        throw Error("Embree: no memory for the scene");
-    }
-    for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
-        // A triangle is a quadrilateral whose last two corners are equal.
-        const std::uint32_t count = surfaces[s].vertex_count;
-        for (std::uint32_t c = 0; c < 4; ++c) {
-            const Vec3 corner = (surfaces[s].vertices[std::min(c, count - 1)] - centre_) * scale_;
-            for (int axis = 0; axis < 3; ++axis) {
-                *vertices++ = static_cast<float>(corner[axis]);
-            }
-            *indices++ = 4 * s + c;
-        }
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(handles_->scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(handles_->scene);
-    if (const RTCError error = rtcGetDeviceError(handles_->device); error != RTC_ERROR_NONE) {
-        throw Error(fmt::format("Embree: the scene cannot be built (error {})", static_cast<int>(error)));
-    }
+    scene_ = std::make_unique<EmbreeScene>(
+        mesh.bounds(), quads,
+        static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
 }
 
 ShadowRays::~ShadowRays() = default;
 
 bool ShadowRays::occluded(const Vec3& from, const Vec3& to) const {
-    const Vec3 start = (from - centre_) * scale_;
-    const Vec3 way = (to - from) * scale_;
     Query query{};
     rtcInitIntersectContext(&query.context);
     query.context.filter = Query::filter;
     query.rays = this;
     query.from = &from;
     query.to = &to;
-    RTCRay ray{};
-    ray.org_x = static_cast<float>(start.x);
-    ray.org_y = static_cast<float>(start.y);
-    ray.org_z = static_cast<float>(start.z);
-    ray.dir_x = static_cast<float>(way.x);
-    ray.dir_y = static_cast<float>(way.y);
-    ray.dir_z = static_cast<float>(way.z);
-    ray.tfar = 1.0F;
-    ray.mask = 0xFFFFFFFFu;
-    rtcOccluded1(handles_->scene, &query.context, &ray);
+    RTCRay ray = scene_->ray(from, (to - from) * scene_->scale(), 1.0F);
+    rtcOccluded1(scene_->handle(), &query.context, &ray);
     return ray.tfar < 0.0F;
 }
 

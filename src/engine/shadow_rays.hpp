@@ -7,6 +7,8 @@
 
 namespace hemi {
 
+class EmbreeScene;
+
 /// Visibility of pairs of patches by rays between them, by Embree.
 ///
 /// Sobol points on both patches; each pair of points is weighted by cos·cos / r², so that V is the share of
@@ -29,16 +31,13 @@ public:
     [[nodiscard]] Estimate visibility(std::uint32_t i, std::uint32_t j, std::uint32_t rays) const;
 
 private:
-    struct Handles;
     struct Query;
 
     [[nodiscard]] bool occluded(const Vec3& from, const Vec3& to) const;
 
     const PatchMesh& mesh_;
-    Vec3 centre_;
-    double scale_;
     double rounding_;
-    std::unique_ptr<Handles> handles_;
+    std::unique_ptr<EmbreeScene> scene_; ///< of surfaces
 };
 
 } // namespace hemi

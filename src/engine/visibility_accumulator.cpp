@@ -141,7 +141,7 @@ void VisibilityAccumulator::spans(std::span<const FrontViews::Point> outline, st
             continue;
         }
         const double slope = (x_of(b) - x_of(a)) / (yb - ya);
-        const double margin = snap * std::hypot(1.0, slope);
+        const double margin = snap * std::sqrt(1.0 + slope * slope);
         const bool left = yb > ya; // clockwise: the left side runs up
         const auto first = std::max(first_span_, static_cast<std::int32_t>(std::ceil(std::min(ya, yb))));
         const auto last = std::min(end - 1, static_cast<std::int32_t>(std::floor(std::max(ya, yb))));

@@ -212,12 +212,17 @@ public:
     void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
         start();
         try {
-            serve(patches, sink);
+            serve(patches, [&](std::uint32_t patch, const RowView& row) {
+                hemicubes_ += geometry_->eyes.of(patch).size();
+                sink(patch, row);
+            });
         } catch (...) {
             workers_.clear(); // whatever they still compute is not wanted
             throw;
         }
     }
+
+    [[nodiscard]] std::uint64_t hemicubes() const override { return hemicubes_; }
 
 private:
     void start() {
@@ -355,6 +360,7 @@ private:
     ResultSlot layout_;
     std::vector<WorkerProcess> workers_;
     std::string renderer_;
+    std::uint64_t hemicubes_ = 0;
 };
 
 } // namespace

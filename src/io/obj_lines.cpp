@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -53,7 +55,7 @@ bool ObjLines::is_for_loader() {
         return false;
     }
     if (word == "f") {
-        check_face(rest);
+        current_ = face_for_loader(rest);
         return true;
     }
     if (word == "g" || word == "o" || word == "usemtl") {
@@ -94,7 +96,9 @@ void ObjLines::read_vertex(std::string_view rest) {
     vertices_.push_back(point);
 }
 
-void ObjLines::check_face(std::string_view rest) const {
+/// The face with nothing but its vertices: what else stands there, the loader reads in ways of its own.
+std::string ObjLines::face_for_loader(std::string_view rest) const {
+    std::string face = "f";
     int count = 0;
     const auto size = static_cast<std::int64_t>(vertices_.size());
     for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest), ++count) {
@@ -108,13 +112,16 @@ void ObjLines::check_face(std::string_view rest) const {
             fail(fmt::format("a face with vertex {}; there are {} vertices so far", *index, size));
         }
         const std::string_view others = word.substr(vertex.size());
-        if (others.find_first_not_of("0123456789-/") != std::string_view::npos) {
+        if (others.find_first_not_of("0123456789-/") != std::string_view::npos ||
+            std::count(others.begin(), others.end(), '/') > 2) {
             fail(fmt::format("{} in a face; must be like 1, 1/2, 1//3 or 1/2/3", in_quotes(word)));
         }
+        fmt::format_to(std::back_inserter(face), " {}", *index);
     }
     if (count < 3) {
         fail(fmt::format("a face of {} vertices; must have 3 or more", count));
     }
+    return face;
 }
 
 void ObjLines::fail(const std::string& message) const {

@@ -35,7 +35,7 @@ private:
     bool next_logical_line();
     [[nodiscard]] bool is_for_loader();
     void read_vertex(std::string_view rest);
-    void check_face(std::string_view rest) const;
+    [[nodiscard]] std::string face_for_loader(std::string_view rest) const;
     [[noreturn]] void fail(const std::string& message) const;
 
     std::string file_;

@@ -30,7 +30,7 @@ private:
 
     void find_gaps();
     void find_diagonal();
-    std::uint32_t find_multipliers();
+    std::uint32_t find_multipliers(double tolerance);
     /// Puts pairs that the multipliers drive out of their bounds there. @return what was held
     Tally hold_at_bounds();
     Tally write();

@@ -95,6 +95,10 @@ TEST_CASE("solve: rows of patches that reflect nothing are computed only where t
     CHECK(picture_only.err_has("polygons drawn: "));
     const Outcome result = run_hemi(quick({"solve", scene, "-v", "--result", directory.path("a.hres")}));
     CHECK(result.err_has("rows computed: 54 of 54"));
+    const Outcome four = run_hemi({"solve", scene, "-v", "--preset", "fast", "--eye-points", "4", "--device",
+                                   "osmesa", "--no-estimate"});
+    CHECK(four.err_has("rows computed: 45 of 54"));
+    CHECK(four.out_has(", 180 in "));
 
     Json dark = coloured(3);
     dark["materials"]["white"]["reflectance"] = 0;

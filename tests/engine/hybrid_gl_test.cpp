@@ -141,6 +141,23 @@ TEST_CASE("make_eye_points: only patches with a surface close above get more", "
     CHECK(make_eye_points(mesh, 4, 16).of(5).size() == 16);
 }
 
+TEST_CASE("make_hemicube_engine: counts the hemicubes of the rows that it delivered", "[engine][gl]") {
+    Scene scene = empty_scene();
+    add_polygon(scene, "floor", {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(4, 4, 0), Vec3(0, 4, 0)}, {4, 4});
+    add_polygon(scene, "sheet",
+                {Vec3(1.3, 1.3, 0.08), Vec3(1.3, 1.7, 0.08), Vec3(1.7, 1.7, 0.08), Vec3(1.7, 1.3, 0.08)});
+    const PatchMesh mesh(scene);
+    HemicubeSettings settings = visibility_settings(4, 32);
+    settings.near_eye_points = 16;
+    const std::vector<std::uint32_t> some{4, 5, 16};
+    for (const char* program : {"", HEMI_PROGRAM}) {
+        const auto engine = make_hemicube_engine(mesh, settings, {"osmesa", 1, program});
+        CHECK(engine->hemicubes() == 0);
+        engine->rows(some, [](std::uint32_t, const RowView&) {});
+        CHECK(engine->hemicubes() == 4 + 16 + 9); // the sheet is small for its gap
+    }
+}
+
 TEST_CASE("find_near_surfaces: walls at the border are neighbours, what stands on a patch straddles it",
           "[scene]") {
     Scene scene = empty_scene();

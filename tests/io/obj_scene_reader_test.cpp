@@ -231,6 +231,16 @@ TEST_CASE("OBJ reader: names that are not UTF-8 become it and stay different", "
     REQUIRE(scene.surfaces[2].group == 0);
 }
 
+TEST_CASE("OBJ reader: lines may end in a carriage return alone, and faces name textures and normals as they like", "[io]") {
+    const Folder folder;
+    const Scene scene = read(folder, corners + "g a\rf 1 2 3\nf 1/ 2// 3/3/3\ng\nf 1/1 2/12/7 4\n");
+    CHECK(scene.groups == std::vector<std::string>{"a", "default"});
+    REQUIRE(scene.surfaces.size() == 3);
+    CHECK(scene.surfaces[1].vertices[2] == Vec3(1, 1, 0));
+    CHECK(scene.surfaces[2].vertices[2] == Vec3(0, 1, 0));
+    CHECK_THROWS_AS(read(folder, corners + "g a\rf 7 8 9\n"), ParseError);
+}
+
 TEST_CASE("OBJ reader: a concave face is refused with its line", "[io]") {
     const Folder folder;
     const std::string arrow = "v 0 0 0\nv 2 0 0\nv 0.5 0.5 0\nv 0 2 0\n";
@@ -275,6 +285,7 @@ TEST_CASE("OBJ reader: what is wrong is named with its line, its value and what 
         {corners + "f 1 2 3.5\n", {":5: \"3.5\" in a face"}},
         {corners + "f 1 2 99999999999999999999\n", {":5: \"99999999999999999999\" in a face"}},
         {corners + "f 1/a 2/b 3/c\n", {":5: \"1/a\" in a face; must be like"}},
+        {corners + "f 1// 2//3/ 3\n", {":5: \"2//3/\" in a face; must be like"}},
         {"f 1 2 3\n" + corners, {":1: a face with vertex 1; there are 0"}},
         {corners + std::string("f 1 2 3\0x\n", 10), {":5: a zero byte"}},
         {corners + "v 1 1 1\nf 1 2 5 4\n", {":6: face: not planar"}},

@@ -1,10 +1,10 @@
 #include "benchmark/embree_rows.hpp"
 
 #include "benchmark/naive_rows.hpp"
+#include "engine/embree_scene.hpp"
 #include "engine/patch_rays.hpp"
 #include "hemi/core/error.hpp"
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,80 +14,34 @@
 
 namespace hemi::bench {
 
-struct EmbreeRows::Scene {
-    RTCDevice device = rtcNewDevice("threads=1");
-    RTCScene scene = nullptr;
-
-    explicit Scene(const PatchMesh& mesh, std::vector<std::uint32_t>& patch_of) {
-        if (device == nullptr) {
-            throw Error("Embree: no device");
-        }
-        for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
-            if (!mesh.is_back(patch)) {
-                patch_of.push_back(patch);
-            }
-        }
-        scene = rtcNewScene(device);
-        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_QUAD);
-        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * patch_of.size()));
-        auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4, 4 * sizeof(unsigned), patch_of.size()));
-        if (vertices == nullptr || indices == nullptr) {
-            throw Error("Embree: no memory for the scene");
-        }
-        for (std::uint32_t k = 0; k < patch_of.size(); ++k) {
-            // A triangle is a quadrilateral whose last two corners are equal.
-            const PatchCorners corners = mesh.corners(patch_of[k]);
-            for (std::uint32_t c = 0; c < 4; ++c) {
-                const Vec3& corner = corners.points[std::min(c, corners.count - 1)];
-                for (int axis = 0; axis < 3; ++axis) {
-                    *vertices++ = static_cast<float>(corner[axis]);
-                }
-                *indices++ = 4 * k + c;
-            }
-        }
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometry(scene, geometry);
-        rtcReleaseGeometry(geometry);
-        rtcCommitScene(scene);
-        if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
-            throw Error(fmt::format("Embree: the scene cannot be built (error {})", static_cast<int>(error)));
-        }
-    }
-    Scene(const Scene&) = delete;
-    Scene& operator=(const Scene&) = delete;
-    ~Scene() {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-
-    /// Traces a full packet; `hit` gets primitives, or RTC_INVALID_GEOMETRY_ID.
-    void trace(RTCRayHit16& rays, bool coherent) const {
-        alignas(64) static constexpr std::array<int, packet> all{-1, -1, -1, -1, -1, -1, -1, -1,
-                                                                 -1, -1, -1, -1, -1, -1, -1, -1};
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        context.flags =
-            coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-        rtcIntersect16(all.data(), scene, &context, &rays);
-    }
-};
-
 namespace {
 
-void set_ray(RTCRayHit16& rays, int k, const Vec3& origin, const Vec3& direction, float near) {
-    rays.ray.org_x[k] = static_cast<float>(origin.x);
-    rays.ray.org_y[k] = static_cast<float>(origin.y);
-    rays.ray.org_z[k] = static_cast<float>(origin.z);
-    rays.ray.dir_x[k] = static_cast<float>(direction.x);
-    rays.ray.dir_y[k] = static_cast<float>(direction.y);
-    rays.ray.dir_z[k] = static_cast<float>(direction.z);
-    rays.ray.tnear[k] = near;
-    rays.ray.tfar[k] = std::numeric_limits<float>::infinity();
+/// Nothing is met before this, in Embree's coordinates: the patch itself above all.
+constexpr float nearest = 2e-4F;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr int packet = 16;
+
+/// Traces a full packet; `hit` gets primitives, or RTC_INVALID_GEOMETRY_ID.
+void trace(const EmbreeScene& scene, RTCRayHit16& rays, bool coherent) {
+    alignas(64) static constexpr std::array<int, packet> all{-1, -1, -1, -1, -1, -1, -1, -1,
+                                                             -1, -1, -1, -1, -1, -1, -1, -1};
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    rtcIntersect16(all.data(), scene.handle(), &context, &rays);
+}
+
+void set_ray(RTCRayHit16& rays, int k, const RTCRay& ray) {
+    rays.ray.org_x[k] = ray.org_x;
+    rays.ray.org_y[k] = ray.org_y;
+    rays.ray.org_z[k] = ray.org_z;
+    rays.ray.dir_x[k] = ray.dir_x;
+    rays.ray.dir_y[k] = ray.dir_y;
+    rays.ray.dir_z[k] = ray.dir_z;
+    rays.ray.tnear[k] = nearest;
+    rays.ray.tfar[k] = ray.tfar;
     rays.ray.time[k] = 0.0F;
-    rays.ray.mask[k] = 0xFFFFFFFFU;
+    rays.ray.mask[k] = ray.mask;
     rays.ray.flags[k] = 0;
     rays.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
     rays.hit.primID[k] = RTC_INVALID_GEOMETRY_ID;
@@ -103,13 +57,20 @@ std::vector<std::uint32_t> first_numbers(std::size_t count) {
 
 EmbreeRows::EmbreeRows(const PatchMesh& mesh, const HemicubeSettings& settings, Rays rays)
     : mesh_(mesh), settings_(settings), rays_(rays), eyes_(make_eye_points(mesh, 1)),
-      weights_(settings.resolution), near_(static_cast<float>(1e-4 * mesh.bounds().diagonal())),
-      scene_(std::make_unique<Scene>(mesh, patch_of_)),
-      identity_(first_numbers(item_first_patch + mesh.size())), accumulator_(identity_, mesh.size()) {
+      weights_(settings.resolution), identity_(first_numbers(item_first_patch + mesh.size())),
+      accumulator_(identity_, mesh.size()) {
     if (settings.resolution % 8 != 0) {
         throw InvalidArgument(
             fmt::format("resolution {}; rays in tiles of 4 x 4 need a multiple of 8", settings.resolution));
     }
+    std::vector<EmbreeScene::Quad> quads;
+    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        if (!mesh.is_back(patch)) {
+            patch_of_.push_back(patch);
+            quads.push_back(EmbreeScene::quad(mesh.corners(patch).polygon()));
+        }
+    }
+    scene_ = std::make_unique<EmbreeScene>(mesh.bounds(), quads, RTC_SCENE_FLAG_NONE);
     items_.resize(std::size_t{3} * settings.resolution * settings.resolution);
     counts_.resize(identity_.size());
 }
@@ -170,9 +131,9 @@ void EmbreeRows::trace_texels(std::uint32_t patch) {
                     const double row = (y + k / 4 + 0.5) / resolution * 2.0;
                     const Vec3 v = face_direction(face, right, face == 0 ? row - 1.0 : row);
                     directions[k] = v.x * frame.x + v.y * frame.y + v.z * frame.z;
-                    set_ray(rays, static_cast<int>(k), eye.position, directions[k], near_);
+                    set_ray(rays, static_cast<int>(k), scene_->ray(eye.position, directions[k], infinity));
                 }
-                scene_->trace(rays, true);
+                trace(*scene_, rays, true);
                 for (std::uint32_t k = 0; k < packet; ++k) {
                     const std::size_t texel = std::size_t{first_row + y + k / 4} * resolution + x + k % 4;
                     items_[texel] = item(rays.hit.primID[k], directions[k]);
@@ -191,9 +152,9 @@ void EmbreeRows::trace_random(std::uint32_t patch) {
         for (std::uint32_t k = 0; k < packet; ++k) {
             const PatchRays::Ray ray = sequence[index++];
             directions[k] = ray.direction;
-            set_ray(rays, static_cast<int>(k), ray.origin, ray.direction, near_);
+            set_ray(rays, static_cast<int>(k), scene_->ray(ray.origin, ray.direction, infinity));
         }
-        scene_->trace(rays, false);
+        trace(*scene_, rays, false);
         for (std::uint32_t k = 0; k < packet; ++k) {
             ++counts_[item(rays.hit.primID[k], directions[k])];
         }

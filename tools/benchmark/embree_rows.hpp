@@ -10,6 +10,10 @@
 #include <string>
 #include <vector>
 
+namespace hemi {
+class EmbreeScene;
+}
+
 namespace hemi::bench {
 
 /// Rows by rays, to measure hemicubes against: Embree on all patches, packets of 16 rays, one thread.
@@ -32,11 +36,9 @@ public:
     [[nodiscard]] std::uint32_t size() const override { return mesh_.size(); }
     [[nodiscard]] std::string renderer() const override;
     void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override;
+    [[nodiscard]] std::uint32_t rays_a_row() const { return static_cast<std::uint32_t>(items_.size()); }
 
 private:
-    struct Scene;
-    static constexpr int packet = 16;
-
     void trace_texels(std::uint32_t patch);
     void trace_random(std::uint32_t patch);
     [[nodiscard]] std::uint32_t item(std::uint32_t primitive, const Vec3& direction) const;
@@ -46,9 +48,8 @@ private:
     Rays rays_;
     EyePoints eyes_;
     DeltaFormFactors weights_;
-    float near_;
-    std::vector<std::uint32_t> patch_of_; ///< patch of every primitive; filled by the scene
-    std::unique_ptr<Scene> scene_;
+    std::vector<std::uint32_t> patch_of_; ///< patch of every primitive
+    std::unique_ptr<EmbreeScene> scene_;
     std::vector<std::uint32_t> identity_; ///< items are their own draw ids
     RowAccumulator accumulator_;
     std::vector<std::uint32_t> items_;  ///< per texel

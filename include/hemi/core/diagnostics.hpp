@@ -10,7 +10,9 @@ namespace hemi {
 /// prints; the program shows them on stderr.
 class Diagnostics {
 public:
+    /// Adds a warning: one sentence, without a line end.
     void warn(std::string message) { warnings_.push_back(std::move(message)); }
+    /// All warnings, in the order in which they were given.
     [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
 private:

@@ -28,11 +28,16 @@ public:
 /// Text that does not parse. what() begins with "file:line:column: " as far as these are known.
 class ParseError : public InputError {
 public:
-    /// @param line,column  from 1; 0 where unknown.
+    /// @param file         as the user named it
+    /// @param line,column  from 1; 0 where unknown
+    /// @param message      value and what would be right, without the place
     ParseError(const std::string& file, std::size_t line, std::size_t column, const std::string& message);
 
+    /// The file that does not parse.
     [[nodiscard]] const std::string& file() const noexcept { return file_; }
+    /// From 1; 0 where unknown.
     [[nodiscard]] std::size_t line() const noexcept { return line_; }
+    /// From 1; 0 where unknown.
     [[nodiscard]] std::size_t column() const noexcept { return column_; }
 
 private:

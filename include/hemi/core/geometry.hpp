@@ -15,16 +15,19 @@ using Vec3 = glm::dvec3;
 
 /// Axis-aligned bounds; empty (lower > upper) until a point is added.
 struct Bounds {
-    Vec3 lower{std::numeric_limits<double>::infinity()};
-    Vec3 upper{-std::numeric_limits<double>::infinity()};
+    Vec3 lower{std::numeric_limits<double>::infinity()};  ///< smallest coordinates
+    Vec3 upper{-std::numeric_limits<double>::infinity()}; ///< largest coordinates
 
+    /// Grows until `point` is in it.
     void add(const Vec3& point) {
         lower = glm::min(lower, point);
         upper = glm::max(upper, point);
     }
+    /// Whether no point was added.
     [[nodiscard]] bool empty() const { return lower.x > upper.x; }
     /// Length of the diagonal; 0 when empty.
     [[nodiscard]] double diagonal() const { return empty() ? 0.0 : glm::length(upper - lower); }
+    /// Middle of the diagonal; not a number when empty.
     [[nodiscard]] Vec3 centre() const { return 0.5 * (lower + upper); }
 };
 

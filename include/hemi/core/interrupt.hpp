@@ -9,6 +9,7 @@ using InterruptCheck = bool (*)();
 /// Installs the check for the whole process; null (the default) never stops anything.
 void set_interrupt_check(InterruptCheck check) noexcept;
 
+/// Asks the installed check.
 /// @throws Cancelled if the installed check says so. What was being written is then taken back.
 void stop_if_interrupted();
 

@@ -13,17 +13,27 @@
 
 namespace hemi {
 
-enum class ToneMapping { filmic, linear };
-enum class Shading { gouraud, flat };
+/// How radiosity times exposure becomes a brightness.
+enum class ToneMapping {
+    filmic, ///< an S-curve that rolls off towards white
+    linear, ///< as it is, cut off at white
+};
 
+/// What a patch's pixels show.
+enum class Shading {
+    gouraud, ///< interpolated between its corners, see corner_values()
+    flat,    ///< its own value
+};
+
+/// How a solution is drawn, apart from the camera.
 struct PictureSettings {
-    std::uint32_t width = 800;
-    std::uint32_t height = 800;
-    std::uint32_t samples = 4; ///< supersamples along each edge of a pixel, 1 to 8
-    Shading shading = Shading::gouraud;
-    ToneMapping tone_mapping = ToneMapping::filmic;
-    double exposure = 1.0; ///< factor on radiosity before tone mapping
-    bool outlines = false; ///< patch outlines on top
+    std::uint32_t width = 800;                      ///< pixels, 1 to 16384
+    std::uint32_t height = 800;                     ///< pixels, 1 to 16384
+    std::uint32_t samples = 4;                      ///< supersamples along each edge of a pixel, 1 to 8
+    Shading shading = Shading::gouraud;             ///< interpolated or flat
+    ToneMapping tone_mapping = ToneMapping::filmic; ///< of `srgb`; `linear` has none
+    double exposure = 1.0;                          ///< factor on radiosity before tone mapping
+    bool outlines = false;                          ///< patch outlines on top
     /// Show the backs of one-sided surfaces, striped; else one looks through them. Nothing radiates from
     /// them.
     bool backs = false;
@@ -33,15 +43,19 @@ struct PictureSettings {
 struct PictureMesh {
     /// 3 per corner, 4 corners a patch (triangle: third repeated), relative to `origin`
     std::vector<float> positions;
-    std::vector<float> corners; ///< 3 per corner, Gouraud values
-    std::vector<float> patches; ///< 3 per patch, flat values
-    Vec3 origin{0.0};
+    std::vector<float> corners;         ///< 3 per corner, Gouraud values
+    std::vector<float> patches;         ///< 3 per patch, flat values
+    Vec3 origin{0.0};                   ///< scene units; keeps digits of scenes far from 0
     Bounds bounds;                      ///< scene units, absolute
     std::array<float, 3> environment{}; ///< radiosity behind all surfaces; zero: there is none
 };
 
-/// The environment is left at zero, for the caller to fill in.
-/// @param show  channels shown as red, green, blue (one channel: {0, 0, 0}).
+/// A solution as a mesh to draw. The environment is left at zero, for the caller to fill in.
+/// @param mesh       its patches
+/// @param channels   of the solution
+/// @param radiosity  channel c of patch i at [i·channels + c]
+/// @param blocked    b_i of every patch, or empty: covered patches lend nothing to their neighbours
+/// @param show       channels shown as red, green, blue (one channel: {0, 0, 0})
 [[nodiscard]] PictureMesh make_picture_mesh(const PatchMesh& mesh, std::uint32_t channels,
                                             std::span<const double> radiosity,
                                             std::span<const double> blocked,
@@ -59,8 +73,8 @@ struct PictureMesh {
 
 /// Pixels, rows from the top, 3 values a pixel.
 struct Picture {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
+    std::uint32_t width = 0;        ///< pixels
+    std::uint32_t height = 0;       ///< pixels
     std::vector<std::uint8_t> srgb; ///< tone-mapped, sRGB-encoded
     std::vector<float> linear;      ///< radiosity, no exposure, no tone mapping
 };

@@ -15,8 +15,10 @@ namespace hemi {
 /// surface: same material, same group, normals within 20°, and not covered. Corners of covered patches take
 /// what uncovered patches give them, and else the mean of the nearest corners that have a value.
 /// Patches that touch a corner in the middle of one of their edges count as meeting there.
-/// @param values   N·channels
-/// @param blocked  b_i per patch, or empty; a patch with b_i > covered_above is covered.
+/// @param mesh      N patches
+/// @param channels  numbers a patch
+/// @param values    N·channels, of channel c of patch i at [i·channels + c]
+/// @param blocked   b_i per patch, or empty; a patch with b_i > covered_above is covered.
 [[nodiscard]] std::vector<float> corner_values(const PatchMesh& mesh, std::uint32_t channels,
                                                std::span<const double> values,
                                                std::span<const double> blocked);

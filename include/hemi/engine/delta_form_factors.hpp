@@ -19,6 +19,7 @@ namespace hemi {
 /// integrals in delta_form_factors.cpp.
 class DeltaFormFactors {
 public:
+    /// What all weights of a hemicube sum to: 2^32 - 1, which stands for 1.
     static constexpr std::uint32_t total = 0xFFFFFFFFu;
 
     /// @param resolution  texels along a full hemicube edge; even, 2 to 4096.
@@ -29,9 +30,11 @@ public:
     /// share·total, never more.
     [[nodiscard]] DeltaFormFactors scaled(double share) const;
 
+    /// Tests a resolution.
     /// @throws InvalidArgument if `resolution` is odd or out of range.
     static void check_resolution(std::uint32_t resolution);
 
+    /// Texels along a full hemicube edge.
     [[nodiscard]] std::uint32_t resolution() const noexcept { return resolution_; }
     /// Sum of all weights.
     [[nodiscard]] std::uint32_t sum() const noexcept { return prefix_.back(); }

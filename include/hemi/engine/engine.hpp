@@ -29,11 +29,12 @@ struct HemicubeSettings {
     /// Up to so many where a surface hovers close above a patch or stands on it; 1: none more.
     std::uint32_t near_eye_points = 1;
 
-    RowQuantity quantity = RowQuantity::form_factors;
+    RowQuantity quantity = RowQuantity::form_factors; ///< what the values of a row are
 
-    bool operator==(const HemicubeSettings&) const = default;
+    bool operator==(const HemicubeSettings&) const = default; ///< member by member
 };
 
+/// Tests a number of eye points.
 /// @throws InvalidArgument if `count` is not 1, 4, 9 … 64.
 void check_eye_points(std::uint32_t count);
 
@@ -49,10 +50,11 @@ struct EngineSettings {
 /// Hemicube rows by OpenGL item buffers. Contexts are made on the first call of rows() or renderer().
 /// On software OpenGL with a worker program, rows come from `jobs` worker processes; on a GPU from one
 /// context of this process.
-/// @param mesh  must outlive the engine.
-/// @throws InvalidArgument for a bad resolution, number of eye points or device name; NoDevice if the device
-/// is not there;
-///   GlError, or Error if a worker ends early (then no row is delivered in its place).
+/// @param mesh      must outlive the engine
+/// @param settings  what changes the rows
+/// @param engine    device and workers
+/// @throws InvalidArgument for a bad resolution, number of eye points or device name; NoDevice if the
+///   device is not there; GlError, or Error if a worker ends early (then no row is delivered in its place).
 [[nodiscard]] std::unique_ptr<RowProvider>
 make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const EngineSettings& engine);
 

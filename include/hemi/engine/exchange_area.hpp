@@ -20,6 +20,8 @@ enum class ExchangeRule {
 ///
 /// The part of the polygon below the element's horizon does not count. 0 if the element sees the polygon's
 /// back or lies in its plane.
+/// @param at       position of the element, scene units
+/// @param normal   of the element, of unit length
 /// @param polygon  3 or 4 corners, planar, convex, counter-clockwise about its front.
 /// Source: J. H. Lambert, "Photometria", 1760; C. M. Goral, K. E. Torrance, D. P. Greenberg, B. Battaile,
 /// "Modeling the Interaction of Light Between Diffuse Surfaces", SIGGRAPH 1984; D. R. Baum, H. E. Rushmeier,
@@ -39,13 +41,15 @@ enum class ExchangeRule {
 /// 1963; P. Schröder, P. Hanrahan, "On the Form Factor between Two Polygons", SIGGRAPH 1993.
 class ExchangeAreas {
 public:
-    /// @param mesh  is read here and not kept.
+    /// @param mesh  is read here and not kept
+    /// @param rule  how closely areas are computed
     explicit ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule = ExchangeRule::standard);
 
     /// A_i F(i, j) = A_j F(j, i); both orders give the same bits. 0 where the two do not face each other, and
     /// on one surface.
     [[nodiscard]] double operator()(std::uint32_t i, std::uint32_t j) const;
 
+    /// Number of patches.
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(patches_.size()); }
 
 private:

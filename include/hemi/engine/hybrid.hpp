@@ -10,22 +10,29 @@
 
 namespace hemi {
 
-/// What the hybrid needs for the rows of `patches`, from up to `samples` of them spread evenly.
+/// What the hybrid needs for rows, see estimate_hybrid().
 struct HybridEstimate {
     double entries_per_row = 0.0;   ///< mean over the sample: patches that are not wholly hidden
     std::uint64_t memory_bytes = 0; ///< of the table of pairs and the matrix, with 20 % on top of the latter
     double seconds = 0.0;           ///< for the visibility of all rows, at the sample's speed
 };
+
+/// What compute_hybrid() needs for the rows of `patches`, from up to `samples` of them spread evenly.
+/// @param visibility  gives rows of RowQuantity::visibility
+/// @param patches     ascending
+/// @param samples     rows that are computed, and thrown away
 [[nodiscard]] HybridEstimate estimate_hybrid(RowProvider& visibility, std::span<const std::uint32_t> patches,
                                              std::uint32_t samples = 64);
 
+/// What changes the rows of the hybrid, besides what changes their visibility.
 struct HybridSettings {
     ExchangeRule rule = ExchangeRule::standard; ///< of F0
     /// Rays between the two patches of every pair that is partly hidden, if fewer than four times as many
-    /// texels tell how much; both are then weighed by their numbers. 0: none.
+    /// texels (counted to 256) tell how much; both are then weighed by their numbers. Pairs that matter
+    /// least, with together a twentieth of the variance of all such pairs, get none. 0: none at all.
     std::uint32_t shadow_rays = 0;
 
-    bool operator==(const HybridSettings&) const = default;
+    bool operator==(const HybridSettings&) const = default; ///< member by member
 };
 
 /// Rows of `patches` by the hybrid: A_i F(i, j) = F0(i, j)·V(i, j).
@@ -43,10 +50,14 @@ struct HybridSettings {
 ///
 /// Memory: for every pair of one of `patches` with any patch 4 bytes until pairs are combined, then 2; and
 /// the matrix.
-/// @param visibility  gives rows of RowQuantity::visibility
-/// @param rows_done   called after every row of visibility; may be empty
+/// @param visibility      gives rows of RowQuantity::visibility
+/// @param mesh            of N patches, the one that `visibility` sees
+/// @param patches         rows that are wanted, ascending; the others stay unknown
+/// @param settings        rule of F0, shadow rays
+/// @param enclosure       as the scene says
+/// @param rows_done       called after every row of visibility; may be empty
 /// @param pairs_combined  called after every 64 rows whose visibility was combined; may be empty
-/// @param pairs_done  called after every 64 rows of pairs; may be empty
+/// @param pairs_done      called after every 64 rows of pairs; may be empty
 /// @throws Cancelled when one of them returns false.
 [[nodiscard]] FormFactorMatrix
 compute_hybrid(RowProvider& visibility, const PatchMesh& mesh, std::span<const std::uint32_t> patches,

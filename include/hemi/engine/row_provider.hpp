@@ -28,10 +28,15 @@ public:
     /// Computes the rows of `patches` (ascending, no duplicates) and hands each to `sink`, from the calling
     /// thread. Rows of one block of FormFactorMatrix::block_rows come in order; blocks come in any order.
     virtual void rows(std::span<const std::uint32_t> patches, const RowSink& sink) = 0;
+
+    /// Hemicubes drawn so far for rows that were delivered; 0 by a method that draws none.
+    [[nodiscard]] virtual std::uint64_t hemicubes() const { return 0; }
 };
 
 /// Rows of `patches` as a matrix; the other rows stay unknown.
-/// @param progress  called after every row with the rows done so far; may be empty.
+/// @param provider  computes the rows
+/// @param patches   ascending, no duplicates
+/// @param progress  called after every row with the rows done so far; may be empty
 /// @throws Cancelled when progress returns false.
 [[nodiscard]] FormFactorMatrix compute_matrix(RowProvider& provider, std::span<const std::uint32_t> patches,
                                               const Progress& progress = {});
@@ -39,12 +44,15 @@ public:
 /// All rows.
 [[nodiscard]] FormFactorMatrix compute_matrix(RowProvider& provider, const Progress& progress = {});
 
-/// What the rows of `patches` will need, from up to `samples` of them spread evenly, plus 20 %.
+/// What rows will need, see estimate_matrix().
 struct MatrixEstimate {
     double entries_per_row = 0.0;   ///< mean over the sample
     std::uint64_t memory_bytes = 0; ///< of the matrix, with the 20 % on top
     double seconds = 0.0;           ///< for all rows, at the sample's speed
 };
+
+/// What compute_matrix() will need for the rows of `patches`, from up to `samples` of them spread evenly,
+/// which are computed and thrown away.
 [[nodiscard]] MatrixEstimate estimate_matrix(RowProvider& provider, std::span<const std::uint32_t> patches,
                                              std::uint32_t samples = 64);
 

@@ -37,10 +37,10 @@ enum class Yardstick {
 
 /// Settings that change the rows.
 struct YardstickSettings {
-    Yardstick method = Yardstick::direct;
-    std::uint32_t rays = 16384;     ///< montecarlo: rays a patch; powers of two are best
-    std::uint32_t resolution = 256; ///< hemisphere: grid cells along the disc's diameter
-    std::uint64_t seed = 0;         ///< montecarlo, hemisphere
+    Yardstick method = Yardstick::direct; ///< how F is found
+    std::uint32_t rays = 16384;           ///< montecarlo: rays a patch; powers of two are best
+    std::uint32_t resolution = 256;       ///< hemisphere: grid cells along the disc's diameter
+    std::uint64_t seed = 0;               ///< montecarlo, hemisphere
 };
 
 /// Patches above which yardsticks are refused: they would take hours.
@@ -51,10 +51,10 @@ inline constexpr std::uint32_t yardstick_patches_max = 4000;
 /// Where the method knows occlusion, environment and blocked shares are counted as the factors are. direct
 /// and contour know none: the environment has what is missing to 1, and nothing is blocked; rows whose view
 /// is obstructed then sum to more than 1.
-/// @param mesh  must outlive the provider.
+/// @param mesh      must outlive the provider
+/// @param settings  method and how much of it
 /// @throws InvalidArgument for more than yardstick_patches_max patches, or no rays, more than 2^31 of them,
-/// or a
-///   resolution outside 1 to 16384.
+///   or a resolution outside 1 to 16384.
 [[nodiscard]] std::unique_ptr<RowProvider> make_yardstick(const PatchMesh& mesh,
                                                           const YardstickSettings& settings);
 

@@ -11,7 +11,10 @@ namespace hemi::io {
 /// every group, every patch with corners of its own (quadrilaterals as two triangles), one unlit material
 /// (KHR_materials_unlit). Vertex attributes, 32-bit floats: POSITION about the node's translation, the centre
 /// of the scene; COLOR_0, linear, `exposure` times radiosity, from 0 to 1; _RADIOSITY, as it is, W/m².
-/// @param radiosity  red, green, blue of corner k of patch i at [(i·4 + k)·3], as corner_values has them
+/// @param path       of the file
+/// @param mesh       its patches
+/// @param radiosity  red, green, blue of corner k of patch i at [(i·4 + k)·3], as corner_values() has them
+/// @param exposure   factor on radiosity for the colours, >= 0
 /// @throws InvalidArgument for another length, values that are not finite, an exposure that is negative, more
 ///   bytes than a .glb can hold (4 GiB); IoError
 void write_baked_glb(const std::filesystem::path& path, const PatchMesh& mesh,

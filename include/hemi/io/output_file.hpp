@@ -15,15 +15,21 @@ namespace hemi::io {
 /// writes to standard output.
 class OutputFile {
 public:
+    /// Opens the temporary file, empty.
     /// @throws IoError naming the path and the system's reason.
     explicit OutputFile(std::filesystem::path path);
     ~OutputFile();
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
 
+    /// Appends text.
     /// @throws IoError, for example when the disk is full.
     void write(std::string_view text);
+    /// Appends bytes.
+    /// @throws IoError, for example when the disk is full.
     void write(const void* data, std::size_t bytes);
+    /// Makes the file appear under its name, in place of one that is there. Nothing is written afterwards.
+    /// @throws IoError; the old file is then still there.
     void commit();
 
     /// Where bytes go until commit(): for libraries that write a file by name. Empty for "-".

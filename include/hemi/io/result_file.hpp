@@ -16,32 +16,37 @@ namespace hemi::io {
 /// surface has the grid that was solved as its own, and the subdivision asks for nothing: the patches do
 /// not depend on how surfaces would be cut today.
 struct ResultFile {
-    Scene scene; ///< geometry, materials, camera, channels: all but file names
-    Subdivision subdivision;
+    Scene scene;                     ///< geometry, materials, camera, channels: all but file names
+    Subdivision subdivision;         ///< how surfaces were cut, for write_hres()
     std::vector<double> radiosity;   ///< B, N·channels
     std::vector<double> irradiance;  ///< H = F B + e B_env, N·channels
     std::vector<double> row_sum;     ///< N, sum_j F(i, j)
     std::vector<double> environment; ///< N, e_i
     std::vector<double> blocked;     ///< N, b_i
-    std::string solver;
-    std::uint32_t sweeps = 0;
-    double residual = 0.0;
-    std::string renderer;
-    std::string chosen_for; ///< why the settings are what they are, where the program chose them
+    std::string solver;              ///< as solver_name()
+    std::uint32_t sweeps = 0;        ///< or iterations
+    double residual = 0.0;           ///< relative, as RadiositySolution::residual
+    std::string renderer;            ///< what computed the rows
+    std::string chosen_for;          ///< why the settings are what they are, where the program chose them
     /// What the factors and the radiosity are off by, with arrays of N and of N·channels.
     std::optional<FactorError> factor_error;
     std::optional<RadiosityError> radiosity_error; ///< only with factor_error
 };
 
+/// Writes `.hres`.
 /// @throws InvalidArgument for arrays of other lengths and values that are not finite; IoError
 void write_hres(const std::filesystem::path& path, const ResultFile& result);
+/// Reads `.hres`.
 /// @throws InputError for anything that is not a sound `.hres`.
 [[nodiscard]] ResultFile read_hres(const std::filesystem::path& path);
 
 /// One line a patch: index,group,area,cx,cy,cz,nx,ny,nz (index from 0; shortest digits that read back equal).
 void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh);
 /// The same columns, then exitance_C, irradiance_C, radiosity_C for every channel name C.
-/// @param exitance,irradiance,radiosity  N·channels each.
+/// @param path      of the file
+/// @param mesh      N patches
+/// @param channels  their names
+/// @param exitance,irradiance,radiosity  N·channels each, channel c of patch i at [i·channels + c]
 void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
                          std::span<const std::string> channels, std::span<const double> exitance,
                          std::span<const double> irradiance, std::span<const double> radiosity);

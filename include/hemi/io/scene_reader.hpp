@@ -9,6 +9,7 @@
 
 namespace hemi::io {
 
+/// What a reader does beyond what the file says.
 struct SceneReaderOptions {
     std::vector<std::string> two_sided_groups; ///< groups whose faces radiate on both sides
     bool skip_degenerate = false; ///< leave out faces of zero area, with a warning, instead of refusing
@@ -21,7 +22,7 @@ struct SceneReaderOptions {
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                Diagnostics& diagnostics);
 
-/// hemi's JSON: see README, "Scene format". Meshes it names are read relative to the file.
+/// hemi's JSON: see README, "Scenes". Meshes it names are read relative to the file.
 [[nodiscard]] Scene read_json_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                     Diagnostics& diagnostics);
 

@@ -11,7 +11,7 @@ namespace hemi::io {
 
 /// Numbers of every patch, under a name.
 struct CellArray {
-    std::string name;
+    std::string name;                    ///< as ParaView shows it
     std::vector<double> values;          ///< component c of patch i at [i·components + c]
     std::vector<std::string> components; ///< their names; empty: one number a patch
 };

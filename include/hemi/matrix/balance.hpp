@@ -11,9 +11,9 @@ namespace hemi {
 
 /// Row sums sum_j F(i, j) over the known rows.
 struct RowSums {
-    double min = 0.0;
-    double max = 0.0;
-    double mean = 0.0;
+    double min = 0.0;                 ///< smallest sum
+    double max = 0.0;                 ///< largest sum
+    double mean = 0.0;                ///< of the sums
     double environment_max = 0.0;     ///< largest e_i
     double blocked_max = 0.0;         ///< largest b_i
     double balance_error_max = 0.0;   ///< largest |sum + e + b - 1| of a row that is not covered
@@ -22,6 +22,8 @@ struct RowSums {
     std::uint32_t covered = 0;        ///< rows with b_i > covered_above
     std::uint32_t partly_blocked = 0; ///< rows with 0 < b_i <= covered_above
 };
+
+/// Row sums, environment and blocked shares of all known rows.
 [[nodiscard]] RowSums row_sums(const FormFactorMatrix& factors);
 
 /// How far A_i F(i, j) and A_j F(j, i) are apart, over pairs of known rows of which one is stored.
@@ -31,12 +33,14 @@ struct Reciprocity {
     double max = 0.0;          ///< largest such difference
     double relative_rms = 0.0; ///< of the relative error, over pairs with F > 1e-4 either way
     double relative_max = 0.0; ///< largest relative error, over all pairs
-    std::uint32_t worst_i = 0; ///< the pair of the largest difference
-    std::uint32_t worst_j = 0;
-    std::uint64_t pairs = 0;
+    std::uint32_t worst_i = 0; ///< one patch of the pair of the largest difference
+    std::uint32_t worst_j = 0; ///< its other patch
+    std::uint64_t pairs = 0;   ///< that were compared
 };
-/// Memory: O(N). The same bits on any number of threads.
-/// @param areas  N areas.
+
+/// Compares both directions of all pairs. Memory: O(N). The same bits on any number of threads.
+/// @param factors  N rows
+/// @param areas    N areas
 [[nodiscard]] Reciprocity reciprocity(const FormFactorMatrix& factors, std::span<const double> areas);
 
 /// Whether A_i F(i, j) and A_j F(j, i) differ by no more than the rounding of both to floats.
@@ -45,13 +49,18 @@ struct Reciprocity {
 /// F summed over groups of patches, area-weighted on the leaving side:
 /// F(g, h) = sum_{i in g} A_i sum_{j in h} F(i, j) / sum_{i in g} A_i.
 struct GroupFactors {
-    std::uint32_t groups = 0;
+    std::uint32_t groups = 0;        ///< their number
     std::vector<double> areas;       ///< per group
     std::vector<double> factors;     ///< groups x groups, row g: what leaves g
     std::vector<double> environment; ///< per group, area-weighted mean of e
     std::vector<double> blocked;     ///< per group, area-weighted mean of b
 };
-/// @param group_of  group of every patch, below `groups`.
+
+/// Sums the rows of all patches by groups.
+/// @param factors   N rows, all known
+/// @param areas     N areas
+/// @param group_of  group of every patch, below `groups`
+/// @param groups    number of groups
 /// @throws InvalidArgument if a row is unknown or sizes differ.
 [[nodiscard]] GroupFactors group_factors(const FormFactorMatrix& factors, std::span<const double> areas,
                                          std::span<const std::uint32_t> group_of, std::uint32_t groups);

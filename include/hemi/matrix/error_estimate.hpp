@@ -17,8 +17,8 @@ struct FactorError {
     double rms = 0.0;          ///< of a factor, over the pairs that see each other
     double max = 0.0;          ///< of a factor, over all pairs
     double row_rms = 0.0;      ///< of a row, over all rows
-    double row_max = 0.0;
-    std::vector<double> rows; ///< N, the error of every row; 0 where it is unknown
+    double row_max = 0.0;      ///< of a row, the largest
+    std::vector<double> rows;  ///< N, the error of every row; 0 where it is unknown
 };
 
 /// What the known rows of `factors` are off by, judged by the rows of `reference`.
@@ -28,7 +28,9 @@ struct FactorError {
 /// sample shows. Totals are made from their mean, the error of a single row from the largest of them, with
 /// something on top where the sample is small. The largest error of a factor goes like its row's largest
 /// factor.
-/// @param columns  compare in these columns only, ascending; empty: in all. What lies in others is taken to
+/// @param factors    N rows
+/// @param reference  N rows, some of them known: better ones, see compute_reference()
+/// @param columns    compare in these columns only, ascending; empty: in all. What lies in others is taken to
 ///   be as wrong as what lies in these.
 /// @throws InvalidArgument if the sizes differ, or no row of the reference is known in `factors`.
 [[nodiscard]] FactorError estimate_factor_error(const FormFactorMatrix& factors,
@@ -49,7 +51,12 @@ struct RadiosityError {
 /// estimate_factor_error, each factor's times B_j², and scaled to what the sample's irradiances are off by.
 /// To that comes what all rows have in common, the sample's mean and that mean's own error, which the scene
 /// amplifies as it does light: by sum A rho / sum A (1 - rho sum_j F).
-/// @param areas  N areas; @param reflectance, exitance, radiosity  N·channels
+/// @param factors    N rows
+/// @param reference  N rows, some of them known
+/// @param areas      N areas
+/// @param channels   of the solution
+/// @param reflectance,exitance,radiosity  N·channels, channel c of patch i at [i·channels + c]
+/// @param columns    as in estimate_factor_error()
 /// @throws InvalidArgument as estimate_factor_error, and for spans that do not fit.
 [[nodiscard]] RadiosityError
 estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,

@@ -14,8 +14,8 @@ inline constexpr std::uint8_t visibility_clear = 255;
 /// One row of F, seen but not owned. `columns` ascend; `values[k]` is F(i, columns[k]), the share of what
 /// leaves patch i that arrives at patch columns[k]. Balance: sum of values + environment + blocked = 1.
 struct RowView {
-    std::span<const std::uint32_t> columns;
-    std::span<const float> values;
+    std::span<const std::uint32_t> columns; ///< patches j, ascending
+    std::span<const float> values;          ///< F(i, j)
     /// Where factors are F0·V: the code of V of every entry, else empty.
     std::span<const std::uint8_t> visibility = {};
     double environment = 0.0; ///< e_i, share that meets nothing
@@ -27,15 +27,16 @@ struct RowView {
 
 /// Consecutive rows of a sparse matrix that are stored, written and read together.
 struct RowBlock {
-    std::uint32_t first_row = 0;
-    std::vector<std::uint64_t> begin; ///< rows + 1 offsets into columns and values, begin[0] = 0
-    std::vector<std::uint32_t> columns;
-    std::vector<float> values;
+    std::uint32_t first_row = 0;          ///< a multiple of FormFactorMatrix::block_rows
+    std::vector<std::uint64_t> begin;     ///< rows + 1 offsets into columns and values, begin[0] = 0
+    std::vector<std::uint32_t> columns;   ///< patch j per entry, ascending in a row
+    std::vector<float> values;            ///< F(i, j) per entry
     std::vector<std::uint8_t> visibility; ///< code of V per entry; empty where V is not known
     std::vector<double> environment;      ///< e per row
     std::vector<double> blocked;          ///< b per row
     std::vector<std::uint8_t> known;      ///< per row: 0 where the row was not computed (it is then empty)
 
+    /// Number of rows, known or not.
     [[nodiscard]] std::uint32_t rows() const noexcept { return static_cast<std::uint32_t>(known.size()); }
 };
 
@@ -50,17 +51,22 @@ public:
     /// A matrix whose rows are all unknown.
     explicit FormFactorMatrix(std::uint32_t size);
 
+    /// N, the number of patches.
     [[nodiscard]] std::uint32_t size() const noexcept { return size_; }
+    /// Row i, valid until its block is replaced; empty if it is not known.
     [[nodiscard]] RowView row(std::uint32_t i) const;
     /// Whether row i was computed; `solve` leaves out rows that the scene does not require.
     [[nodiscard]] bool known(std::uint32_t i) const;
+    /// Whether every row was computed.
     [[nodiscard]] bool all_known() const;
     /// Whether there are entries, and a visibility for each of them.
     [[nodiscard]] bool has_visibility() const noexcept;
     /// Stored entries, all rows.
     [[nodiscard]] std::uint64_t entries() const noexcept;
+    /// Bytes that the rows take in memory.
     [[nodiscard]] std::uint64_t memory_bytes() const noexcept;
 
+    /// All blocks, in the order of their rows.
     [[nodiscard]] std::span<const RowBlock> blocks() const noexcept { return blocks_; }
     /// Replaces the block that starts at `block.first_row`.
     /// @throws InvalidArgument if it does not fit the matrix: wrong first row or row count, offsets that do

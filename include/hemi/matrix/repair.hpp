@@ -10,7 +10,7 @@ namespace hemi {
 
 /// What is made true of the rows. x_ij = A_i F(i, j) is the exchange area of a pair.
 enum class Repair {
-    none,
+    none, ///< nothing: the rows as they were computed
     /// A_i F(i, j) = A_j F(j, i): x = (F(i, j) + F(j, i)) / (1/A_i + 1/A_j), which trusts the row of the
     /// smaller patch; a factor that is not stored counts 0. Row sums are what comes of it.
     reciprocity,
@@ -20,28 +20,30 @@ enum class Repair {
     closure,
 };
 
+/// How far rows are repaired.
 struct RepairSettings {
     /// Relative error of the unoccluded factor F0 where factors are F0·V: 1e-3 by the standard rule, 3e-5 by
     /// the exact one. Pairs that see each other clearly may move by about this, and partly hidden ones may
     /// exceed F0 by it.
     double unoccluded_error = 1e-3;
-    double tolerance = 1e-10; ///< of a row sum, before it is rounded to floats
-    std::uint32_t max_passes = 20;
+    double tolerance = 1e-9;             ///< of a row sum, before it is rounded to floats
+    std::uint32_t max_passes = 20;       ///< with more and more pairs held at their bounds
     std::uint32_t max_iterations = 2000; ///< of conjugate gradients, a pass
 };
 
 /// |sum_j F(i, j) + e_i + b_i - 1| over the rows that are known and not covered.
 struct RowError {
-    double max = 0.0;
-    double rms = 0.0;
+    double max = 0.0; ///< the largest
+    double rms = 0.0; ///< root of the mean square
 };
 
+/// What a repair did.
 struct RepairReport {
-    Repair repair = Repair::none;
-    RowError row_error_before;
-    RowError row_error_after;
-    Reciprocity reciprocity_before;
-    Reciprocity reciprocity_after;
+    Repair repair = Repair::none;    ///< what was asked for
+    RowError row_error_before;       ///< how far rows were from balance
+    RowError row_error_after;        ///< how far they are now
+    Reciprocity reciprocity_before;  ///< how far pairs were apart
+    Reciprocity reciprocity_after;   ///< how far they are now
     std::uint64_t added = 0;         ///< entries that only the other direction had stored
     std::uint32_t iterations = 0;    ///< of conjugate gradients, in all passes
     std::uint32_t passes = 0;        ///< with the pairs at their bounds held there since
@@ -65,7 +67,10 @@ struct RepairReport {
 /// result is the same on any number of threads.
 /// Source: least-squares enforcement as in R. P. Taylor, R. Luck, "Comparison of reciprocity and closure
 /// enforcement methods for radiation view factors", J. Thermophysics and Heat Transfer 9, 1995.
-/// @param areas  N areas.
+/// @param factors   N rows, changed in place
+/// @param areas     N areas
+/// @param repair    what is made true; none only measures
+/// @param settings  tolerances and limits
 /// @throws InvalidArgument for areas or settings that do not fit.
 RepairReport repair(FormFactorMatrix& factors, std::span<const double> areas, Repair repair,
                     const RepairSettings& settings = {});

@@ -10,7 +10,7 @@ namespace hemi {
 /// A patch with a surface so near in front of it that few sample points cannot tell what it hides. Neighbours
 /// that meet the patch at its border are not meant.
 struct NearSurface {
-    std::uint32_t patch = 0;
+    std::uint32_t patch = 0;   ///< the patch
     std::uint32_t surface = 0; ///< the nearest one
     double gap = 0.0;          ///< its distance in patch sizes (square roots of areas), below near_gap
 };

@@ -15,14 +15,15 @@ struct Subdivision {
     std::optional<double> patch_size;              ///< Longest patch edge, scene units.
     std::optional<std::uint32_t> patches_per_face; ///< About so many: k x k with the smallest k² >= N.
 
-    bool operator==(const Subdivision&) const = default;
+    bool operator==(const Subdivision&) const = default; ///< member by member
 };
 
 /// Corners of one patch, counter-clockwise about its normal.
 struct PatchCorners {
-    std::array<Vec3, 4> points{};
-    std::uint32_t count = 4;
+    std::array<Vec3, 4> points{}; ///< the fourth is unused for a triangle
+    std::uint32_t count = 4;      ///< 3 or 4
 
+    /// The corners that are used.
     [[nodiscard]] std::span<const Vec3> polygon() const { return {points.data(), count}; }
 };
 
@@ -34,9 +35,11 @@ struct PatchCorners {
 /// Memory: about 70 bytes a patch.
 class PatchMesh {
 public:
+    /// Cuts the scene, which is not needed afterwards.
     /// @throws InvalidArgument if there would be 2^31 patches or more; InputError as validate(scene).
     explicit PatchMesh(const Scene& scene, const Subdivision& subdivision = {});
 
+    /// N, the number of patches.
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(areas_.size()); }
 
     /// Areas of all patches, scene units squared.
@@ -46,20 +49,25 @@ public:
     /// Index of the surface that patch `i` belongs to, into surfaces().
     [[nodiscard]] std::span<const std::uint32_t> surface_of() const noexcept { return surface_of_; }
 
+    /// Unit normal, towards the side that the patch radiates to.
     [[nodiscard]] Vec3 normal(std::uint32_t patch) const;
+    /// Index into groups().
     [[nodiscard]] std::uint32_t group(std::uint32_t patch) const {
         return surfaces_[surface_of_[patch]].group;
     }
+    /// Index into Scene::materials.
     [[nodiscard]] std::uint32_t material(std::uint32_t patch) const {
         return surfaces_[surface_of_[patch]].material;
     }
     /// Whether the patch is on the back of a two-sided surface.
     [[nodiscard]] bool is_back(std::uint32_t patch) const;
+    /// Corners, counter-clockwise about the patch's normal.
     [[nodiscard]] PatchCorners corners(std::uint32_t patch) const;
     /// Grid coordinates of the patch's centroid on its surface: u in (0, grid.u), v in (0, grid.v) measured
     /// along the surface's parameters (bilinear for quadrilaterals, barycentric times n for triangles).
     [[nodiscard]] std::array<double, 2> grid_coordinates(std::uint32_t patch) const;
 
+    /// The scene's surfaces.
     [[nodiscard]] std::span<const Surface> surfaces() const noexcept { return surfaces_; }
     /// Subdivision of surface `s`.
     [[nodiscard]] Grid grid(std::uint32_t s) const { return grids_[s]; }
@@ -70,7 +78,9 @@ public:
     /// Unit normal of the front of surface `s`.
     [[nodiscard]] const Vec3& surface_normal(std::uint32_t s) const { return surface_normals_[s]; }
 
+    /// Names of the scene's groups.
     [[nodiscard]] const std::vector<std::string>& groups() const noexcept { return groups_; }
+    /// Of all corners.
     [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
     /// Length below which differences of coordinates are rounding: it grows with the distance of the scene
     /// from the origin.

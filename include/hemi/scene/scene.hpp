@@ -13,11 +13,11 @@ namespace hemi {
 
 /// What a surface does with light (or heat): a diffuse reflector that may also radiate by itself.
 struct Material {
-    std::string name;
+    std::string name;                ///< as in the file
     std::vector<double> reflectance; ///< Share reflected, in [0, 1), one value per channel.
     std::vector<double> exitance;    ///< Radiated by itself, W/m² (or lm/m²), >= 0, one value per channel.
 
-    bool operator==(const Material&) const = default;
+    bool operator==(const Material&) const = default; ///< member by member
 };
 
 /// Number of patches along the two directions of a surface.
@@ -25,7 +25,7 @@ struct Grid {
     std::uint32_t u = 1; ///< along vertex 0 -> vertex 1
     std::uint32_t v = 1; ///< along vertex 0 -> vertex 3 (quadrilateral); equal to u for a triangle
 
-    bool operator==(const Grid&) const = default;
+    bool operator==(const Grid&) const = default; ///< member by member
 };
 
 /// A planar convex triangle or quadrilateral. Front side: vertices counter-clockwise.
@@ -37,36 +37,42 @@ struct Surface {
     bool two_sided = false;      ///< Radiates and receives on its back too; otherwise the back only blocks.
     std::optional<Grid> patches; ///< Subdivision of its own; beats Scene::patch_size.
 
+    /// The vertices that are used.
     [[nodiscard]] std::span<const Vec3> polygon() const { return {vertices.data(), vertex_count}; }
 };
 
-/// `fov` is the vertical field of view in degrees. An orthographic camera shows what a perspective one shows
-/// at the target's depth, at that size everywhere, and nothing is too near for it: also what lies behind its
-/// eye.
+/// Where a picture is taken from. An orthographic camera shows what a perspective one shows at the target's
+/// depth, at that size everywhere, and nothing is too near for it: also what lies behind its eye.
 struct Camera {
-    Vec3 eye{0.0};
-    Vec3 target{0.0, 1.0, 0.0};
-    Vec3 up{0.0, 0.0, 1.0};
-    double fov = 40.0;
-    bool orthographic = false; ///< else perspective
+    Vec3 eye{0.0};              ///< position, scene units
+    Vec3 target{0.0, 1.0, 0.0}; ///< what is in the middle of the picture
+    Vec3 up{0.0, 0.0, 1.0};     ///< direction that is upwards in the picture, of any length
+    double fov = 40.0;          ///< vertical field of view, degrees
+    bool orthographic = false;  ///< else perspective
 };
 
-enum class Enclosure { automatic, closed, open };
+/// Whether all that leaves a patch arrives at another.
+enum class Enclosure {
+    automatic, ///< as the rows show
+    closed,    ///< yes; what a row misses is a leak
+    open,      ///< no; what a row misses is the environment's share
+};
 
 /// A scene as its file tells it: plain data, in the file's order and units.
 struct Scene {
-    std::string name;
-    std::vector<std::string> channels{"grey"};
-    std::vector<Material> materials;
-    std::vector<std::string> groups; ///< Unique names, in order of first appearance.
-    std::vector<Surface> surfaces;
-    std::optional<double> patch_size; ///< Longest patch edge, scene units.
-    Enclosure enclosure = Enclosure::automatic;
+    std::string name;                           ///< Its own, or the file's.
+    std::vector<std::string> channels{"grey"};  ///< Names, of one channel or more.
+    std::vector<Material> materials;            ///< In the file's order.
+    std::vector<std::string> groups;            ///< Unique names, in order of first appearance.
+    std::vector<Surface> surfaces;              ///< In the file's order.
+    std::optional<double> patch_size;           ///< Longest patch edge, scene units.
+    Enclosure enclosure = Enclosure::automatic; ///< What the file says about it.
     std::vector<double> environment; ///< Exitance of the environment (pi times its radiance), per channel.
-    std::optional<Camera> camera;
+    std::optional<Camera> camera;    ///< None: see default_camera().
 
     /// Index of the group of that name, made if it is new.
     std::uint32_t group_index(const std::string& group_name);
+    /// Of all vertices.
     [[nodiscard]] Bounds bounds() const;
 };
 
@@ -76,7 +82,7 @@ struct Scene {
 /// @throws InputError naming the material or the group and surface, the value and the range.
 void validate(const Scene& scene);
 
-/// What is wrong with a polygon as a surface, or nothing: two few or too many vertices, a value that is not
+/// What is wrong with a polygon as a surface, or nothing: too few or too many vertices, a value that is not
 /// finite, zero area, not planar (by more than 1e-5 of its size), not convex.
 [[nodiscard]] std::optional<std::string> polygon_defect(std::span<const Vec3> polygon);
 

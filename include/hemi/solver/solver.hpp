@@ -21,17 +21,18 @@ namespace hemi {
 /// rows of covered patches, where closure does not hold, only an excess of sum + e over 1 is taken off so.
 /// Rows that are farther from balance are taken as they are.
 struct RadiosityProblem {
-    const FormFactorMatrix* factors = nullptr;
-    std::uint32_t channels = 1;
-    std::span<const double> reflectance; ///< rho, N·channels, in [0, 1)
-    std::span<const double> exitance;    ///< E, N·channels, >= 0
-    std::span<const double> environment; ///< B_env, channels, >= 0; empty: zero
-    std::span<const double> areas = {};  ///< A, N; needed by conjugate gradients
+    const FormFactorMatrix* factors = nullptr; ///< F, N rows; must outlive the problem
+    std::uint32_t channels = 1;                ///< wavelengths, bands or colours that are solved at once
+    std::span<const double> reflectance;       ///< rho, N·channels, in [0, 1)
+    std::span<const double> exitance;          ///< E, N·channels, >= 0
+    std::span<const double> environment;       ///< B_env, channels, >= 0; empty: zero
+    std::span<const double> areas = {};        ///< A, N; needed by conjugate gradients
 };
 
+/// How the radiosity equation is solved.
 enum class SolverMethod {
-    gauss_seidel,
-    jacobi,
+    gauss_seidel, ///< sweeps that use new values at once
+    jacobi,       ///< sweeps that use the values of the sweep before
     /// On the symmetric system of the exchange areas A_i F(i, j), read from one triangle; needs reciprocal
     /// rows. Its iterations hardly depend on the reflectance.
     conjugate_gradient,
@@ -48,16 +49,18 @@ enum class SolverMethod {
 using SweepWatcher = std::function<void(std::uint32_t sweep, double residual,
                                         const std::function<std::vector<double>()>& radiosity)>;
 
+/// How far and from where a problem is solved.
 struct SolverSettings {
-    SolverMethod method = SolverMethod::automatic;
-    double tolerance = 1e-6;           ///< on the relative residual, see RadiositySolution
-    std::uint32_t max_sweeps = 100000; ///< or iterations
+    SolverMethod method = SolverMethod::automatic; ///< the solver
+    double tolerance = 1e-6;                       ///< on the relative residual, see RadiositySolution
+    std::uint32_t max_sweeps = 100000;             ///< or iterations
     /// Where sweeps begin, N·channels: the solution of a problem that was much the same. Empty: the sources.
     /// Conjugate gradients do not look at it.
     std::span<const double> start = {};
     SweepWatcher watch = {}; ///< for those who want to see it converge; may be empty, may throw Cancelled
 };
 
+/// What solve_radiosity() found.
 struct RadiositySolution {
     std::vector<double> radiosity;                    ///< B, N·channels
     SolverMethod method = SolverMethod::gauss_seidel; ///< the one that was used, never automatic
