@@ -106,7 +106,7 @@ void RowFinder::work(const std::stop_token& stop) {
     {
         const std::lock_guard lock(mutex_);
         result_ = std::move(found);
-        problem_ = problem;
+        problem_ = std::move(problem); // the last hold on it on this thread
         finished_ = true;
     }
     changed_();
