@@ -46,6 +46,29 @@ private:
     std::unique_ptr<RowProvider> engine_;
 };
 
+/// Shows rows to a watcher and passes them on.
+class WatchedRows : public RowProvider {
+public:
+    WatchedRows(RowProvider& provider, RowQuantity quantity, const RowWatcher& watcher)
+        : provider_(provider), quantity_(quantity), watcher_(watcher) {}
+
+    [[nodiscard]] std::uint32_t size() const override { return provider_.size(); }
+    [[nodiscard]] std::string renderer() const override { return provider_.renderer(); }
+    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
+        provider_.rows(patches, [&](std::uint32_t patch, const RowView& row) {
+            if (watcher_) {
+                watcher_(patch, row, quantity_);
+            }
+            sink(patch, row);
+        });
+    }
+
+private:
+    RowProvider& provider_;
+    RowQuantity quantity_;
+    const RowWatcher& watcher_;
+};
+
 void check_two_sided_groups(const Scene& scene, const SceneOptions& options) {
     if (options.two_sided.empty()) {
         return;
@@ -301,7 +324,8 @@ struct MaybeKept {
 
 /// Rows by one of the slow methods.
 Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
-                            const RowOptions& options, const Terminal& terminal, KeptRows* kept) {
+                            const RowOptions& options, const Terminal& terminal, KeptRows* kept,
+                            const RowWatcher& watcher) {
     static const std::map<std::string, Yardstick> methods{{"direct", Yardstick::direct},
                                                           {"contour", Yardstick::contour},
                                                           {"montecarlo", Yardstick::montecarlo},
@@ -325,8 +349,9 @@ Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint
     io::JournalKey key = journal_key(rows.file, plan.hemicube);
     key["rays"] = std::to_string(settings.rays);
     const MaybeKept source(provider, kept, std::move(key));
+    WatchedRows watched(source.provider, plan.hemicube.quantity, watcher);
     ProgressBar bar(terminal, "form factors", "rows");
-    rows.file.factors = compute_matrix(source.provider, patches, bar.callback());
+    rows.file.factors = compute_matrix(watched, patches, bar.callback());
     rows.computed = patches.size() - (kept != nullptr ? kept->reused() : 0);
     rows.file.renderer = provider.renderer();
     rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
@@ -335,9 +360,10 @@ Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint
 }
 
 Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
-                  const RowOptions& options, const Terminal& terminal, KeptRows* kept) {
+                  const RowOptions& options, const Terminal& terminal, KeptRows* kept,
+                  const RowWatcher& watcher) {
     if (options.method != "hemicube") {
-        return compute_yardstick_rows(loaded, patches, options, terminal, kept);
+        return compute_yardstick_rows(loaded, patches, options, terminal, kept, watcher);
     }
     RowPlan plan = plan_rows(options, loaded.mesh.size());
     Rows rows;
@@ -351,7 +377,7 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
     if (plan.hybrid && !hybrid_fits(*engine, patches, options, terminal)) {
         RowOptions plain = options;
         plain.preset = "plain";
-        return compute_rows(loaded, patches, plain, terminal, kept);
+        return compute_rows(loaded, patches, plain, terminal, kept, watcher);
     }
     if (!plan.hybrid && patches.size() > sample_above) {
         const MatrixEstimate estimate = estimate_matrix(*engine, patches, sample_rows);
@@ -363,6 +389,7 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
     rows.file = describe(loaded, options, plan);
     const MaybeKept source(*engine, kept, journal_key(rows.file, plan.hemicube));
     const std::uint64_t hemicubes_before = engine->hemicubes(); // of samples
+    WatchedRows watched(source.provider, plan.hemicube.quantity, watcher);
     const Stopwatch watch;
     const auto timed = [&](const Progress& progress) -> Progress {
         return [&rows, &watch, progress](std::size_t done, std::size_t total) {
@@ -383,12 +410,12 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
                 return bar->callback()(done, total);
             };
         };
-        rows.file.factors = compute_hybrid(source.provider, loaded.mesh, patches, *plan.hybrid,
+        rows.file.factors = compute_hybrid(watched, loaded.mesh, patches, *plan.hybrid,
                                            loaded.scene.enclosure, timed(seen.callback()),
                                            in_turn(combined, "pairs"), in_turn(paired, "form factors"));
     } else {
         ProgressBar bar(terminal, "form factors", "rows");
-        rows.file.factors = compute_matrix(source.provider, patches, timed(bar.callback()));
+        rows.file.factors = compute_matrix(watched, patches, timed(bar.callback()));
     }
     rows.hemicubes = engine->hemicubes() - hemicubes_before;
     rows.computed = patches.size() - (kept != nullptr ? kept->reused() : 0);

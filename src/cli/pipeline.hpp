@@ -10,6 +10,7 @@
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -74,13 +75,18 @@ struct Rows {
     bool reused = false;
 };
 
+/// Shown every row as it comes from the engine, before rows are combined: `quantity` says what its values
+/// are.
+using RowWatcher = std::function<void(std::uint32_t patch, const RowView& row, RowQuantity quantity)>;
+
 /// Computes the rows of `patches` with a progress bar. Above 256 rows a sample of 64 tells first what the
 /// matrix will need.
 /// @param kept  where rows are kept until the file of form factors is written; only for all patches
+/// @param watcher  may be empty
 /// @throws OutOfMemory with figures and advice; Cancelled.
 [[nodiscard]] Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
-                                const RowOptions& options, const Terminal& terminal,
-                                KeptRows* kept = nullptr);
+                                const RowOptions& options, const Terminal& terminal, KeptRows* kept = nullptr,
+                                const RowWatcher& watcher = {});
 
 /// Rows from a `.hff` that was made for the same geometry.
 /// @throws InputError if it belongs to another geometry; InvalidArgument if a setting that was given on the

@@ -6,6 +6,7 @@
 #include "cli/pipeline.hpp"
 #include "cli/repair_rows.hpp"
 #include "cli/solution.hpp"
+#include "engine/gathering.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
@@ -19,8 +20,10 @@
 #include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace hemi::cli {
 
@@ -167,12 +170,14 @@ private:
                 [&listener](std::string_view, std::string_view, std::size_t done, std::size_t total) {
                     return listener.progress("coarse preview", "", done, total);
                 });
-            if (auto light = coarse_light(loaded, arguments_.rows, arguments_.solver, listening)) {
-                listener.preview(std::move(*light));
+            const auto light = coarse_light(loaded, arguments_.rows, arguments_.solver, listening);
+            if (light) {
+                listener.preview(*light);
             }
             listening.set_progress_listener(listener.progress);
-            auto found = std::make_shared<Rows>(
-                compute_rows(loaded, all_patches(loaded.mesh.size()), arguments_.rows, listening));
+            auto found =
+                std::make_shared<Rows>(compute_rows(loaded, all_patches(loaded.mesh.size()), arguments_.rows,
+                                                    listening, nullptr, gatherer(loaded, light, listener)));
             if (!listener.progress("estimate of errors", "", 0, 1)) {
                 throw Cancelled();
             }
@@ -196,6 +201,35 @@ private:
             found.blocked.push_back(row.blocked);
         }
         return found;
+    }
+
+    /// Tells the listener what every patch has of the light that is shown while rows come in: that of
+    /// `preview`, or of the lamps.
+    [[nodiscard]] static RowWatcher gatherer(const LoadedScene& loaded,
+                                             const std::optional<std::vector<double>>& preview,
+                                             const viewer::RowListener& listener) {
+        struct State {
+            std::vector<double> exitance, reflectance, shown, light;
+            std::optional<Gathering> gathering; ///< made when the first row says what its values are
+        };
+        const auto state = std::make_shared<State>();
+        state->exitance = patch_exitance(loaded.scene, loaded.mesh);
+        state->reflectance = patch_reflectance(loaded.scene, loaded.mesh);
+        state->shown = preview.value_or(state->exitance);
+        state->light.resize(loaded.scene.channels.size());
+        return [state, &loaded, &listener](std::uint32_t patch, const RowView& row, RowQuantity quantity) {
+            const std::size_t channels = state->light.size();
+            if (!state->gathering) {
+                state->gathering.emplace(loaded.mesh, quantity, static_cast<std::uint32_t>(channels),
+                                         std::move(state->shown), loaded.scene.environment);
+            }
+            state->gathering->gather(patch, row, state->light);
+            for (std::size_t c = 0; c < channels; ++c) {
+                const std::size_t at = patch * channels + c;
+                state->light[c] = state->exitance[at] + state->reflectance[at] * state->light[c];
+            }
+            listener.gathered(patch, state->light, row.blocked);
+        };
     }
 
     void save(const LoadedScene& loaded, const SceneOptions& options, const std::filesystem::path& path,

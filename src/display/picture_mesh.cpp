@@ -1,4 +1,4 @@
-#include "hemi/display/picture.hpp"
+#include "display/picture_mesh.hpp"
 
 #include "display/vertex_colours_detail.hpp"
 
@@ -48,6 +48,12 @@ double area_percentile(std::vector<std::pair<double, double>> luminance_and_area
 PictureMesh make_picture_mesh(const PatchMesh& mesh, std::uint32_t channels,
                               std::span<const double> radiosity, std::span<const double> blocked,
                               std::array<std::uint32_t, 3> show) {
+    return make_picture_mesh(mesh, SmoothSurfaces(mesh), channels, radiosity, blocked, show);
+}
+
+PictureMesh make_picture_mesh(const PatchMesh& mesh, const SmoothSurfaces& surfaces, std::uint32_t channels,
+                              std::span<const double> radiosity, std::span<const double> blocked,
+                              std::array<std::uint32_t, 3> show) {
     if (radiosity.size() != std::size_t{mesh.size()} * channels) {
         throw InvalidArgument(fmt::format("make_picture_mesh: {} values for {} patches of {} channels",
                                           radiosity.size(), mesh.size(), channels));
@@ -64,7 +70,6 @@ PictureMesh make_picture_mesh(const PatchMesh& mesh, std::uint32_t channels,
         }
     }
 
-    const SmoothSurfaces surfaces(mesh);
     PictureMesh picture;
     picture.bounds = mesh.bounds();
     picture.origin = mesh.bounds().centre();

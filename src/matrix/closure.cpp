@@ -131,6 +131,7 @@ std::uint32_t Closure::find_multipliers(double tolerance) {
     // Where targets contradict each other the residual ends at what contradicts; the best is kept.
     constexpr std::uint32_t patience = 60;
     constexpr double progress = 0.9;
+    constexpr double flat = 1e-13;
     const std::size_t size = gap_.size();
     std::vector<double> residual = gap_;
     std::vector<double> product(size);
@@ -163,12 +164,15 @@ std::uint32_t Closure::find_multipliers(double tolerance) {
         }
         apply(direction);
         double curvature = 0.0;
+        double scale = 0.0;
         for (std::size_t i = 0; i < size; ++i) {
             curvature += direction[i] * product[i];
+            scale += diagonal_[i] * direction[i] * direction[i];
         }
         ++iteration;
         const double alpha = rho / curvature;
-        if (!(curvature > 0.0) || !std::isfinite(alpha)) {
+        // What is left along a direction that changes no sum contradicts itself: no step along it helps.
+        if (!(curvature > flat * scale) || !std::isfinite(alpha)) {
             break;
         }
         for (std::size_t i = 0; i < size; ++i) {

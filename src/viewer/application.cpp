@@ -23,8 +23,12 @@ namespace {
 
 /// Lines in the list of partners.
 constexpr std::size_t partner_count = 8;
-/// After so long without an event the picture is drawn in full quality, seconds.
-constexpr double rest = 0.2;
+/// A picture that does not change for so long is drawn in full quality.
+constexpr std::chrono::milliseconds rest{200};
+/// Rows that have come are put on the picture no more often than this, and so that it takes no more than a
+/// part of the time that they take.
+constexpr std::chrono::milliseconds gather_interval{100};
+constexpr int gather_part = 20;
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code error;
@@ -77,9 +81,10 @@ void Application::exchange(ViewerInput input) {
 void Application::run() {
     while (!closing_) {
         draw();
-        const bool preview = moving_ && window_.software();
         moving_ = navigator_.dragging();
-        const std::vector<Event> events = window_.wait(preview && !navigator_.holds() ? rest : 0.0);
+        const bool settles = rough_ && !navigator_.holds();
+        const std::chrono::duration<double> until_rest = rests_at_ - Clock::now();
+        const std::vector<Event> events = window_.wait(settles ? std::max(until_rest.count(), 0.001) : 0.0);
         for (std::size_t k = 0; k < events.size() && !closing_; ++k) {
             // Of cursor moves in a row only the last counts.
             const bool passed = std::holds_alternative<CursorEvent>(events[k]) && k + 1 < events.size() &&
@@ -93,8 +98,7 @@ void Application::run() {
         if (watch_->take()) {
             open(document_->input().file);
         }
-        // Nothing came: the preview on the screen is drawn anew in full quality.
-        picture_changed_ = picture_changed_ || (preview && !moving_);
+        picture_changed_ = picture_changed_ || (settles && !moving_ && Clock::now() >= rests_at_);
     }
 }
 
@@ -106,9 +110,9 @@ void Application::watch(double seconds) {
     }
 }
 
-void Application::wait_for_work() {
+void Application::wait_for_work(const std::function<bool()>& enough) {
     update();
-    while (!closing_ && (opener_.busy() || document_->busy())) {
+    while (!closing_ && (opener_.busy() || document_->busy()) && !(enough && enough())) {
         draw();
         watch(0.05);
         update();
@@ -177,6 +181,8 @@ void Application::other_key(const KeyEvent& event) {
         choices_.hemicube = !choices_.hemicube;
     } else if (event.key == help_key) {
         choices_.help = !choices_.help;
+    } else if (event.key == escape_key && gui_.close_list()) {
+        return;
     } else if (event.key == escape_key && choices_.help) {
         choices_.help = false;
     } else if (event.key == escape_key && !message_.empty()) {
@@ -284,8 +290,10 @@ void Application::take_opened() {
 
 void Application::update() {
     take_opened();
-    const bool changed = document_->update();
-    if (changed) {
+    const Clock::time_point now = Clock::now();
+    if (document_->update(now >= gathers_at_)) {
+        took_light_ = took_light_.value_or(now);
+        moving_ = moving_ || document_->busy();
         saved_result_.clear();
         note_.clear();
         shown_look_.reset();
@@ -398,17 +406,31 @@ void Application::describe_panels() {
     gui_.end();
 }
 
+/// After light that came in was drawn, or put on a scene that is not to be seen.
+void Application::pace_gathering() {
+    if (!took_light_) {
+        return;
+    }
+    const Clock::time_point now = Clock::now();
+    gathers_at_ = now + std::max<Clock::duration>(gather_interval, gather_part * (now - *took_light_));
+    took_light_.reset();
+}
+
 void Application::draw() {
     const auto view = view_size();
     const auto size = window_.size();
     if (view[0] == 0 || view[1] == 0) {
+        pace_gathering();
         return;
     }
     navigator_.set_view(view);
     if (picture_changed_ || target_.size() != view) {
-        draw_picture(target_, view, window_.software() && (moving_ || !settings_.script.empty()));
+        rough_ = window_.software() && (moving_ || !settings_.script.empty());
+        draw_picture(target_, view, rough_);
         picture_changed_ = false;
         lost_ = true;
+        pace_gathering();
+        rests_at_ = (document_->gathering() ? std::max(gathers_at_, Clock::now()) : Clock::now()) + rest;
     }
     // Twice, since a frame may learn from the one before how large its text is.
     describe_panels();

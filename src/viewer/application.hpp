@@ -12,7 +12,9 @@
 #include "viewer/window.hpp"
 
 #include <array>
+#include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,8 +40,8 @@ public:
     /// Waits at most `seconds` for something to happen. Of the events, only those count that a watcher of a
     /// script may cause.
     void watch(double seconds);
-    /// Until nothing goes on by itself.
-    void wait_for_work();
+    /// Until nothing goes on by itself, or `enough` says so; empty: never.
+    void wait_for_work(const std::function<bool()>& enough = {});
     /// Reads a file, beside the window; the one that is open where it is the same.
     void open(const std::filesystem::path& file);
     /// Whether the open file has changed on the disk since the last call.
@@ -86,6 +88,7 @@ private:
     void show();
     void draw_hemicube();
     void update_title();
+    void pace_gathering();
     void describe_panels();
     void draw_picture(SceneTarget& target, std::array<std::uint32_t, 2> size, bool preview);
 
@@ -110,7 +113,12 @@ private:
     std::string title_;
     std::filesystem::path saved_result_; ///< of the light as it is; empty: it was not saved
 
-    bool moving_ = false;
+    using Clock = std::chrono::steady_clock;
+    bool moving_ = false;                         ///< the picture will change again at once
+    bool rough_ = false;                          ///< it was drawn with one sample a pixel
+    Clock::time_point rests_at_;                  ///< and is drawn in full quality then
+    std::optional<Clock::time_point> took_light_; ///< when light came in that is not drawn yet
+    Clock::time_point gathers_at_;                ///< light of single rows is not taken in before
     bool picture_changed_ = true;
     bool lost_ = true; ///< what the window holds is not what was drawn last
     bool closing_ = false;

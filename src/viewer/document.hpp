@@ -1,10 +1,12 @@
 #pragma once
 
+#include "display/smooth_surfaces.hpp"
 #include "viewer/look.hpp"
 #include "viewer/relighter.hpp"
 #include "viewer/row_finder.hpp"
 #include "viewer/viewer.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -39,10 +41,16 @@ public:
     [[nodiscard]] bool lamps_only() const { return state_ == State::lamps; }
     [[nodiscard]] const Work& work() const { return work_; }
 
+    /// Share of the patches that have light by their own rows, which came one by one.
+    [[nodiscard]] double gathered_share() const;
+    /// Whether more such rows may come.
+    [[nodiscard]] bool gathering() const { return finder_ && gathered_ < input_.mesh->size(); }
+
     /// Takes in what was found and solved beside the window.
+    /// @param gathered  also what single rows tell, which is much to draw for a little new
     /// @return whether there is something new to see
     /// @throws what the search for rows threw, and Cancelled if the user has interrupted the program
-    bool update();
+    bool update(bool gathered = true);
     /// Whether something is under way that goes on by itself.
     [[nodiscard]] bool busy() const;
     /// Stops the search for rows.
@@ -66,15 +74,21 @@ public:
 private:
     enum class State { lamps, preview, converging, solved };
 
-    void take_rows();
+    void take_rows(bool gathered);
+    void show_gathered(const GatheredLight& gathered);
     void take_light();
     void show_light(std::vector<double> radiosity, State state);
+    void make_light_mesh();
+    [[nodiscard]] std::string gathered_text() const;
     [[nodiscard]] Light of_materials() const;
 
     ViewerInput input_;
     std::function<void()> wake_;
+    SmoothSurfaces surfaces_;
     std::vector<Material> materials_;
     Light light_;
+    std::vector<double> blocked_; ///< b_i as far as they are known, N; empty: none
+    std::size_t gathered_ = 0;    ///< patches that have light by their own row
     PictureMesh light_mesh_;
     double exposure_ = 1.0;
     bool exposure_settled_ = false;

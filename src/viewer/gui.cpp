@@ -4,6 +4,7 @@
 
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+#include <imgui_internal.h> // closes popups from outside them
 
 #include <variant>
 
@@ -62,6 +63,14 @@ void Gui::feed(const Event& event) {
 
 bool Gui::has_mouse() const {
     return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool Gui::close_list() {
+    const bool open = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    if (open) {
+        ImGui::ClosePopupToLevel(0, true);
+    }
+    return open;
 }
 
 void Gui::begin(std::array<std::uint32_t, 2> size) {

@@ -23,6 +23,9 @@ public:
     /// Whether the mouse is the panels' business, as of the last frame.
     [[nodiscard]] bool has_mouse() const;
 
+    /// Closes a list that is open. @return whether one was
+    bool close_list();
+
     /// Between begin() and end() panels are described.
     void begin(std::array<std::uint32_t, 2> size);
     void end();

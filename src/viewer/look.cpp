@@ -98,9 +98,12 @@ Field light_field(const Look& look, const ViewerInput& input, const Light& light
         field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
         return field;
     }
-    Field field{"Radiosity" + channel, "W/m²", take(light.radiosity), {}};
+    Field field{"Radiosity" + channel, "W/m²", take(light.radiosity), {}, "not known"};
     field.scale =
         scale_to(most_reflected(field.values, take(light.exitance)), look.logarithmic, radiosity_range);
+    for (std::uint32_t i = 0; i < field.values.size(); ++i) {
+        field.values[i] = light.knows(i) ? field.values[i] : none;
+    }
     return field;
 }
 
@@ -310,17 +313,22 @@ PictureSettings picture_settings(const Look& look, const PictureSettings& first,
     return settings;
 }
 
-std::vector<std::array<float, 3>> lamp_colours(const PatchMesh& mesh, const PictureMesh& light,
-                                               double exposure, ToneMapping tone_mapping) {
-    constexpr float dim = 0.25F;
-    std::vector<std::array<float, 3>> colours = plain_colours(mesh);
-    const auto lamps = light_colours(light, exposure, tone_mapping);
-    for (std::size_t i = 0; i < colours.size(); ++i) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            colours[i][c] = std::max(dim * colours[i][c], lamps[i][c]);
-        }
+PictureMesh with_unknown_grey(PictureMesh picture, const PatchMesh& mesh, const Light& light,
+                              double exposure) {
+    constexpr double dim = 0.25;
+    if (light.known.empty() || !(exposure > 0.0)) {
+        return picture;
     }
-    return colours;
+    const auto greys = plain_colours(mesh);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        if (light.knows(i)) {
+            continue;
+        }
+        const auto value = static_cast<float>(dim * static_cast<double>(greys[i][0]) / exposure);
+        std::fill_n(picture.patches.begin() + std::ptrdiff_t{i} * 3, 3, value);
+        std::fill_n(picture.corners.begin() + std::ptrdiff_t{i} * 12, 12, value);
+    }
+    return picture;
 }
 
 } // namespace hemi::viewer

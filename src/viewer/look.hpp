@@ -58,6 +58,9 @@ struct Light {
     std::vector<double> reflectance;
     std::vector<double> exitance;
     std::vector<double> radiosity;
+    std::vector<std::uint8_t> known; ///< whether a patch's radiosity is more than a beginning, N; empty: all
+
+    [[nodiscard]] bool knows(std::uint32_t patch) const { return known.empty() || known[patch] != 0; }
 };
 
 /// A property of the materials, spread over the patches: N·channels.
@@ -70,6 +73,7 @@ struct Field {
     std::string unit;
     std::vector<double> values;
     ColourScale scale;
+    const char* grey = "0"; ///< what it means that there is none
 };
 
 /// Why a quantity cannot be shown of this input; null if it can.
@@ -103,8 +107,8 @@ struct Field {
 /// @param first  what the look does not say
 [[nodiscard]] PictureSettings picture_settings(const Look& look, const PictureSettings& first,
                                                double exposure, std::array<std::uint32_t, 2> size);
-/// Lamps as the picture shows them, all else in dim greys: a scene that is not solved yet.
-[[nodiscard]] std::vector<std::array<float, 3>> lamp_colours(const PatchMesh& mesh, const PictureMesh& light,
-                                                             double exposure, ToneMapping tone_mapping);
+/// `picture` with dim greys where the light is not known, which look the same at any exposure.
+[[nodiscard]] PictureMesh with_unknown_grey(PictureMesh picture, const PatchMesh& mesh, const Light& light,
+                                            double exposure);
 
 } // namespace hemi::viewer

@@ -28,8 +28,8 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
     const ImU32 ink = IM_COL32(235, 235, 235, 255);
     const bool has_none =
         std::any_of(field.values.begin(), field.values.end(), [](double v) { return std::isnan(v); });
-    const std::string title =
-        field.title + (has_none ? "; grey: 0" : "") + (field.unit.empty() ? "" : "  [" + field.unit + "]");
+    const std::string title = field.title + (has_none ? fmt::format("; grey: {}", field.grey) : "") +
+                              (field.unit.empty() ? "" : "  [" + field.unit + "]");
     list->AddText({origin.x + pad, origin.y + pad - 2.0F}, ink, title.c_str());
 
     const float left = origin.x + pad + 14.0F;
@@ -114,8 +114,14 @@ void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& o
 }
 
 void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& open) {
+    constexpr float margin = 10.0F;
+    constexpr float widest = 668.0F;
+    const ImVec2 room{static_cast<float>(view[0]) - 2.0F * margin,
+                      static_cast<float>(view[1]) - 2.0F * margin};
+    const float width = std::min(widest, room.x);
     ImGui::SetNextWindowPos({0.5F * static_cast<float>(view[0]), 0.5F * static_cast<float>(view[1])},
                             ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSizeConstraints({width, 0.0F}, {width, room.y});
     ImGui::SetNextWindowBgAlpha(0.95F);
     if (!ImGui::Begin("Mouse and keys", &open,
                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
@@ -123,13 +129,15 @@ void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& ope
         ImGui::End();
         return;
     }
-    if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+    if (ImGui::BeginTable("keys", 2)) {
+        ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.41F);
+        ImGui::TableSetupColumn("meaning", ImGuiTableColumnFlags_WidthStretch, 0.59F);
         for (const GuideLine& line : guide(controls)) {
             ImGui::TableNextRow();
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(line.keys);
+            ImGui::TextWrapped("%s", line.keys);
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(line.meaning);
+            ImGui::TextWrapped("%s", line.meaning);
         }
         ImGui::EndTable();
     }

@@ -166,7 +166,8 @@ void patch_lines(const PanelContent& content, std::uint32_t i) {
     line("centre", fmt::format("{:.4g} {:.4g} {:.4g}", centre.x, centre.y, centre.z));
     line("reflectance", channels_text(light.reflectance, input.channels, i));
     line("exitance W/m²", channels_text(light.exitance, input.channels, i));
-    line("radiosity W/m²", channels_text(light.radiosity, input.channels, i));
+    line("radiosity W/m²",
+         light.knows(i) ? channels_text(light.radiosity, input.channels, i) : "not known yet");
     if (!rows.row_sum.empty()) {
         const double defect = rows.row_sum[i] + rows.environment_share[i] + rows.blocked[i] - 1.0;
         line("row sum", fmt::format("{:.6f}  ({:+.1e})", rows.row_sum[i], defect));
@@ -327,7 +328,8 @@ void residual_plot(const std::vector<double>& residuals) {
     const auto [least, most] = std::minmax_element(decades.begin(), decades.end());
     const float low = std::floor(*least);
     const float high = std::max(std::ceil(*most), low + 1.0F);
-    const std::string words = fmt::format("residual, 1e{:.0f} to 1e{:.0f}", high, low);
+    const std::string words =
+        fmt::format("residual, 1e{} to 1e{}", static_cast<int>(high), static_cast<int>(low));
     ImGui::PlotLines("##residuals", decades.data(), static_cast<int>(decades.size()), 0, words.c_str(), low,
                      high, {ImGui::GetContentRegionAvail().x, plot_height});
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <span>
 #include <utility>
 
 namespace hemi::viewer {
@@ -41,6 +42,11 @@ bool RowFinder::finished() const {
 std::optional<std::vector<double>> RowFinder::take_preview() {
     const std::lock_guard lock(mutex_);
     return std::exchange(preview_, std::nullopt);
+}
+
+GatheredLight RowFinder::take_gathered() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(gathered_, {});
 }
 
 std::optional<FoundRows> RowFinder::take() {
@@ -82,10 +88,17 @@ void RowFinder::work(const std::stop_token& stop) {
         }
         changed_();
     };
+    // Told together with the progress.
+    const auto gathered = [&](std::uint32_t patch, std::span<const double> radiosity, double blocked) {
+        const std::lock_guard lock(mutex_);
+        gathered_.patches.push_back(patch);
+        gathered_.radiosity.insert(gathered_.radiosity.end(), radiosity.begin(), radiosity.end());
+        gathered_.blocked.push_back(blocked);
+    };
     std::optional<FoundRows> found;
     std::exception_ptr problem;
     try {
-        found = find_({progress, preview});
+        found = find_({progress, preview, gathered});
     } catch (const Cancelled&) { // as was asked for
     } catch (...) {
         problem = std::current_exception();
@@ -93,7 +106,7 @@ void RowFinder::work(const std::stop_token& stop) {
     {
         const std::lock_guard lock(mutex_);
         result_ = std::move(found);
-        problem_ = problem;
+        problem_ = std::move(problem); // the last hold on it on this thread
         finished_ = true;
     }
     changed_();

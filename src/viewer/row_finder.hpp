@@ -3,6 +3,7 @@
 #include "viewer/viewer.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <mutex>
@@ -13,6 +14,13 @@
 #include <vector>
 
 namespace hemi::viewer {
+
+/// Light of some patches, each by its own row: RowListener::gathered.
+struct GatheredLight {
+    std::vector<std::uint32_t> patches;
+    std::vector<double> radiosity; ///< one value a channel for each of them
+    std::vector<double> blocked;   ///< b_i of each
+};
 
 /// Runs ViewerInput::find_rows on a thread of its own, and tells how far it is.
 class RowFinder {
@@ -31,6 +39,8 @@ public:
 
     /// What the light will be about, once it is known; once.
     [[nodiscard]] std::optional<std::vector<double>> take_preview();
+    /// What was gathered since the last call.
+    [[nodiscard]] GatheredLight take_gathered();
     /// The result, once; afterwards, and where there is none, nothing.
     /// @throws what the search threw, but Cancelled
     [[nodiscard]] std::optional<FoundRows> take();
@@ -52,6 +62,7 @@ private:
     mutable std::mutex mutex_;
     Progress progress_;
     std::optional<std::vector<double>> preview_;
+    GatheredLight gathered_;
     std::optional<FoundRows> result_;
     std::exception_ptr problem_;
     bool finished_ = false;

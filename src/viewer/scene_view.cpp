@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hemi::viewer {
 
 void SceneView::show(const Document& document, const Look& look, std::optional<std::uint32_t> picked) {
     const ViewerInput& input = document.input();
     const double exposure = document.exposure() * std::exp2(look.stops);
-    const bool unlit = document.lamps_only() && look.quantity == Quantity::picture;
     field_ = make_field(look, input, document.light(), picked, document.usual_factor());
     colours_.clear();
     if (field_) {
@@ -17,15 +17,12 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
         colours_ = item_colours(*input.mesh);
     } else if (look.quantity == Quantity::outlines) {
         colours_ = plain_colours(*input.mesh);
-    } else if (unlit) {
-        colours_ = lamp_colours(*input.mesh, document.light_mesh(), exposure, look.tone_mapping);
     }
-    Look drawn = look;
-    if (unlit) {
-        drawn.quantity = Quantity::items; // as other colours that are painted
-    }
-    settings_ = picture_settings(drawn, input.picture, exposure, {1, 1});
+    settings_ = picture_settings(look, input.picture, exposure, {1, 1});
     light_ = document.light_mesh();
+    if (look.quantity == Quantity::picture) {
+        light_ = with_unknown_grey(std::move(light_), *input.mesh, document.light(), exposure);
+    }
     renderer_.upload(colours_.empty() ? light_ : painted(light_, colours_));
 }
 

@@ -281,6 +281,12 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = LiveCommand{};
     } else if (command == "preview") {
         result.action = PreviewCommand{};
+    } else if (command == "rows") {
+        const double share = line.number("the share");
+        if (!(share > 0.0 && share <= 1.0)) {
+            line.fail(fmt::format("{} as the share of the rows; must be above 0, at most 1", share));
+        }
+        result.action = RowsCommand{share};
     } else if (command == "wait") {
         result.action = WaitCommand{};
     } else if (command == "cancel") {
@@ -289,8 +295,7 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         line.fail(fmt::format(
             "command \"{}\"; must be drag, click, move, scroll, key, show, set, fov, resize, minimise, "
             "restore, screenshot, windowshot, report, command, save-result, save-camera, drop, reload, "
-            "changed, "
-            "live, preview, wait, cancel or quit",
+            "changed, live, preview, rows, wait, cancel or quit",
             command));
     }
     line.end();

@@ -89,6 +89,10 @@ struct LiveCommand {};
 struct WaitCommand {};
 /// Until there is more to see than the lamps.
 struct PreviewCommand {};
+/// Until that share of the patches shows what its own row tells of its light, or all is solved.
+struct RowsCommand {
+    double share;
+};
 /// Stops solving.
 struct CancelCommand {};
 struct QuitCommand {};
@@ -97,8 +101,9 @@ struct ScriptCommand {
     std::size_t line;
     std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand, SetCommand,
                  ResizeCommand, ScreenshotCommand, WindowshotCommand, ReportCommand, LiveCommand, WaitCommand,
-                 PreviewCommand, CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
-                 SaveCameraCommand, CommandLineCommand, FovCommand, MinimiseCommand, QuitCommand>
+                 PreviewCommand, RowsCommand, CancelCommand, DropCommand, ReloadCommand, ChangedCommand,
+                 SaveResultCommand, SaveCameraCommand, CommandLineCommand, FovCommand, MinimiseCommand,
+                 QuitCommand>
         action;
 };
 
@@ -129,6 +134,7 @@ struct ScriptCommand {
 /// changed                until the file has changed on the disk, and was read again
 /// live                   as the first command: the script does not wait until the scene is solved
 /// preview                until there is a coarse preview of it, or all
+/// rows SHARE             until that share of the rows has come and is on the picture, or all is solved
 /// wait                   until it is
 /// cancel                 of what is being solved
 /// quit

@@ -111,11 +111,11 @@ public:
     }
     void perform(const LiveCommand&) {}
     void perform(const PreviewCommand&) {
-        while (!application_.closing() && application_.document().lamps_only() &&
-               application_.document().busy()) {
-            application_.watch(0.05);
-            application_.update();
-        }
+        application_.wait_for_work([this] { return !application_.document().lamps_only(); });
+    }
+    void perform(const RowsCommand& rows) {
+        application_.wait_for_work(
+            [this, &rows] { return application_.document().gathered_share() >= rows.share; });
     }
     void perform(const WaitCommand&) { application_.wait_for_work(); }
     void perform(const CancelCommand&) {

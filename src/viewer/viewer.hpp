@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,9 @@ struct RowListener {
     SolveProgress progress;
     /// What the light will be about: radiosity, N·channels.
     std::function<void(std::vector<double> radiosity)> preview;
+    /// What a patch has by its own row, which has just come, of the light that was shown before: radiosity,
+    /// one value a channel; and b_i. Provisional: the solution is found when all rows are there.
+    std::function<void(std::uint32_t patch, std::span<const double> radiosity, double blocked)> gathered;
 };
 
 /// Light as it was solved, to be stored.

@@ -132,6 +132,9 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, debug ? GLFW_TRUE : GLFW_FALSE);
+    // By which desktops know the program; else it would be the first title.
+    glfwWindowHintString(GLFW_X11_CLASS_NAME, "hemi");
+    glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "hemi");
     // Depth and samples are the renderer's own.
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);

@@ -1,10 +1,8 @@
 #include "viewer/workplace.hpp"
 
-using hemi::viewer_test::Workplace;
+using namespace hemi::viewer_test;
 
 namespace {
-
-const std::string small = "--size 300x200 --preset plain --resolution 32";
 
 /// Runs commands for a shell while the window is open: each of `steps` once the file named before it is
 /// there.
@@ -23,11 +21,6 @@ int view_while(const Workplace& place, const std::string& script,
 int run_in_shell(const Workplace& place, const std::string& file) {
     return place.run(fmt::format("PATH='{}':$PATH sh {}",
                                  std::filesystem::path(HEMI_PROGRAM).parent_path().string(), file));
-}
-
-void replace(std::string& text, const std::string& from, const std::string& to) {
-    REQUIRE(text.find(from) != std::string::npos);
-    text.replace(text.find(from), from.size(), to);
 }
 
 } // namespace

@@ -1,6 +1,5 @@
 #include "viewer/workplace.hpp"
 
-#include "hemi/io/factor_file.hpp"
 #include "support/png.hpp"
 
 #include <algorithm>
@@ -8,14 +7,9 @@
 #include <numbers>
 #include <vector>
 
-using hemi::viewer_test::Workplace;
+using namespace hemi::viewer_test;
 
 namespace {
-
-/// Large enough for the side panel, and quick on software OpenGL.
-const std::string with_panel = "--size 660x400 --preset plain --resolution 32";
-/// The same picture area without it.
-const std::string small = "--size 300x200 --preset plain --resolution 32";
 
 constexpr std::uint32_t no_patch = 0xFFFFFFFFU;
 
@@ -53,16 +47,13 @@ TEST_CASE("Viewer: a click picks the patch that is seen there, and none beside t
 
 TEST_CASE("Viewer: heat maps show the row and the column of the picked patch", "[viewer][gl]") {
     const Workplace place;
-    REQUIRE(place.run(fmt::format("'{}' factors room.json --preset plain --resolution 32 --device osmesa -o "
-                                  "room.hff",
-                                  HEMI_PROGRAM)) == 0);
     const int status = place.view("click 150 100\nshow row\nreport row.json\nscreenshot row.png\n"
                                   "key H\nreport column.json\nkey L\nscreenshot linear.png\n"
                                   "key H\nreport off.json\n",
                                   small);
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
-    const auto factors = hemi::io::read_hff(place.path("room.hff")).factors;
+    const auto factors = place.factors("--preset plain --resolution 32");
     const auto value = [&](std::uint32_t i, std::uint32_t j) {
         const hemi::RowView row = factors.row(i);
         const auto found = std::find(row.columns.begin(), row.columns.end(), j);
@@ -96,9 +87,6 @@ TEST_CASE("Viewer: heat maps show the row and the column of the picked patch", "
 
 TEST_CASE("Viewer: the hemicube of the picked patch shows the patches of its row", "[viewer][gl]") {
     const Workplace place;
-    REQUIRE(place.run(fmt::format("'{}' factors room.json --preset plain --resolution 32 --device osmesa -o "
-                                  "room.hff",
-                                  HEMI_PROGRAM)) == 0);
     const int status = place.view("click 174 200\nwindowshot light.png\nreport seen.json\n"
                                   "show items\nwindowshot items.png\nkey C\nwindowshot none.png\n"
                                   "report none.json\n",
@@ -106,7 +94,7 @@ TEST_CASE("Viewer: the hemicube of the picked patch shows the patches of its row
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
     const auto report = place.json("seen.json");
-    const auto factors = hemi::io::read_hff(place.path("room.hff")).factors;
+    const auto factors = place.factors("--preset plain --resolution 32");
     const hemi::RowView row = factors.row(picked(report));
     REQUIRE(row.columns.size() > 50);
     CHECK(report["hemicube"] == std::vector<std::uint32_t>(row.columns.begin(), row.columns.end()));
@@ -123,13 +111,9 @@ TEST_CASE("Viewer: light follows a change of materials as a fresh solution has i
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
     std::string scene = place.read("room.json");
-    const auto replace = [&scene](const std::string& from, const std::string& to) {
-        REQUIRE(scene.find(from) != std::string::npos);
-        scene.replace(scene.find(from), from.size(), to);
-    };
-    replace("\"reflectance\": 0.7", "\"reflectance\": [0.3, 0.5, 0.6]");
-    replace("[20, 18, 12]", "[30, 5, 12]");
-    replace("[0.6, 0.1, 0.1]", "[0.6, 0.1, 0.1], \"exitance\": 0.5");
+    replace(scene, "\"reflectance\": 0.7", "\"reflectance\": [0.3, 0.5, 0.6]");
+    replace(scene, "[20, 18, 12]", "[30, 5, 12]");
+    replace(scene, "[0.6, 0.1, 0.1]", "[0.6, 0.1, 0.1], \"exitance\": 0.5");
     place.write("room.json", scene);
     REQUIRE(place.view("report fresh.json\n", small) == 0);
     const auto changed = place.json("changed.json")["radiosity"];
@@ -170,7 +154,9 @@ TEST_CASE("Viewer: solving can be stopped, by hand and by closing the window", "
     const Workplace place;
     const std::string slow = "--size 660x400 --patches-per-face 200 --preset exact";
     REQUIRE(place.view("live\ncancel\nreport stopped.json\nwindowshot stopped.png\n", slow) == 0);
-    CHECK(place.json("stopped.json")["radiosity"][0] == std::vector<double>(3, 0.0));
+    const auto stopped = place.json("stopped.json");
+    CHECK(stopped["light"].get<std::string>().starts_with("stopped: "));
+    CHECK(stopped["residuals"].empty());
     REQUIRE(place.view("live\nwindowshot open.png\nquit\n", slow) == 0);
     CHECK(place.read("errors.txt").find("error") == std::string::npos);
 }
@@ -200,6 +186,22 @@ TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
         seen.push_back(content);
     }
     CHECK(place.read("bare.png") == place.read("bare_too.png"));
+}
+
+TEST_CASE("Viewer: Escape closes what is open before it quits", "[viewer][gl]") {
+    const Workplace place;
+    // The list of quantities stands at the top of the panel, which is 332 wide.
+    const int status = place.view("windowshot start.png\nclick 480 41\nwindowshot list.png\nkey Escape\n"
+                                  "move 100 200\nwindowshot closed.png\n"
+                                  "key F1\nkey Escape\nclick 150 200\nkey Escape\nreport let_go.json\n"
+                                  "key Escape\nreport never.json\n",
+                                  with_panel);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    CHECK(place.read("list.png") != place.read("start.png"));
+    REQUIRE(place.has("closed.png"));
+    CHECK(picked(place.json("let_go.json")) == no_patch);
+    CHECK_FALSE(place.has("never.json"));
 }
 
 TEST_CASE("Viewer: what cannot be shown is refused with the reason", "[viewer][gl]") {

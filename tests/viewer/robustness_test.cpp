@@ -7,11 +7,9 @@
 #include <string_view>
 #include <thread>
 
-using hemi::viewer_test::Workplace;
+using namespace hemi::viewer_test;
 
 namespace {
-
-const std::string with_panel = "--size 660x400 --preset plain --resolution 32";
 
 /// How many of the program's processes work in a folder.
 std::size_t processes_in(const std::filesystem::path& folder) {

@@ -5,15 +5,14 @@
 #include "hemi/core/diagnostics.hpp"
 #include "hemi/io/scene_reader.hpp"
 
+#include <array>
 #include <cmath>
 #include <random>
 
 using namespace hemi;
-using hemi::viewer_test::Workplace;
+using namespace hemi::viewer_test;
 
 namespace {
-
-const std::string small = "--size 300x200 --preset plain --resolution 32";
 
 hemi::Camera camera_of(const nlohmann::json& report) {
     const auto& camera = report["camera"];
@@ -110,6 +109,77 @@ TEST_CASE("Viewer: a large scene shows about its light before its form factors a
         INFO("wall " << wall);
         CHECK(coarse_sum == Approx(fine_sum).epsilon(0.02));
     }
+}
+
+TEST_CASE("Viewer: while rows come in, patches show the light that reaches them straight from the lamps",
+          "[viewer][gl]") {
+    const Workplace place;
+    const std::string slow = "--patches-per-face 64 --preset plain --resolution 512 --jobs 1";
+    const int status = place.view("live\nrows 0.2\ncancel\nshow radiosity\nreport half.json\n"
+                                  "show picture\nscreenshot half.png\n",
+                                  "--size 300x200 " + slow);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto report = place.json("half.json");
+    const FormFactorMatrix factors = place.factors(slow);
+    REQUIRE(factors.size() == 5 * 64);
+    // Floor, lamp, left, right, back.
+    const std::array<double, 3> lamp{20.0, 18.0, 12.0};
+    const std::array<double, 3> red{0.6, 0.1, 0.1};
+    std::size_t known = 0;
+    std::size_t wrong = 0;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        const std::uint32_t wall = i / 64;
+        double from_lamp = 0.0;
+        const RowView row = factors.row(i);
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            from_lamp += row.columns[k] / 64 == 1 ? static_cast<double>(row.values[k]) : 0.0;
+        }
+        known += report["values"][i].is_null() || wall == 1 ? 0 : 1;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double reflectance = wall == 2 ? red[c] : 0.7;
+            const bool dark = report["values"][i].is_null();
+            const double light = wall == 1 ? lamp[c] : (dark ? 0.0 : reflectance * from_lamp * lamp[c]);
+            wrong += std::abs(report["radiosity"][i][c].get<double>() - light) > 1e-9 ? 1 : 0;
+        }
+    }
+    CHECK(wrong == 0);
+    CHECK(known >= 32);
+    CHECK(known < 4 * 64);
+    CHECK(report["light"].get<std::string>().find("stopped: lamps' light at ") == 0);
+    CHECK(place.view("rows 1.5\n", small) == 3);
+}
+
+TEST_CASE("Viewer: rows that come in sharpen the coarse preview of a large scene", "[viewer][gl]") {
+    const Workplace place;
+    // 5 x 900 patches, of which the preview has 5 x 196 or so.
+    const std::string large = "--patches-per-face 900 --preset plain --resolution 64 --jobs 1";
+    const int status = place.view("live\npreview\nreport preview.json\nrows 0.1\ncancel\nreport half.json\n",
+                                  "--size 300x200 " + large);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto preview = place.json("preview.json")["radiosity"];
+    const auto half = place.json("half.json")["radiosity"];
+    const FormFactorMatrix factors = place.factors(large);
+    REQUIRE(factors.size() == 4500);
+    std::size_t sharper = 0;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        if (half[i] == preview[i]) {
+            continue;
+        }
+        double light = i / 900 == 1 ? 18.0 : 0.0;
+        const double reflectance = i / 900 == 2 ? 0.1 : (i / 900 == 1 ? 0.0 : 0.7);
+        const RowView row = factors.row(i);
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            light +=
+                reflectance * static_cast<double>(row.values[k]) * preview[row.columns[k]][1].get<double>();
+        }
+        CHECK(half[i][1].get<double>() == Approx(light).epsilon(1e-9));
+        ++sharper;
+    }
+    CHECK(sharper >= 400);
+    CHECK(place.json("half.json")["light"].get<std::string>().find("stopped: preview, ") !=
+          std::string::npos);
 }
 
 TEST_CASE("Viewer: Blender's controls turn with the middle button and leave the left one for picking",

@@ -1,6 +1,6 @@
 #include "viewer/workplace.hpp"
 
-using hemi::viewer_test::Workplace;
+using namespace hemi::viewer_test;
 
 TEST_CASE("Viewer: a screenshot has the pixels of the headless picture", "[viewer][gl]") {
     const Workplace place;

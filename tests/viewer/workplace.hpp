@@ -1,5 +1,7 @@
 #pragma once
 
+#include "hemi/io/factor_file.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <fmt/format.h>
@@ -16,6 +18,17 @@
 // The window is part of the program, not of the library: it is tested from outside, on a display of its own.
 
 namespace hemi::viewer_test {
+
+/// Options for windows that are quick on software OpenGL: one without room for the side panel, and one with
+/// it beside a picture of about that size.
+inline const std::string small = "--size 300x200 --preset plain --resolution 32";
+inline const std::string with_panel = "--size 660x400 --preset plain --resolution 32";
+
+/// Puts `to` where `from` stands first, which must stand there.
+inline void replace(std::string& text, const std::string& from, const std::string& to) {
+    REQUIRE(text.find(from) != std::string::npos);
+    text.replace(text.find(from), from.size(), to);
+}
 
 /// A folder that is there while a test runs, with a small scene in it.
 class Workplace {
@@ -71,6 +84,13 @@ public:
     [[nodiscard]] static std::string view_command(const std::string& file, const std::string& options) {
         return fmt::format("xvfb-run -a -s '-screen 0 1280x1024x24' '{}' view {} --script script.txt {}",
                            HEMI_PROGRAM, file, options);
+    }
+
+    /// Form factors of room.json, as the program computes them with these options.
+    [[nodiscard]] FormFactorMatrix factors(const std::string& options) const {
+        REQUIRE(run(fmt::format("'{}' factors room.json --device osmesa {} -o room.hff", HEMI_PROGRAM,
+                                options)) == 0);
+        return io::read_hff(path("room.hff")).factors;
     }
 
 private:

@@ -36,6 +36,7 @@ public:
     [[nodiscard]] std::uint32_t size() const override { return mesh_.size(); }
     [[nodiscard]] std::string renderer() const override;
     void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override;
+    [[nodiscard]] std::uint32_t rays_a_row() const { return static_cast<std::uint32_t>(items_.size()); }
 
 private:
     void trace_texels(std::uint32_t patch);

@@ -4,6 +4,7 @@
 #include "benchmark/naive_rows.hpp"
 #include "benchmark/program.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/engine/yardsticks.hpp"
 
 #include <fmt/format.h>
 
@@ -85,9 +86,18 @@ void Measurements::compare_rows(const Case& scene) {
     const auto rows = spread_rows(scene.mesh.size(), compared_rows, 1);
     const double naive_difference = row_difference(naive, *ours, rows);
     const double embree_difference = row_difference(embree, *ours, rows);
+    double random_difference = 0.0;
+    if (scene.mesh.size() <= yardstick_patches_max) {
+        EmbreeRows monte_carlo(scene.mesh, compared, EmbreeRows::Rays::monte_carlo);
+        YardstickSettings rays;
+        rays.method = Yardstick::montecarlo;
+        rays.rays = monte_carlo.rays_a_row();
+        rays.seed = compared.seed;
+        random_difference = row_difference(monte_carlo, *make_yardstick(scene.mesh, rays), rows);
+    }
     report_.scene(scene.name, scene.mesh.size(), scene.mesh.surfaces().size(), naive_difference,
                   embree_difference);
-    for (const double difference : {naive_difference, embree_difference}) {
+    for (const double difference : {naive_difference, embree_difference, random_difference}) {
         if (difference > most_difference) {
             throw Error(
                 fmt::format("{}: rows differ by {:.1e} of a row from the engine's, more than {:g}: they "

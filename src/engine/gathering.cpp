@@ -1,0 +1,86 @@
+#include "engine/gathering.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+namespace hemi {
+
+namespace {
+
+/// Patches farther apart than so many times their radii see each other as points do.
+constexpr float far = 2.0F;
+
+} // namespace
+
+Gathering::Gathering(const PatchMesh& mesh, RowQuantity quantity, std::uint32_t channels,
+                     std::vector<double> radiosity, std::span<const double> environment)
+    : channels_(channels), radiosity_(std::move(radiosity)),
+      environment_(environment.begin(), environment.end()), bright_(mesh.size(), 0) {
+    environment_.resize(environment.empty() ? channels : environment.size(), 0.0);
+    if (channels == 0 || environment_.size() != channels ||
+        radiosity_.size() != std::size_t{mesh.size()} * channels) {
+        throw InvalidArgument(
+            fmt::format("gathering: {} values for {} patches of {} channels, {} of the environment",
+                        radiosity_.size(), mesh.size(), channels, environment_.size()));
+    }
+    for (std::size_t k = 0; k < radiosity_.size(); ++k) {
+        if (radiosity_[k] > 0.0) {
+            bright_[k / channels] = 1;
+        }
+    }
+    if (quantity == RowQuantity::form_factors) {
+        return;
+    }
+    areas_.emplace(mesh);
+    places_.reserve(mesh.size());
+    const Vec3 middle = mesh.bounds().centre();
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const PatchCorners corners = mesh.corners(i);
+        double radius = 0.0;
+        for (std::size_t k = 0; k < corners.count; ++k) {
+            radius = std::max(radius, glm::distance(corners.points[k], mesh.centres()[i]));
+        }
+        places_.push_back({glm::vec3(mesh.centres()[i] - middle), static_cast<float>(radius),
+                           glm::vec3(mesh.normal(i)), static_cast<float>(mesh.areas()[i])});
+    }
+}
+
+float Gathering::unoccluded_factor(std::uint32_t i, std::uint32_t j) const {
+    const Place& from = places_[i];
+    const Place& to = places_[j];
+    const glm::vec3 way = to.centre - from.centre;
+    const float square = glm::dot(way, way);
+    const float reach = far * (from.radius + to.radius);
+    if (square < reach * reach) {
+        return static_cast<float>((*areas_)(i, j)) / from.area;
+    }
+    // Each divided by the square, so that no scale of the scene is too large or too small for floats.
+    const float leaving = std::max(0.0F, glm::dot(from.normal, way)) / square;
+    const float arriving = std::max(0.0F, -glm::dot(to.normal, way)) / square;
+    return leaving * arriving * to.area * std::numbers::inv_pi_v<float>;
+}
+
+void Gathering::gather(std::uint32_t patch, const RowView& row, std::span<double> irradiance) const {
+    for (std::uint32_t c = 0; c < channels_; ++c) {
+        irradiance[c] = row.environment * environment_[c];
+    }
+    for (std::size_t k = 0; k < row.columns.size(); ++k) {
+        const std::uint32_t j = row.columns[k];
+        const auto value = static_cast<double>(row.values[k]);
+        if (bright_[j] == 0 || value == 0.0) {
+            continue;
+        }
+        const double factor = areas_ ? value * static_cast<double>(unoccluded_factor(patch, j)) : value;
+        const double* const sent = radiosity_.data() + std::size_t{j} * channels_;
+        for (std::uint32_t c = 0; c < channels_; ++c) {
+            irradiance[c] += factor * sent[c];
+        }
+    }
+}
+
+} // namespace hemi
