@@ -128,7 +128,9 @@ TEST_CASE("Viewer: light follows a change of materials as a fresh solution has i
         }
     }
     CHECK(largest < 2e-5); // both are solved to a residual of 1e-6
-    for (const auto& patch : place.json("dark.json")["radiosity"]) {
+    const auto dark = place.json("dark.json")["radiosity"];
+    CHECK(dark.size() == fresh.size());
+    for (const auto& patch : dark) {
         CHECK(patch == std::vector<double>(3, 0.0));
     }
     CHECK(place.view("set exitance 1 gold\n", small) == 2);
