@@ -1,4 +1,5 @@
 #include "cli/program.hpp"
+#include "support/virtual_display.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -8,7 +9,9 @@ namespace {
 
 /// Runs the command line under a display of its own.
 int run_with_display(const Words& arguments) {
-    std::string command = "xvfb-run -a -s '-screen 0 640x480x24' '" HEMI_PROGRAM "'";
+    const Directory directory;
+    std::string command =
+        hemi::test::virtual_display(directory.path("Xauthority"), "640x480x24") + " '" HEMI_PROGRAM "'";
     for (const std::string& argument : arguments) {
         command += " '" + argument + "'";
     }

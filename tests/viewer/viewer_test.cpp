@@ -113,7 +113,8 @@ TEST_CASE("Viewer: a broken script is refused with its file and line", "[viewer]
     CHECK(complaint("key S now\n").find("script.txt:1: \"now\" is too much") != std::string::npos);
     CHECK(complaint("resize 0 10\n").find("script.txt:1: 0 as the width") != std::string::npos);
     CHECK(complaint("screenshot a.jpg\n").find("script.txt:1: screenshot \"a.jpg\"") != std::string::npos);
-    CHECK(place.run(fmt::format("xvfb-run -a '{}' view room.json --script missing.txt", HEMI_PROGRAM)) == 3);
+    CHECK(place.run(fmt::format("{} '{}' view room.json --script missing.txt",
+                                hemi::test::virtual_display("Xauthority"), HEMI_PROGRAM)) == 3);
 }
 
 TEST_CASE("Viewer: a screenshot that cannot be written names the line", "[viewer][gl]") {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "support/virtual_display.hpp"
+
 #include "hemi/io/factor_file.hpp"
 
 #include <catch2/catch.hpp>
@@ -82,7 +84,7 @@ public:
 
     /// The command line for that.
     [[nodiscard]] static std::string view_command(const std::string& file, const std::string& options) {
-        return fmt::format("xvfb-run -a -s '-screen 0 1280x1024x24' '{}' view {} --script script.txt {}",
+        return fmt::format("{} '{}' view {} --script script.txt {}", test::virtual_display("Xauthority"),
                            HEMI_PROGRAM, file, options);
     }
 
