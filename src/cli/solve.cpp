@@ -17,12 +17,19 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdio>
+#include <system_error>
 
 namespace hemi::cli {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Whether `--factors` names rows that are there.
+bool has_rows(const SolveArguments& arguments) {
+    std::error_code ignored; // a name that no file can have
+    return arguments.factors && fs::is_regular_file(*arguments.factors, ignored);
+}
 
 struct Seconds {
     double load = 0.0;
@@ -44,7 +51,7 @@ Outputs check_outputs(const SolveArguments& arguments) {
             outputs.add(option, *path, {extension}, allow_standard_output);
         }
     };
-    if (!arguments.factors || !fs::is_regular_file(*arguments.factors)) { // else it is an input
+    if (arguments.factors && !has_rows(arguments)) { // else it is an input
         add("--factors", arguments.factors, ".hff", false);
     }
     add("--result", arguments.result, ".hres", false);
@@ -79,7 +86,7 @@ std::vector<std::uint32_t> needed_patches(const SolveArguments& arguments, const
 
 Rows find_rows(const SolveArguments& arguments, const LoadedScene& loaded, const Terminal& terminal,
                KeptRows& kept) {
-    if (arguments.factors && fs::is_regular_file(*arguments.factors)) {
+    if (has_rows(arguments)) {
         Rows rows = reuse_rows(*arguments.factors, loaded, arguments.rows, arguments.common);
         terminal.detail(fmt::format("form factors from {}: no rows to compute", arguments.factors->string()));
         if ((arguments.result || arguments.radiosity) && !rows.file.factors.all_known()) {
@@ -292,7 +299,7 @@ void write_files(const SolveArguments& arguments, const LoadedScene& loaded, con
 ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     const Stopwatch total;
     const Outputs outputs = check_outputs(arguments);
-    if (arguments.rows.error_target && arguments.factors && fs::is_regular_file(*arguments.factors)) {
+    if (arguments.rows.error_target && has_rows(arguments)) {
         throw InvalidArgument(fmt::format("--error-target chooses settings, but the rows of {} are there "
                                           "already; leave one out",
                                           arguments.factors->string()));

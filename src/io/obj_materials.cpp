@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 namespace hemi::io {
@@ -18,6 +19,10 @@ namespace {
 bool read_library(const FaceMesh& mesh, const FaceMesh::Library& library, const SceneFolder& folder,
                   std::vector<MtlMaterial>& materials, Diagnostics& diagnostics) {
     const auto path_of = [&](std::string_view name) { return mesh.path.parent_path() / name; };
+    const auto exists = [&](std::string_view name) {
+        std::error_code ignored; // a name that no file can have
+        return std::filesystem::exists(path_of(name), ignored);
+    };
     const auto read = [&](std::string_view name) {
         if (!folder.allows(path_of(name))) {
             throw ParseError(mesh.path.string(), library.line, 0,
@@ -25,14 +30,14 @@ bool read_library(const FaceMesh& mesh, const FaceMesh::Library& library, const 
         }
         read_mtl(path_of(name), materials, diagnostics);
     };
-    if (std::filesystem::exists(path_of(library.names))) {
+    if (exists(library.names)) {
         read(library.names);
         return true;
     }
     bool all = true;
     std::string_view rest = library.names;
     for (std::string_view name = next_word(rest); !name.empty(); name = next_word(rest)) {
-        if (std::filesystem::exists(path_of(name))) {
+        if (exists(name)) {
             read(name);
         } else {
             all = false;

@@ -231,7 +231,19 @@ TEST_CASE("OBJ reader: names that are not UTF-8 become it and stay different", "
     REQUIRE(scene.surfaces[2].group == 0);
 }
 
-TEST_CASE("OBJ reader: lines may end in a carriage return alone, and faces name textures and normals as they like", "[io]") {
+TEST_CASE("OBJ reader: a library by a name that no file can have is one that is not there", "[io]") {
+    const Folder folder;
+    Diagnostics diagnostics;
+    const Scene scene = read(
+        folder, "mtllib " + std::string(300, 'a') + "\nusemtl x\n" + corners + "f 1 2 3\n", &diagnostics);
+    CHECK(scene.surfaces.size() == 1);
+    REQUIRE(diagnostics.warnings().size() == 1);
+    require_parts(diagnostics.warnings()[0], {"room.obj:1: there is no file"});
+}
+
+TEST_CASE(
+    "OBJ reader: lines may end in a carriage return alone, and faces name textures and normals as they like",
+    "[io]") {
     const Folder folder;
     const Scene scene = read(folder, corners + "g a\rf 1 2 3\nf 1/ 2// 3/3/3\ng\nf 1/1 2/12/7 4\n");
     CHECK(scene.groups == std::vector<std::string>{"a", "default"});
