@@ -26,6 +26,7 @@ EmbreeScene::EmbreeScene(const Bounds& bounds, std::span<const Quad> polygons, R
     }
     scene_ = rtcNewScene(device_);
     rtcSetSceneFlags(scene_, flags);
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 4 * polygons.size()));
@@ -50,6 +51,9 @@ EmbreeScene::EmbreeScene(const Bounds& bounds, std::span<const Quad> polygons, R
     if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE) {
         rtcReleaseScene(scene_);
         rtcReleaseDevice(device_);
+        if (error == RTC_ERROR_OUT_OF_MEMORY) {
+            throw OutOfMemory("Embree: no memory for the scene");
+        }
         throw Error(fmt::format("Embree: the scene cannot be built (error {})", static_cast<int>(error)));
     }
 }

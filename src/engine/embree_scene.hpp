@@ -20,7 +20,7 @@ public:
 
     /// @param bounds  of the polygons
     /// @param flags  of Embree's scene
-    /// @throws Error if Embree cannot be set up or runs out of memory.
+    /// @throws Error if Embree cannot be set up, OutOfMemory if it has no memory for the polygons.
     EmbreeScene(const Bounds& bounds, std::span<const Quad> polygons, RTCSceneFlags flags);
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;

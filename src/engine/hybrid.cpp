@@ -106,7 +106,16 @@ public:
         }
     }
     [[nodiscard]] bool operator()(std::uint32_t i, std::uint32_t j) const {
-        return above(patches_[i], patches_[j]) && above(patches_[j], patches_[i]);
+        return height(i, j) > tolerance_ && height(j, i) > tolerance_;
+    }
+    /// Of the highest corner of j above the plane of i.
+    [[nodiscard]] double height(std::uint32_t i, std::uint32_t j) const {
+        const Patch& plane = patches_[i];
+        double highest = -std::numeric_limits<double>::infinity();
+        for (const Vec3& corner : patches_[j].corners) {
+            highest = std::max(highest, glm::dot(plane.normal, corner));
+        }
+        return highest - plane.height;
     }
 
 private:
@@ -116,13 +125,6 @@ private:
         double height;
         std::array<Vec3, 4> corners;
     };
-    [[nodiscard]] bool above(const Patch& plane, const Patch& other) const {
-        double highest = -std::numeric_limits<double>::infinity();
-        for (const Vec3& corner : other.corners) {
-            highest = std::max(highest, glm::dot(plane.normal, corner));
-        }
-        return highest - plane.height > tolerance_;
-    }
     std::vector<Patch> patches_;
     double tolerance_;
 };
@@ -248,7 +250,7 @@ public:
         // By tiles, few enough columns for the caches: what lies on the other side of the diagonal is far
         // apart from column to column, but side by side from row to row.
         constexpr std::size_t rows_at_once = 64;
-        constexpr std::size_t columns_at_once = 128;
+        constexpr std::size_t columns_at_once = 64;
         for (std::size_t first = 0; first < patches_.size(); first += rows_at_once) {
             const std::size_t end = std::min(first + rows_at_once, patches_.size());
             parallel_for(size_, columns_at_once, [&](std::size_t from, std::size_t upto) {
@@ -329,9 +331,11 @@ private:
     [[nodiscard]] double variance(const Combined& pair, std::uint32_t i, std::uint32_t j) const {
         const Vec3 way = mesh_.centres()[j] - mesh_.centres()[i];
         const double squared = glm::dot(way, way);
-        const double cosines = -glm::dot(way, mesh_.normal(i)) * glm::dot(way, mesh_.normal(j));
+        // From centre to centre, or from what of either rises above the other's plane where that is more.
+        const double here = std::max(glm::dot(way, mesh_.normal(i)), 0.5 * facing_.height(i, j));
+        const double there = std::max(-glm::dot(way, mesh_.normal(j)), 0.5 * facing_.height(j, i));
         const double larger = std::max(mesh_.areas()[i], mesh_.areas()[j]);
-        const double factor = std::min(1.0, std::max(0.0, cosines) * larger / (squared * squared));
+        const double factor = std::min(1.0, here * there * larger / (squared * squared));
         // Half a texel and even odds where nothing is known.
         const double visibility = pair.texels == 0.0 ? 0.5 : visibility_of(pair.code);
         return factor * factor * visibility * (1.0 - visibility) / std::max(pair.texels, 0.5);
@@ -355,6 +359,9 @@ private:
             }
         }
         const double all = std::accumulate(sums.begin(), sums.end(), 0.0);
+        if (!(all > 0.0)) {
+            return 0.0; // the sample says nothing: rays for all that want them
+        }
         double below = 0.0;
         int power = lowest;
         for (; power < 0 && below + sums[static_cast<std::size_t>(power - lowest)] <= left * all; ++power) {

@@ -315,7 +315,7 @@ void Closure::run(RepairReport& report) {
         report.largest_change = std::max(report.largest_change, held.largest_change);
         const bool none = held.at_zero == 0 && held.at_unoccluded == 0;
         settled = last || (none && exact);
-        exact = none;
+        exact = exact || none;
     }
     report.largest_change = std::max(report.largest_change, write().largest_change);
 }

@@ -29,7 +29,8 @@ struct HybridSettings {
     ExchangeRule rule = ExchangeRule::standard; ///< of F0
     /// Rays between the two patches of every pair that is partly hidden, if fewer than four times as many
     /// texels (counted to 256) tell how much; both are then weighed by their numbers. Pairs that matter
-    /// least, with together a twentieth of the variance of all such pairs, get none. 0: none at all.
+    /// least, with together up to a twentieth of the variance of all such pairs as a sample of the rows
+    /// tells, get none. 0: none at all.
     std::uint32_t shadow_rays = 0;
 
     bool operator==(const HybridSettings&) const = default; ///< member by member
