@@ -178,8 +178,8 @@ void RowJournal::append(const RowBlock& block) {
         write_chunk(sink, "HEAD", {bytes_of(head)});
     }
     write_row_block(sink, "ROWS", block);
-    // The disk begins now, while rows are computed, and not when the output is made safe, which would wait for
-    // all of this too. What is on the disk need not stay in memory.
+    // The disk begins now, while rows are computed, and not when the output is made safe, which would wait
+    // for all of this too. What is on the disk need not stay in memory.
     ::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_DONTNEED);
     rows_ += block.rows();
 }

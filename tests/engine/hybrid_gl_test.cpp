@@ -32,6 +32,15 @@ HemicubeSettings visibility_settings(std::uint32_t eye_points, std::uint32_t res
     return settings;
 }
 
+/// A floor of 4 x 4 patches of size 1, and a sheet of 0.4 x 0.4 close above patch 5.
+Scene sheet_above_floor() {
+    Scene scene = empty_scene();
+    add_polygon(scene, "floor", {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(4, 4, 0), Vec3(0, 4, 0)}, {4, 4});
+    add_polygon(scene, "sheet",
+                {Vec3(1.3, 1.3, 0.08), Vec3(1.3, 1.7, 0.08), Vec3(1.7, 1.7, 0.08), Vec3(1.7, 1.3, 0.08)});
+    return scene;
+}
+
 FormFactorMatrix hybrid(const PatchMesh& mesh, const HemicubeSettings& settings,
                         std::span<const std::uint32_t> patches, Enclosure enclosure = Enclosure::automatic,
                         std::uint32_t jobs = 2) {
@@ -125,11 +134,7 @@ TEST_CASE("make_eye_points: numbers that are no squares are refused", "[engine]"
 }
 
 TEST_CASE("make_eye_points: only patches with a surface close above get more", "[engine]") {
-    Scene scene = empty_scene();
-    add_polygon(scene, "floor", {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(4, 4, 0), Vec3(0, 4, 0)}, {4, 4});
-    add_polygon(scene, "sheet",
-                {Vec3(1.3, 1.3, 0.08), Vec3(1.3, 1.7, 0.08), Vec3(1.7, 1.7, 0.08), Vec3(1.7, 1.3, 0.08)});
-    const PatchMesh mesh(scene);
+    const PatchMesh mesh(sheet_above_floor());
     const auto near = find_near_surfaces(mesh);
     REQUIRE(near.size() == 2); // the patch below, and the sheet itself
     CHECK(near[0].patch == 5);
@@ -142,11 +147,7 @@ TEST_CASE("make_eye_points: only patches with a surface close above get more", "
 }
 
 TEST_CASE("make_hemicube_engine: counts the hemicubes of the rows that it delivered", "[engine][gl]") {
-    Scene scene = empty_scene();
-    add_polygon(scene, "floor", {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(4, 4, 0), Vec3(0, 4, 0)}, {4, 4});
-    add_polygon(scene, "sheet",
-                {Vec3(1.3, 1.3, 0.08), Vec3(1.3, 1.7, 0.08), Vec3(1.7, 1.7, 0.08), Vec3(1.7, 1.3, 0.08)});
-    const PatchMesh mesh(scene);
+    const PatchMesh mesh(sheet_above_floor());
     HemicubeSettings settings = visibility_settings(4, 32);
     settings.near_eye_points = 16;
     const std::vector<std::uint32_t> some{4, 5, 16};
