@@ -1,5 +1,7 @@
 #include "cli/completion.hpp"
 
+#include "cli/refused_words.hpp"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -85,16 +87,6 @@ Words extensions_of(const CLI::Option& option) {
     return extensions_in(option.get_option_text() + " " + option.get_description());
 }
 
-Words long_names(const CLI::App& app) {
-    Words names;
-    for (const CLI::Option* option : app.get_options()) {
-        for (const std::string& name : option->get_lnames()) {
-            names.push_back("--" + name);
-        }
-    }
-    return names;
-}
-
 /// The part of the script that knows one command.
 std::string part_of(const CLI::App& command) {
     Words with_value;
@@ -132,7 +124,7 @@ std::string part_of(const CLI::App& command) {
                                    "        options='{}'\n"
                                    "        with_value=' {} '\n"
                                    "        arguments=({})\n",
-                                   command.get_name(), fmt::join(long_names(command), " "),
+                                   command.get_name(), fmt::join(option_names(command), " "),
                                    fmt::join(with_value, " "), arguments);
     if (!values.empty()) {
         part += "        case $option in\n" + values + "        esac\n";
@@ -160,7 +152,7 @@ std::string bash_completion(const CLI::App& app) {
                        "        return\n"
                        "        ;;\n"
                        "    *) return ;;\n",
-                       fmt::join(names, " "), fmt::join(long_names(app), " "), parts) +
+                       fmt::join(names, " "), fmt::join(option_names(app), " "), parts) +
            tail;
 }
 

@@ -11,12 +11,8 @@
 
 namespace hemi::cli {
 
-namespace {
-
-using Words = std::vector<std::string>;
-
-Words option_names(const CLI::App& app) {
-    Words names;
+std::vector<std::string> option_names(const CLI::App& app) {
+    std::vector<std::string> names;
     for (const CLI::Option* option : app.get_options()) {
         for (const std::string& name : option->get_lnames()) {
             names.push_back("--" + name);
@@ -25,10 +21,8 @@ Words option_names(const CLI::App& app) {
     return names;
 }
 
-} // namespace
-
 void refuse_command(const CLI::App& app, const std::string& word) {
-    Words names;
+    std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) {
         names.push_back(command->get_name());
     }
@@ -46,7 +40,7 @@ void refuse_word(const CLI::App& app, const CLI::App& command, const std::string
         throw InvalidArgument(fmt::format("{}: unexpected argument '{}'", where, word) + see);
     }
     const std::string name = word.substr(0, word.find('='));
-    Words others;
+    std::vector<std::string> others;
     for (const CLI::App* other : app.get_subcommands({})) {
         if (other->get_option_no_throw(name) != nullptr) {
             others.push_back(other->get_name());
@@ -66,7 +60,7 @@ void refuse_word(const CLI::App& app, const CLI::App& command, const std::string
 }
 
 void check_method(const RowOptions& rows, const std::vector<std::string>& given) {
-    const std::map<std::string, Words> methods_of{
+    const std::map<std::string, std::vector<std::string>> methods_of{
         {"--rays", {"montecarlo"}},
         {"--resolution", {"hemicube", "hemisphere"}},
         {"--seed", {"hemicube", "montecarlo", "hemisphere"}},

@@ -13,6 +13,9 @@ class App;
 /// and the nearest right one where there is one.
 namespace hemi::cli {
 
+/// Long names of a command's own options, "--" included, in the order of its help.
+[[nodiscard]] std::vector<std::string> option_names(const CLI::App& app);
+
 /// A word that is no command.
 [[noreturn]] void refuse_command(const CLI::App& app, const std::string& word);
 
