@@ -356,7 +356,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     Options output(app, "Output");
     auto* file = output.path(
         "-o,--output", "FILE", a.output,
-        "form factors: .hff .mtx .csv .npz .h5, View3D's .txt .vf, Elmer's .dat .bin, EnergyPlus' .idf, "
+        "form factors: .hff .mtx .csv .npz .npy .h5, View3D's .txt .vf, Elmer's .dat .bin, EnergyPlus' .idf, "
         "ParaView's .vtp; - for .csv on stdout");
     add_resume(app, a.rows, file);
     output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
@@ -494,7 +494,7 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
         "form factors: .hff .mtx .csv .npz, View3D's .txt .vf, Elmer's .dat .bin; a solution: .hres");
     add_positional(
         app, "OUT", a.output,
-        "form factors: .mtx .csv .npz .h5 .dat .bin; from .hff also .hff .txt .vf and EnergyPlus' "
+        "form factors: .mtx .csv .npz .npy .h5 .dat .bin; from .hff also .hff .txt .vf and EnergyPlus' "
         ".idf; - for .csv on stdout; of a solution: .vtp, or .csv with the radiosity of every patch");
     add_repair(app, a.repair);
     Options paraview(app, "ParaView");

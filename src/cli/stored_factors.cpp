@@ -38,6 +38,10 @@ constexpr FactorFormat formats[] = {
      [](const Path& path, const FactorFile& file, const FactorContext&, Diagnostics&) {
          io::write_npz(path, file.factors);
      }},
+    {".npy", FactorContent::factors, "", all_but_f,
+     [](const Path& path, const FactorFile& file, const FactorContext&, Diagnostics&) {
+         io::write_npy(path, file.factors);
+     }},
     {".h5", FactorContent::factors, "", "visibilities and the better rows by which errors are estimated",
      [](const Path& path, const FactorFile& file, const FactorContext& context, Diagnostics&) {
          io::write_h5(path, file, repair_name(context.repair));

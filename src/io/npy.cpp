@@ -1,7 +1,11 @@
 #include "io/npy.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/io/factor_file.hpp"
+#include "hemi/io/output_file.hpp"
+#include "io/dense_rows.hpp"
 #include "io/text_scan.hpp"
+#include "io/triples.hpp"
 
 #include <fmt/format.h>
 
@@ -46,6 +50,14 @@ std::string npy_header(std::string_view type, std::string_view shape) {
     std::string result(magic);
     result += {'\x01', '\x00', static_cast<char>(text.size() & 0xFF), static_cast<char>(text.size() >> 8)};
     return result + text;
+}
+
+void write_npy(const std::filesystem::path& path, const FormFactorMatrix& factors) {
+    require_all_known(factors, "an .npy file");
+    OutputFile output(path);
+    output.write(npy_header("<f4", fmt::format("({0}, {0})", factors.size())));
+    write_dense_rows(output, factors);
+    output.commit();
 }
 
 NpyArray::NpyArray(std::string bytes, std::string name) : bytes_(std::move(bytes)), name_(std::move(name)) {

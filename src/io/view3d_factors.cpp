@@ -1,6 +1,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/factor_file.hpp"
 #include "hemi/io/output_file.hpp"
+#include "io/dense_rows.hpp"
 #include "io/text_output.hpp"
 #include "io/triples.hpp"
 
@@ -63,14 +64,7 @@ void write_binary(const std::filesystem::path& path, const FactorFile& file,
         line[i] = static_cast<float>(file.areas[i]);
     }
     write_line();
-    for (std::uint32_t i = 0; i < size; ++i) {
-        const RowView row = file.factors.row(i);
-        std::fill(line.begin(), line.end(), 0.0f);
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            line[row.columns[k]] = row.values[k];
-        }
-        write_line();
-    }
+    write_dense_rows(output, file.factors);
     for (std::uint32_t i = 0; i < size; ++i) {
         line[i] = static_cast<float>(emissivity_of(emissivity, i));
     }

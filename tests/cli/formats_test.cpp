@@ -159,7 +159,8 @@ TEST_CASE("Convert: to every format that can hold the content, told what it does
     const std::string scene = directory.write("cube.json", cube(2));
     const std::string hff = directory.path("cube.hff");
     REQUIRE(run_hemi(quick({"factors", scene, "-o", hff})).status == 0);
-    for (const char* name : {"a.mtx", "a.csv", "a.npz", "a.h5", "a.txt", "a.vf", "a.dat", "a.bin", "a.idf"}) {
+    for (const char* name :
+         {"a.mtx", "a.csv", "a.npz", "a.npy", "a.h5", "a.txt", "a.vf", "a.dat", "a.bin", "a.idf"}) {
         const Outcome run = run_hemi({"convert", hff, directory.path(name)});
         INFO(name << ": " << run.err);
         CHECK(run.status == 0);
@@ -174,7 +175,7 @@ TEST_CASE("Convert: to every format that can hold the content, told what it does
     const std::string b = directory.read("b.idf");
     CHECK(a.substr(a.find("Zone Name")) == b.substr(b.find("Zone Name")));
     const std::string npz = directory.path("a.npz");
-    for (const char* name : {"b.mtx", "b.csv", "b.h5", "b.dat", "b.bin"}) {
+    for (const char* name : {"b.mtx", "b.csv", "b.npy", "b.h5", "b.dat", "b.bin"}) {
         const Outcome run = run_hemi({"convert", npz, directory.path(name)});
         INFO(name << ": " << run.err);
         CHECK(run.status == 0);
@@ -183,6 +184,7 @@ TEST_CASE("Convert: to every format that can hold the content, told what it does
         return directory.read(a_name) == directory.read(b_name);
     };
     CHECK(same("a.bin", "b.bin"));
+    CHECK(same("a.npy", "b.npy"));
     for (const char* name : {"a.txt", "a.vf", "a.dat", "a.bin"}) { // and back again
         const Outcome run = run_hemi({"convert", directory.path(name), directory.path("d.mtx")});
         INFO(name << ": " << run.err);

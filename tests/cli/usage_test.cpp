@@ -106,7 +106,7 @@ TEST_CASE("Command line: output names are looked at before the work", "[cli]") {
     refuses({"solve", scene, "-o", directory.path("a.jpg")}, "must end in .png, .hdr");
     refuses({"solve", scene, "--result", directory.path("a.bin")}, "must end in .hres");
     refuses({"factors", scene, "-o", directory.path("a.doc")},
-            "must end in .hff, .mtx, .csv, .npz, .h5, .txt, .vf, .dat, .bin, .idf, .vtp");
+            "must end in .hff, .mtx, .csv, .npz, .npy, .h5, .txt, .vf, .dat, .bin, .idf, .vtp");
     refuses({"solve", scene, "--patches", directory.path("a.csv"), "--radiosity", directory.path("a.csv")},
             "the same file");
     refuses({"solve", scene, "-o", "-", "--json"}, "standard output");

@@ -76,6 +76,7 @@ TEST_CASE("Exchange formats: what hemi writes SciPy reads, and the other way rou
     for (const Format& format : formats) {
         format.write(folder / format.name, matrix);
     }
+    io::write_npy(folder / "a.npy", matrix);
     write_expected(folder, matrix);
     run_scipy(folder / "");
     for (const char* name : {"compressed.npz", "stored.npz", "shuffled.npz"}) {

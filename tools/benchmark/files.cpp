@@ -83,6 +83,7 @@ std::vector<Writer> writers() {
     return {
         {".hff", [](const fs::path& path, const io::FactorFile& file) { io::write_hff(path, file); }},
         {".npz", [](const fs::path& path, const io::FactorFile& file) { io::write_npz(path, file.factors); }},
+        {".npy", [](const fs::path& path, const io::FactorFile& file) { io::write_npy(path, file.factors); }},
         {".h5", [](const fs::path& path, const io::FactorFile& file) { io::write_h5(path, file, "none"); }},
         {".mtx", [](const fs::path& path, const io::FactorFile& file) { io::write_mtx(path, file.factors); }},
         {".csv", [](const fs::path& path, const io::FactorFile& file) { io::write_csv(path, file.factors); }},

@@ -53,6 +53,9 @@ void write_mtx(const std::filesystem::path& path, const FormFactorMatrix& factor
 void write_csv(const std::filesystem::path& path, const FormFactorMatrix& factors);
 /// What scipy.sparse.load_npz reads as a CSR matrix of float32.
 void write_npz(const std::filesystem::path& path, const FormFactorMatrix& factors);
+/// What numpy.load reads as an N x N array of float32, zeros included: 4 N² bytes.
+/// @throws InvalidArgument for unknown rows; IoError
+void write_npy(const std::filesystem::path& path, const FormFactorMatrix& factors);
 
 /// The two kinds of View3D's view factor file.
 enum class View3dFormat { text, binary };

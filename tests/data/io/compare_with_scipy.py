@@ -1,6 +1,6 @@
 """Reads form factors as SciPy does, compares them with a plain text table, writes them again in SciPy's ways.
 
-usage: compare_with_scipy.py FOLDER   (expects a.mtx, a.npz, a.csv, expected.txt: "size", then "i j hex-float")
+usage: compare_with_scipy.py FOLDER   (expects a.mtx, a.npz, a.npy, a.csv, expected.txt: "size", then "i j hex-float")
 """
 import sys
 import numpy
@@ -24,6 +24,9 @@ def check(name, matrix):
 npz = scipy.sparse.load_npz(f"{folder}/a.npz")
 assert npz.format == "csr" and npz.dtype == numpy.float32 and npz.has_canonical_format
 check("npz", npz)
+dense = numpy.load(f"{folder}/a.npy")
+assert dense.dtype == numpy.float32 and dense.flags.c_contiguous
+check("npy", scipy.sparse.coo_matrix(dense))
 check("mtx", scipy.io.mmread(f"{folder}/a.mtx"))
 i, j, f = numpy.loadtxt(f"{folder}/a.csv", delimiter=",", skiprows=1, unpack=True, ndmin=2)
 check("csv", scipy.sparse.coo_matrix((f, (i.astype(int), j.astype(int))), shape=(size, size)))
