@@ -19,6 +19,7 @@ namespace {
 
 constexpr hsize_t chunk = 1 << 16; ///< elements
 constexpr unsigned compression = 4;
+constexpr std::size_t memory_step = std::size_t{1} << 20; ///< bytes by which a file in memory grows
 
 template <class Number>
 hid_t type_of();
@@ -72,7 +73,7 @@ public:
     Handle& operator=(const Handle&) = delete;
 
     [[nodiscard]] hid_t id() const noexcept { return id_; }
-    /// Closes now, to see whether what was kept back could be written.
+    /// Closes now, to see whether what was kept back could be compressed and stored.
     [[nodiscard]] bool close() { return close_(std::exchange(id_, -1)) >= 0; }
 
 private:
@@ -87,26 +88,31 @@ public:
 
     void write() {
         OutputFile output(path_);
-        if (output.temporary().empty()) {
-            throw IoError(fmt::format("{}: HDF5 is written to regular files only", path_.string()));
-        }
-        // OutputFile holds a lock of its own on what is not finished.
-        Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+        // In memory: where the library cannot write a byte to a disk that is full, it cannot close the file
+        // either, and crashes when the program ends.
+        const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
         check(access.id());
-        check(H5Pset_file_locking(access.id(), false, true));
-        Handle h5(H5Fcreate(output.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
+        check(H5Pset_fapl_core(access.id(), memory_step, false));
+        const Handle h5(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
         check(h5.id());
         write_head(h5.id());
         write_rows(h5.id());
         write_groups(h5.id());
         write_patches(h5.id());
-        if (!h5.close()) {
-            fail();
-        }
+        copy_to(output, h5.id());
         output.commit();
     }
 
 private:
+    /// Writes the file that is in memory, with all that the library still keeps back.
+    void copy_to(OutputFile& output, hid_t h5) const {
+        check(H5Fflush(h5, H5F_SCOPE_LOCAL));
+        const auto size = static_cast<std::size_t>(check(H5Fget_file_image(h5, nullptr, 0)));
+        void* bytes = nullptr;
+        check(H5Fget_vfd_handle(h5, H5P_DEFAULT, &bytes)); // of this driver: where its pointer is
+        output.write(*static_cast<void**>(bytes), size);
+    }
+
     void write_head(hid_t at) {
         text(at, "schema", "hemi/factors/1");
         text(at, "program", "hemi " HEMI_VERSION);

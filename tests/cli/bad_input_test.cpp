@@ -157,7 +157,8 @@ TEST_CASE("Bad output: full disks and places that cannot be written end with 1 a
     const std::string scene = directory.write("cube.json", cube(8));
     const std::string factors = directory.path("cube.hff");
     REQUIRE(run_hemi(quick({"factors", scene, "-o", factors})).status == 0);
-    for (const std::string name : {"a.hff", "a.mtx", "a.csv", "a.npz", "a.npy", "a.txt", "a.vf"}) {
+    for (const std::string name :
+         {"a.hff", "a.mtx", "a.csv", "a.npz", "a.npy", "a.h5", "a.txt", "a.vf", "a.dat", "a.bin"}) {
         const std::string line = "trap '' XFSZ; ulimit -f 16; exec '" HEMI_PROGRAM "' convert '" + factors +
                                  "' '" + directory.path(name) + "'";
         const auto full = run_command({"bash", "-c", line});

@@ -305,7 +305,7 @@ TEST_CASE("HDF5: what cannot be written leaves no file", "[io]") {
     const Folder folder;
     io::FactorFile file = small_file();
     require_parts(message_of<IoError>([&] { io::write_h5("/dev/full", file, "none"); }),
-                  {"regular files only"});
+                  {"/dev/full: cannot be written: No space left"});
     require_parts(message_of<IoError>([&] { io::write_h5(folder / "no/a.h5", file, "none"); }),
                   {"No such file"});
     file.areas.pop_back();

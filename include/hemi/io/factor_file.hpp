@@ -92,7 +92,8 @@ void write_elmer(const std::filesystem::path& path, const FormFactorMatrix& fact
 /// HDF5, chunked and compressed. /factors: data (float32), indices (uint32), indptr (int64) of the rows, with
 /// attributes format ("csr") and shape. /patches, where areas are known: area, group (index into
 /// /groups/name), row_sum, environment, blocked, known, and row_error where it is known. /groups: name.
-/// Attributes say what made the rows and, as `units`, in what numbers are.
+/// Attributes say what made the rows and, as `units`, in what numbers are. The compressed file is put
+/// together in memory.
 /// @param path    of the file
 /// @param file    is written as a whole, but for the reference rows
 /// @param repair  what was made true of the rows, for the attribute: none, reciprocity, closure

@@ -32,9 +32,6 @@ public:
     /// @throws IoError; the old file is then still there.
     void commit();
 
-    /// Where bytes go until commit(): for libraries that write a file by name. Empty for "-".
-    [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
-
 private:
     void release() noexcept;
 
