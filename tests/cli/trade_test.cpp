@@ -113,17 +113,20 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
     Json box = cube(2);
     box["name"] = "Box <1> & more";
     const std::string scene = directory.write("cube.json", box);
+    // More than it takes: all is measured, however slow the machine is.
     const Outcome run =
-        run_hemi(on_osmesa({"trade", scene, "--budget", "8s", "--json", "-o", directory.path("plot.svg")}));
+        run_hemi(on_osmesa({"trade", scene, "--budget", "60s", "--json", "-o", directory.path("plot.svg")}));
     INFO(run.err);
     REQUIRE(run.status == 0);
     const Json trade = run.json();
     CHECK(trade["schema"] == "hemi/trade/1");
     CHECK(trade["patches"] == 24);
-    CHECK(trade["budget"] == 8.0);
+    CHECK(trade["budget"] == 60.0);
     CHECK(trade["reference"]["rows"] > 0);
     REQUIRE(trade["measurements"].size() > 4);
-    CHECK(trade["best"].is_string());
+    CHECK(trade["omitted"].empty());
+    REQUIRE(trade["best"].is_string());
+    CHECK(trade["advice"].get<std::string>().starts_with("Take " + trade["best"].get<std::string>()));
     double last = 0.0;
     std::size_t on_front = 0;
     double least = 1e300;
@@ -146,10 +149,10 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
     CHECK(plot.ends_with("</svg>\n"));
     CHECK(plot.find("24 patches: Box &lt;1&gt; &amp; more") != std::string::npos);
 
-    const Outcome text = run_hemi(on_osmesa({"trade", scene, "--budget", "2s"}));
+    const Outcome text = run_hemi(on_osmesa({"trade", scene, "--budget", "60s"}));
     CHECK(text.status == 0);
     CHECK(text.out_has("radiosity"));
-    CHECK(text.out_has("Take --preset"));
+    CHECK(text.out_has("Take --"));
 }
 
 TEST_CASE("trade: what it cannot do is refused", "[cli]") {
