@@ -505,6 +505,9 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
                        [&a](const Words& all) {
                            for (const std::string& text : all) {
                                a.rows.push_back(to_index("--row", text, 0));
+                               if (std::count(a.rows.begin(), a.rows.end(), a.rows.back()) > 1) {
+                                   throw InvalidArgument(fmt::format("--row {}: is given twice", text));
+                               }
                            }
                        },
                        "for .vtp: show F(I, j) at every patch j; repeatable")

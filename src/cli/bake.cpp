@@ -100,6 +100,7 @@ void bake_result(const BakeArguments& arguments, const Terminal& terminal) {
 
 ExitStatus run(const BakeArguments& arguments, const Terminal& terminal) {
     Outputs outputs;
+    outputs.keep(arguments.scene.path);
     outputs.add("-o", *arguments.picture.output, {".glb", ".ply"}, true);
     if (outputs.uses_standard_output() && arguments.common.json) {
         throw InvalidArgument("--json and an output to - cannot both go to standard output");

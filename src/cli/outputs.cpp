@@ -22,6 +22,10 @@ bool is_standard_output(const fs::path& path) {
     return path == "-";
 }
 
+void Outputs::keep(const fs::path& input) {
+    inputs_.push_back(io::whole_path(input));
+}
+
 void Outputs::add(std::string_view option, const fs::path& path, std::span<const std::string_view> extensions,
                   bool allow_standard_output) {
     if (is_standard_output(path)) {
@@ -52,7 +56,11 @@ void Outputs::add(std::string_view option, const fs::path& path, std::span<const
         throw IoError(
             fmt::format("{} {}: {}: {}", option, path.string(), directory.string(), std::strerror(errno)));
     }
-    const fs::path whole = fs::weakly_canonical(path, problem);
+    const fs::path whole = io::whole_path(path);
+    if (std::find(inputs_.begin(), inputs_.end(), whole) != inputs_.end()) {
+        throw InvalidArgument(
+            fmt::format("{} {}: is what is read; choose another name", option, path.string()));
+    }
     if (std::find(paths_.begin(), paths_.end(), whole) != paths_.end()) {
         throw InvalidArgument(
             fmt::format("{} {}: another output goes to the same file", option, path.string()));

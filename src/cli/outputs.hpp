@@ -19,7 +19,7 @@ namespace hemi::cli {
 class Outputs {
 public:
     /// Tests that `path` has one of the extensions and can be made or replaced, and that no other output
-    /// of this run goes there.
+    /// of this run, and nothing that is read, is there.
     /// @param option  what the path was given as, for messages
     /// @throws InvalidArgument for the extension or a path used twice; IoError if it cannot be written.
     void add(std::string_view option, const std::filesystem::path& path,
@@ -30,9 +30,13 @@ public:
         add(option, path, std::span(extensions.begin(), extensions.size()), allow_standard_output);
     }
 
+    /// Tells of a file that is read and that no output may replace.
+    void keep(const std::filesystem::path& input);
+
     [[nodiscard]] bool uses_standard_output() const noexcept { return uses_standard_output_; }
 
 private:
+    std::vector<std::filesystem::path> inputs_;
     std::vector<std::filesystem::path> paths_;
     bool uses_standard_output_ = false;
 };

@@ -1,6 +1,7 @@
 #include "cli/report.hpp"
 
 #include "hemi/core/error.hpp"
+#include "io/text_scan.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -27,6 +28,9 @@ std::size_t width_of(std::string_view text) {
 Table::Table(std::vector<std::string> header, std::size_t left) : rows_{std::move(header)}, left_(left) {}
 
 void Table::add(std::vector<std::string> row) {
+    for (std::string& cell : row) {
+        cell = io::printable(cell);
+    }
     rows_.push_back(std::move(row));
 }
 

@@ -1,5 +1,7 @@
 #include "cli/terminal.hpp"
 
+#include "io/text_scan.hpp"
+
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -47,7 +49,7 @@ void Terminal::write(std::string_view label, std::string_view colour, std::strin
     if (!label.empty()) {
         text += colours_ ? fmt::format("\x1b[{}m{}\x1b[0m: ", colour, label) : fmt::format("{}: ", label);
     }
-    text += message;
+    text += io::printable(message, true);
     text += '\n';
     std::fwrite(text.data(), 1, text.size(), stderr);
 }

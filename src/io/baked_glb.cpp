@@ -115,6 +115,9 @@ private:
     void add_bounds(Part& part, const PatchCorners& patch) const {
         for (const Vec3& corner : patch.polygon()) {
             const std::array<float, 3> point = position(corner);
+            if (!std::all_of(point.begin(), point.end(), [](float x) { return std::isfinite(x); })) {
+                throw InvalidArgument("the scene is too large for the 32-bit numbers of a .glb; scale it");
+            }
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 part.lower[axis] = std::min(part.lower[axis], point[axis]);
                 part.upper[axis] = std::max(part.upper[axis], point[axis]);

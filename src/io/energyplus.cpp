@@ -18,10 +18,11 @@ constexpr double complete = 1e-3;         // what a row may lose before it is to
 
 /// @param what  the name is of, for the message
 void check_name(const std::string& name, const std::string& what) {
-    if (name.empty() || name.size() > longest_name || name.find_first_of(",;!\r\n") != std::string::npos) {
+    if (name.empty() || name.size() > longest_name || name.find_first_of(",;!\r\n") != std::string::npos ||
+        trim(name) != name) {
         throw InvalidArgument(
             fmt::format("{} {}: EnergyPlus' names have 1 to {} characters without , ; ! and "
-                        "line ends; rename it",
+                        "line ends, and no outer blanks; rename it",
                         what, in_quotes(name), longest_name));
     }
 }

@@ -96,7 +96,7 @@ void check_array(const std::vector<double>& values, std::size_t size, const char
     }
     for (const double value : values) {
         if (!std::isfinite(value)) {
-            throw InvalidArgument(fmt::format("a {} of {}; must be finite", name, value));
+            throw InvalidArgument(fmt::format("{}: a value of {}; must be finite", name, value));
         }
     }
 }

@@ -104,14 +104,18 @@ std::string JsonNode::text() const {
     if (!value_.is_string() || value_.get_ref<const std::string&>().empty()) {
         expect("a string that is not empty");
     }
-    return value_.get<std::string>();
+    return any_text();
 }
 
 std::string JsonNode::any_text() const {
     if (!value_.is_string()) {
         expect("a string");
     }
-    return value_.get<std::string>();
+    auto text = value_.get<std::string>();
+    if (text.find('\0') != std::string::npos) {
+        expect("a string without zero characters, which many formats cannot hold");
+    }
+    return text;
 }
 
 std::vector<std::string> JsonNode::texts() const {

@@ -26,7 +26,8 @@ ObjLines::int_type ObjLines::underflow() {
     return traits_type::eof();
 }
 
-/// Joins lines that end with a backslash; the first one gives the number.
+/// Joins lines that end with a backslash; the first one gives the number. Comments end with their line: they
+/// may name a folder.
 bool ObjLines::next_logical_line() {
     std::string_view piece;
     if (!lines_.next(piece)) {
@@ -34,7 +35,8 @@ bool ObjLines::next_logical_line() {
     }
     line_ = lines_.number();
     current_.assign(piece);
-    while (!current_.empty() && current_.back() == '\\' && lines_.next(piece)) {
+    const bool is_comment = trim(piece).starts_with('#');
+    while (!is_comment && !current_.empty() && current_.back() == '\\' && lines_.next(piece)) {
         current_.back() = ' ';
         current_ += piece;
     }

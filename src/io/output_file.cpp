@@ -75,18 +75,19 @@ void remove_left_behind(const fs::path& path) {
     }
 }
 
-/// Makes what was written to the file or directory `path` last. False with errno if that failed.
-bool sync(const fs::path& path) {
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) {
-        return false;
-    }
+/// Makes what was written last. False with errno if that failed.
+bool sync(int descriptor) {
     // Not every file system can sync every kind of file; that is not a failed write.
-    const bool good = ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
-    const int error = errno;
-    ::close(descriptor);
-    errno = error;
-    return good;
+    return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP;
+}
+
+/// Makes new names in a directory last, as far as that can be done.
+void sync_directory(const fs::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor >= 0) {
+        sync(descriptor);
+        ::close(descriptor);
+    }
 }
 
 /// Bytes of memory of the machine.
@@ -104,7 +105,10 @@ OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
     }
     std::error_code ignored;
     if (fs::is_symlink(path_, ignored) && fs::exists(path_, ignored)) {
-        path_ = fs::canonical(path_, ignored); // write to what the link names, keep the link
+        fs::path target = fs::canonical(path_, ignored); // write to what the link names, keep the link
+        if (!target.empty()) {                           // pipes have no such name
+            path_ = std::move(target);
+        }
     }
     struct stat status {};
     const bool exists = ::stat(path_.c_str(), &status) == 0;
@@ -192,13 +196,12 @@ void OutputFile::commit() {
     if (temporary_.empty()) {
         return;
     }
-    // By name: a library may have put another file in the temporary one's place.
-    if (!sync(temporary_) || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    if (!sync(lock_) || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
         fail(path_, errno);
     }
     temporary_.clear(); // it has the final name now
     release();
-    sync(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
+    sync_directory(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
 }
 
 std::string read_file(const fs::path& path) {

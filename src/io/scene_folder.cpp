@@ -3,7 +3,6 @@
 #include "io/text_scan.hpp"
 
 #include <algorithm>
-#include <system_error>
 
 namespace hemi::io {
 
@@ -13,10 +12,10 @@ bool SceneFolder::allows(const fs::path& path) const {
     if (allow_outside_) {
         return true;
     }
-    std::error_code problem;
-    const fs::path from = fs::weakly_canonical(folder_.empty() ? fs::path(".") : folder_, problem);
-    const fs::path to = problem ? fs::path() : fs::weakly_canonical(path, problem);
-    return !problem && std::mismatch(from.begin(), from.end(), to.begin(), to.end()).first == from.end();
+    const fs::path from = whole_path(folder_.empty() ? fs::path(".") : folder_);
+    const fs::path to = whole_path(path);
+    return !from.empty() && !to.empty() &&
+           std::mismatch(from.begin(), from.end(), to.begin(), to.end()).first == from.end();
 }
 
 std::string SceneFolder::refusal(const std::string& name) {

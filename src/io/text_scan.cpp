@@ -92,16 +92,20 @@ std::optional<double> parse_number(std::string_view word) {
     return value;
 }
 
-std::string in_quotes(std::string_view text) {
-    constexpr std::size_t longest = 60;
-    std::string result = "\"";
-    result += to_utf8(text.substr(0, longest));
+std::string printable(std::string_view text, bool keep_line_ends) {
+    std::string result(text);
     for (char& letter : result) {
-        if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7F) {
+        const bool control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7F;
+        if (control && !(keep_line_ends && letter == '\n')) {
             letter = '?';
         }
     }
-    return result + (text.size() > longest ? "…\"" : "\"");
+    return result;
+}
+
+std::string in_quotes(std::string_view text) {
+    constexpr std::size_t longest = 60;
+    return "\"" + printable(to_utf8(text.substr(0, longest))) + (text.size() > longest ? "…\"" : "\"");
 }
 
 std::string to_utf8(std::string_view text) {
@@ -126,6 +130,13 @@ std::string lower_extension(const std::filesystem::path& path) {
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     return extension;
+}
+
+std::filesystem::path whole_path(const std::filesystem::path& path) {
+    std::error_code problem;
+    const std::filesystem::path absolute = std::filesystem::absolute(path, problem); // else what is not there
+    return problem ? std::filesystem::path()                                         // would stay relative
+                   : std::filesystem::weakly_canonical(absolute, problem);
 }
 
 } // namespace hemi::io

@@ -49,6 +49,9 @@ template <class Integer>
     return value;
 }
 
+/// `text` with control characters as "?": names in files must not command a terminal.
+[[nodiscard]] std::string printable(std::string_view text, bool keep_line_ends = false);
+
 /// `text` in quotes for a message: shortened, control characters as "?".
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
@@ -58,5 +61,9 @@ template <class Integer>
 
 /// Extension of a file's name with its dot, in lower case.
 [[nodiscard]] std::string lower_extension(const std::filesystem::path& path);
+
+/// `path` from the root and without links, `.` and `..`, whether it is there or not, so that equal ones name
+/// the same file; empty if that cannot be found out.
+[[nodiscard]] std::filesystem::path whole_path(const std::filesystem::path& path);
 
 } // namespace hemi::io

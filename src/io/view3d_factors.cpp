@@ -6,6 +6,7 @@
 #include "io/triples.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hemi::io {
 
@@ -62,6 +63,11 @@ void write_binary(const std::filesystem::path& path, const FactorFile& file,
     const auto write_line = [&] { output.write(line.data(), line.size() * sizeof(float)); };
     for (std::uint32_t i = 0; i < size; ++i) {
         line[i] = static_cast<float>(file.areas[i]);
+        if (!(std::isfinite(line[i]) && (line[i] > 0.0f || file.areas[i] == 0.0))) {
+            throw InvalidArgument(fmt::format("patch {}: an area of {}, which this format's 32 bits cannot "
+                                              "hold; scale the scene, or write .txt",
+                                              i, file.areas[i]));
+        }
     }
     write_line();
     write_dense_rows(output, file.factors);

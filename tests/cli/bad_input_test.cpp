@@ -130,6 +130,18 @@ TEST_CASE("Bad input: stored files end with 3, file, place and what would be rig
     });
 }
 
+TEST_CASE("Bad input: names in files do not command the terminal", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write(
+        "a.obj", "mtllib \x1b]0;x\x07.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\ng \x1b[31mred\nusemtl a\nf 1 2 3\n");
+    const Outcome run = run_hemi({"info", scene});
+    INFO(run.err);
+    CHECK(run.status == 0);
+    CHECK(run.out_has("?[31mred"));
+    CHECK(run.err_has("?]0;x?.mtl"));
+    CHECK((run.out + run.err).find('\x1b') == std::string::npos);
+}
+
 TEST_CASE("Bad input: files that are missing, directories, unreadable or endless links end with 3", "[cli]") {
     const Directory directory;
     for (const std::string extension :

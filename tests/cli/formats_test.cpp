@@ -1,4 +1,5 @@
 #include "cli/program.hpp"
+#include "support/command.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -120,6 +121,8 @@ TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]"
     refused({"convert", hff, directory.path("x.npz"), "--factors", hff, "--row", "1"}, 2, "are for a .hres");
     refused({"convert", hres, vtp, "--factors", hff, "--row", "24"}, 2, "--row 24: there are 24 rows");
     refused({"convert", hres, vtp, "--row", "1"}, 2, "--factors");
+    refused({"convert", hres, vtp, "--factors", hff, "--row", "3", "--row", "3"}, 2,
+            "--row 3: is given twice");
     const std::string other = directory.path("other.hff");
     REQUIRE(run_hemi(quick({"factors", directory.write("other.json", cube(3)), "-o", other})).status == 0);
     refused({"convert", hres, vtp, "--factors", other, "--row", "1"}, 3,
@@ -209,6 +212,31 @@ TEST_CASE("Convert: to every format that can hold the content, told what it does
     CHECK(run_hemi({"convert", hff, directory.path("x.xyz")}).err_has(".idf, .vtp"));
 }
 
+TEST_CASE("Bake: the scene that is read is not replaced", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(1));
+    const std::string model = directory.path("a.glb");
+    REQUIRE(run_hemi(quick({"bake", scene, "-o", model})).status == 0);
+    const std::string before = directory.read("a.glb");
+    const Outcome run = run_hemi(quick({"bake", model, "-o", directory.path(".") + "/a.glb"}));
+    INFO(run.err);
+    CHECK(run.status == 2);
+    CHECK(run.err_has("a.glb: is what is read"));
+    CHECK(directory.read("a.glb") == before);
+}
+
+TEST_CASE("Convert: a link to a pipe is written to", "[cli]") {
+    const Directory directory;
+    const std::string factors = directory.path("a.hff");
+    REQUIRE(run_hemi(quick({"factors", directory.write("cube.json", cube(1)), "-o", factors})).status == 0);
+    std::filesystem::create_symlink("/dev/stdout", directory.path("out.csv"));
+    const auto piped = hemi::test::run_command({"sh", "-c", "\"$1\" convert \"$2\" \"$3\" | cat", "sh",
+                                                HEMI_PROGRAM, factors, directory.path("out.csv")});
+    INFO(piped.err);
+    CHECK(piped.out.starts_with("i,j,F\n"));
+    CHECK(piped.out == run_hemi({"convert", factors, "-"}).out);
+}
+
 TEST_CASE("EnergyPlus output: an open scene is told as such", "[cli]") {
     const Directory directory;
     const std::string scene = directory.write("open.json", open_cube(2, "open"));
@@ -257,6 +285,16 @@ TEST_CASE("Mesh scenes: Gmsh, PLY and STL are solved like any other, bad ones ar
     const Outcome run = run_hemi({"info", outside});
     CHECK(run.status == 3);
     CHECK(run.err_has("s.json: surfaces[0].mesh: \"/etc/passwd.obj\"; must be in the scene's folder"));
+    // A scene of the current folder, without a folder in its name.
+    directory.write("typing.json", R"({"hemi": 1, "surfaces": [{"mesh": "none.obj"}]})");
+    directory.write("above.json", R"({"hemi": 1, "surfaces": [{"mesh": "../none.obj"}]})");
+    const auto info_here = [&directory](const std::string& name) {
+        return hemi::test::run_command({"sh", "-c", "cd \"$1\" && exec \"$2\" info \"$3\"", "sh",
+                                        directory.path(""), HEMI_PROGRAM, name})
+            .err;
+    };
+    CHECK_THAT(info_here("typing.json"), Catch::Contains("none.obj: cannot be read: No such file"));
+    CHECK_THAT(info_here("above.json"), Catch::Contains("must be in the scene's folder"));
     CHECK(run_hemi({"info", outside, "--allow-outside"})
               .err_has("/etc/passwd.obj: cannot be read: No such file"));
 }

@@ -1,4 +1,5 @@
 #include "cli/program.hpp"
+#include "support/command.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -109,6 +110,15 @@ TEST_CASE("Command line: output names are looked at before the work", "[cli]") {
             "must end in .hff, .mtx, .csv, .npz, .npy, .h5, .txt, .vf, .dat, .bin, .idf, .vtp");
     refuses({"solve", scene, "--patches", directory.path("a.csv"), "--radiosity", directory.path("a.csv")},
             "the same file");
+    for (const std::string& spelling :
+         {std::string("./a.csv"), directory.path("a.csv")}) { // nothing is there yet
+        const auto twice = hemi::test::run_command(
+            {"sh", "-c", "cd \"$1\" && exec \"$2\" factors cube.json -o a.csv --patches \"$3\"", "sh",
+             directory.path(""), HEMI_PROGRAM, spelling});
+        INFO(spelling << ": " << twice.err);
+        CHECK(twice.status == 2);
+        CHECK(twice.err.find("the same file") != std::string::npos);
+    }
     refuses({"solve", scene, "-o", "-", "--json"}, "standard output");
     refuses({"solve", scene, "-o", "-", "--radiosity", "-"}, "standard output");
     refuses({"solve", scene, "--factors", "-"}, "standard output");

@@ -116,6 +116,16 @@ TEST_CASE("Baked glTF: values that do not fit, and disks that are full, leave no
     values.pop_back();
     require_parts(message_of<InvalidArgument>([&] { write(1.0); }), {"71 radiosities for 6 patches"});
     REQUIRE_THROWS_AS(io::write_baked_glb("/dev/full", mesh, ramp(mesh), 1.0), IoError);
+    Scene far = far_scene();
+    for (Surface& surface : far.surfaces) {
+        for (Vec3& vertex : surface.vertices) {
+            vertex *= 1e40;
+        }
+    }
+    const PatchMesh huge(far);
+    require_parts(
+        message_of<InvalidArgument>([&] { io::write_baked_glb(folder / "a.glb", huge, ramp(huge), 1.0); }),
+        {"too large for the 32-bit numbers"});
     REQUIRE(folder.files() == 0);
 }
 

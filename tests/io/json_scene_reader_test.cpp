@@ -235,6 +235,8 @@ TEST_CASE("JSON reader: what is wrong is named with its place, its value and wha
         {R"({"hemi": 2, "surfaces": []})", {"hemi: 2; must be 1"}},
         {R"({"hemi": "1", "surfaces": []})", {"hemi: \"1\"; must be 1"}},
         {R"({"hemi": 1})", {"\"surfaces\" is missing"}},
+        {R"({"hemi": 1, "materials": {"m": {"reflectance": 0.5}}, "surfaces": [{"name": "a\u0000b", "material": "m", "polygon": [[0,0,0], [1,0,0], [0,1,0]]}]})",
+         {"surfaces[0].name: \"a?b\"; must be a string without zero characters"}},
         {R"({"hemi": 1, "surfaces": []})", {"surfaces: no surfaces"}},
         {R"({"hemi": 1, "surfaces": {}})", {"surfaces: an object; must be an array"}},
         {R"({"hemi": 1, "surfases": []})", {"unknown key \"surfases\"; did you mean \"surfaces\"?"}},

@@ -93,6 +93,9 @@ TEST_CASE("OBJ reader: line ends, a missing last one, continued lines and a byte
     require_parts(
         message_of<ParseError>([&] { read(folder, "v 0 0 0\r\nv 1 0 0\r\n\r\nv 1 1 \\\r\n x\r\n"); }),
         {"room.obj:4: \"x\" in a vertex"});
+    // A comment that ends with a folder's name has no second line.
+    REQUIRE(read(folder, "# C:\\models\\\n" + text).surfaces.size() == 2);
+    REQUIRE(read(folder, corners + "f 1 2 3\n\t# C:\\models\\\nf 2 3 4\n").surfaces.size() == 2);
 }
 
 TEST_CASE("OBJ reader: a decimal comma of the locale changes nothing", "[io]") {

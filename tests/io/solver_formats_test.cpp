@@ -149,6 +149,18 @@ TEST_CASE("View3D factors: text and binary read back, with areas and enclosure",
     }
 }
 
+TEST_CASE("View3D factors: areas that 32 bits cannot hold are refused", "[io]") {
+    const Folder folder;
+    for (const double area : {1e39, 1e-50}) {
+        io::FactorFile file = small_file();
+        file.areas[1] = area;
+        require_parts(message_of<InvalidArgument>(
+                          [&] { io::write_view3d(folder / "a.vf", file, io::View3dFormat::binary); }),
+                      {"patch 1: an area of ", "write .txt"});
+    }
+    REQUIRE(folder.files() == 0);
+}
+
 TEST_CASE("View3D factors: what is wrong is named with its place, its value and what would be right",
           "[io]") {
     const Folder folder;
@@ -219,7 +231,7 @@ TEST_CASE("EnergyPlus: names that it cannot hold are refused, and nothing is wri
         Diagnostics diagnostics;
         return message_of<InvalidArgument>([&] { io::write_energyplus(folder / name, file, diagnostics); });
     };
-    for (const std::string name : {"a,b", "a;b", "a!b", "a\nb", ""}) {
+    for (const std::string name : {"a,b", "a;b", "a!b", "a\nb", "", " a", "a\t"}) {
         require_parts(refusal({"walls", name}), {"group \"", "EnergyPlus' names have 1 to 100 characters"});
     }
     require_parts(refusal({std::string(101, 'x'), "b"}), {"group \"xxx", "1 to 100 characters"});

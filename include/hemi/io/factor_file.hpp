@@ -77,7 +77,8 @@ void write_view3d(const std::filesystem::path& path, const FactorFile& file, Vie
 /// @param file         factors, areas and groups are written
 /// @param diagnostics  warned of rows that do not sum to 1, which EnergyPlus changes
 /// @throws InvalidArgument for unknown rows, areas or groups that do not fit, names that EnergyPlus has not
-///   (with `,` `;` `!` or a line end, of more than 100 characters, equal but for their case); IoError
+///   (with `,` `;` `!`, a line end or outer blanks, of more than 100 characters, equal but for their case);
+///   IoError
 void write_energyplus(const std::filesystem::path& path, const FactorFile& file, Diagnostics& diagnostics);
 
 /// The two kinds of Elmer's ViewFactors.dat.
