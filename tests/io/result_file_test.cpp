@@ -182,7 +182,7 @@ TEST_CASE("HRES: arrays that do not fit and values that are not finite are refus
     result = sample();
     result.row_sum[1] = std::nan("");
     require_parts(message_of<InvalidArgument>([&] { io::write_hres(folder / "a.hres", result); }),
-                  {"row sum of nan"});
+                  {"row sum: a value of nan; must be finite"});
     REQUIRE_THROWS_AS(io::write_hres("/dev/full", sample()), IoError);
     REQUIRE(folder.files() == 0);
 }
