@@ -21,7 +21,8 @@ public:
     /// Tests that `path` has one of the extensions and can be made or replaced, and that no other output
     /// of this run, and nothing that is read, is there.
     /// @param option  what the path was given as, for messages
-    /// @throws InvalidArgument for the extension or a path used twice; IoError if it cannot be written.
+    /// @throws InvalidArgument for the extension, a path used twice or one that is read; IoError if it cannot
+    /// be written.
     void add(std::string_view option, const std::filesystem::path& path,
              std::span<const std::string_view> extensions, bool allow_standard_output = false);
 
