@@ -41,8 +41,8 @@ void estimate_rows(io::FactorFile& file) {
     }
 }
 
-std::optional<RadiosityError> estimate_solution(const LoadedScene& loaded, const io::FactorFile& file,
-                                                const Solution& solution) {
+std::optional<RadiosityErrorEstimate> estimate_solution(const LoadedScene& loaded, const io::FactorFile& file,
+                                                        const Solution& solution) {
     if (!file.error) {
         return {};
     }
@@ -55,8 +55,8 @@ std::string chosen_summary(const std::string& chosen_for) {
     return chosen_for.empty() ? "" : summary_line("chosen", chosen_for);
 }
 
-std::string error_summary(const std::optional<FactorError>& factors,
-                          const std::optional<RadiosityError>& radiosity) {
+std::string error_summary(const std::optional<FactorErrorEstimate>& factors,
+                          const std::optional<RadiosityErrorEstimate>& radiosity) {
     if (!factors) {
         return "";
     }
@@ -72,7 +72,8 @@ std::string error_summary(const std::optional<FactorError>& factors,
     return text;
 }
 
-Json error_json(const std::optional<FactorError>& factors, const std::optional<RadiosityError>& radiosity) {
+Json error_json(const std::optional<FactorErrorEstimate>& factors,
+                const std::optional<RadiosityErrorEstimate>& radiosity) {
     if (!factors) {
         return nullptr;
     }

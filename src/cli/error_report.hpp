@@ -21,17 +21,17 @@ void add_reference(Rows& rows, const LoadedScene& loaded, const RowOptions& opti
 void estimate_rows(io::FactorFile& file);
 
 /// Of a solution from these rows.
-[[nodiscard]] std::optional<RadiosityError>
+[[nodiscard]] std::optional<RadiosityErrorEstimate>
 estimate_solution(const LoadedScene& loaded, const io::FactorFile& file, const Solution& solution);
 
 /// A line of a summary on settings that the program chose; none where the user did.
 [[nodiscard]] std::string chosen_summary(const std::string& chosen_for);
 /// Lines of a summary; none where nothing is known.
-[[nodiscard]] std::string error_summary(const std::optional<FactorError>& factors,
-                                        const std::optional<RadiosityError>& radiosity = {});
+[[nodiscard]] std::string error_summary(const std::optional<FactorErrorEstimate>& factors,
+                                        const std::optional<RadiosityErrorEstimate>& radiosity = {});
 /// {"rows_compared", "factor": {"rms", "max"}, "row": {"rms", "max"}, "radiosity"}; null where nothing is
 /// known, "radiosity" only where it is.
-[[nodiscard]] Json error_json(const std::optional<FactorError>& factors,
-                              const std::optional<RadiosityError>& radiosity = {});
+[[nodiscard]] Json error_json(const std::optional<FactorErrorEstimate>& factors,
+                              const std::optional<RadiosityErrorEstimate>& radiosity = {});
 
 } // namespace hemi::cli

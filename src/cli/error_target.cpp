@@ -13,16 +13,16 @@ namespace {
 
 constexpr double reference_seconds = 1.5;
 
-std::vector<Contender> make_ladder(const RowOptions& options, std::uint32_t patches) {
-    return {hemicube_contender(options, "plain", patches, 1, 64),
-            hemicube_contender(options, "plain", patches, 1, 128),
-            hemicube_contender(options, "fast", patches),
-            hemicube_contender(options, "default", patches),
-            hemicube_contender(options, "default", patches, 4, 64),
-            hemicube_contender(options, "default", patches, 9, 128),
-            hemicube_contender(options, "exact", patches),
-            hemicube_contender(options, "exact", patches, 16, 128),
-            hemicube_contender(options, "exact", patches, 36, 128)};
+std::vector<Candidate> make_ladder(const RowOptions& options, std::uint32_t patches) {
+    return {hemicube_candidate(options, "plain", patches, 1, 64),
+            hemicube_candidate(options, "plain", patches, 1, 128),
+            hemicube_candidate(options, "fast", patches),
+            hemicube_candidate(options, "default", patches),
+            hemicube_candidate(options, "default", patches, 4, 64),
+            hemicube_candidate(options, "default", patches, 9, 128),
+            hemicube_candidate(options, "exact", patches),
+            hemicube_candidate(options, "exact", patches, 16, 128),
+            hemicube_candidate(options, "exact", patches, 36, 128)};
 }
 
 } // namespace
@@ -41,24 +41,24 @@ RowOptions TargetSearch::first() {
 
 RowOptions TargetSearch::next(std::span<const double> radiosity) {
     for (; rung_ < ladder_.size(); ++rung_) {
-        const Contender& contender = ladder_[rung_];
-        if (table_of_pairs(contender, loaded_.mesh.size(), patches_.size()) > memory_limit_) {
-            omitted_ = contender.command;
+        const Candidate& candidate = ladder_[rung_];
+        if (table_of_pairs(candidate, loaded_.mesh.size(), patches_.size()) > memory_limit_) {
+            omitted_ = candidate.command;
             continue;
         }
         const Measurement measurement =
-            try_on_sample(loaded_, contender, reference_, patches_.size(), radiosity);
+            try_on_sample(loaded_, candidate, reference_, patches_.size(), radiosity);
         const double error = measurement.radiosity.value_or(measurement.error.row_rms);
-        terminal_.detail(fmt::format("{}: error {:.2g} on {}, {} for all rows", contender.command, error,
+        terminal_.detail(fmt::format("{}: error {:.2g} on {}, {} for all rows", candidate.command, error,
                                      plural(reference_.patches.size(), "row", "rows"),
                                      seconds_text(measurement.seconds)));
         if (best_.empty() || error < least_) {
             least_ = error;
-            best_ = contender.command;
+            best_ = candidate.command;
         }
         if (error <= target_) {
             ++rung_;
-            return contender.options;
+            return candidate.options;
         }
     }
     give_up();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cli/contender.hpp"
+#include "cli/candidate.hpp"
 
 #include <cstddef>
 #include <span>
@@ -43,7 +43,7 @@ private:
     const Terminal& terminal_;
     std::uint64_t memory_limit_;
     Reference reference_;
-    std::vector<Contender> ladder_;
+    std::vector<Candidate> ladder_;
     std::size_t rung_ = 0; ///< the next one
     double least_ = 0.0;   ///< error of the best so far; 0: none was tried
     std::string best_;

@@ -9,11 +9,11 @@
 #include "cli/solution.hpp"
 #include "cli/stored_factors.hpp"
 #include "hemi/core/error.hpp"
-#include "hemi/engine/yardsticks.hpp"
+#include "hemi/engine/baselines.hpp"
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
-#include "io/text_output.hpp"
+#include "io/formats/text_output.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

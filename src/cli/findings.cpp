@@ -57,7 +57,7 @@ void look_at_rows(Findings& findings, const FormFactorMatrix& factors, double ma
         if (findings.enclosure != EnclosureVerdict::open && row.environment > leak_above) {
             findings.leaks.push_back({i, row.environment});
         }
-        if (row.blocked > covered_above) {
+        if (row.blocked > buried_above) {
             findings.covered.push_back({i, row.blocked});
         } else if (row.blocked > max_row_error) {
             findings.blocked.push_back({i, row.blocked});
@@ -97,7 +97,7 @@ void look_at_columns(Findings& findings, const io::FactorFile& file, const Patch
     const std::vector<bool> seen = seen_patches(factors);
     std::vector<Unit> units(mesh != nullptr ? mesh->surfaces().size() : file.groups.size());
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        const bool covered = factors.row(i).blocked > covered_above;
+        const bool covered = factors.row(i).blocked > buried_above;
         const std::uint32_t index = mesh != nullptr ? mesh->surface_of()[i] : file.group_of[i];
         Unit& unit = units[index];
         unit.group = file.group_of[i];

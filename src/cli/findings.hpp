@@ -44,7 +44,7 @@ struct Findings {
     double largest_factor = 0.0;
     std::uint64_t outside_bounds = 0;    ///< entries above 1, or rows whose sum is
     std::vector<PatchFinding> leaks;     ///< closed: e_i above the limit; nearly closed: e_i > 0; worst first
-    std::vector<PatchFinding> covered;   ///< b_i > covered_above: the centre lies under or inside something
+    std::vector<PatchFinding> covered;   ///< b_i > buried_above: the centre lies under or inside something
     std::vector<PatchFinding> blocked;   ///< uncovered, b_i above the limit, worst first
     std::vector<PatchFinding> straddled; ///< uncovered, b_i above the limit, and a surface stands on them
     std::vector<PatchFinding> near;      ///< a surface hovers close above: share is the gap in patch sizes

@@ -4,7 +4,7 @@
 #include "cli/pipeline.hpp"
 #include "cli/report.hpp"
 #include "cli/stored_factors.hpp"
-#include "engine/draw_list.hpp"
+#include "engine/hemicube/draw_list.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
@@ -99,7 +99,8 @@ Cost measure(const PatchMesh& mesh, const RowOptions& options) {
         return cost;
     };
     const auto patches = all_patches(mesh.size());
-    return plan.hybrid ? take(estimate_hybrid(*engine, patches)) : take(estimate_matrix(*engine, patches));
+    return plan.hybrid ? take(estimate_visibility_weighted(*engine, patches))
+                       : take(estimate_matrix(*engine, patches));
 }
 
 std::string cost_text(const Cost& cost, const PatchMesh& mesh) {

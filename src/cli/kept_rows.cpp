@@ -16,7 +16,7 @@ namespace hemi::cli {
 /// Rows of another provider, those that are kept from the journal.
 class KeptRows::Provider : public RowProvider {
 public:
-    Provider(KeptRows& kept, RowProvider& provider, io::JournalKey key)
+    Provider(KeptRows& kept, RowProvider& provider, io::CheckpointKey key)
         : kept_(kept), provider_(provider), key_(std::move(key)) {}
 
     [[nodiscard]] std::uint32_t size() const override { return provider_.size(); }
@@ -24,7 +24,7 @@ public:
 
     void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
         std::vector<bool> there(size(), false);
-        io::RowJournal& journal = *kept_.journal_;
+        io::CheckpointFile& journal = *kept_.journal_;
         key_["renderer"] = renderer(); // others give other bits
         journal.start(key_, size(), [&](std::uint32_t patch, const RowView& row) {
             there[patch] = true;
@@ -74,7 +74,7 @@ private:
 
     KeptRows& kept_;
     RowProvider& provider_;
-    io::JournalKey key_;
+    io::CheckpointKey key_;
 };
 
 KeptRows::KeptRows(const std::optional<std::filesystem::path>& output, bool resume, const Terminal& terminal)
@@ -84,7 +84,7 @@ KeptRows::KeptRows(const std::optional<std::filesystem::path>& output, bool resu
     }
 }
 
-std::unique_ptr<RowProvider> KeptRows::keep(RowProvider& provider, io::JournalKey key) {
+std::unique_ptr<RowProvider> KeptRows::keep(RowProvider& provider, io::CheckpointKey key) {
     size_ = provider.size();
     return std::make_unique<Provider>(*this, provider, std::move(key));
 }

@@ -2,7 +2,7 @@
 
 #include "cli/terminal.hpp"
 #include "hemi/engine/row_provider.hpp"
-#include "io/row_journal.hpp"
+#include "io/factors/checkpoint_file.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -26,7 +26,7 @@ public:
 
     /// A provider of the same rows, which takes those that were kept from there and keeps all others.
     /// @param provider  of all rows; must outlive what is returned, as must this
-    [[nodiscard]] std::unique_ptr<RowProvider> keep(RowProvider& provider, io::JournalKey key);
+    [[nodiscard]] std::unique_ptr<RowProvider> keep(RowProvider& provider, io::CheckpointKey key);
 
     /// Rows that an earlier run had computed.
     [[nodiscard]] std::uint64_t reused() const noexcept { return reused_; }
@@ -40,7 +40,7 @@ private:
     class Provider;
 
     const Terminal& terminal_;
-    std::optional<io::RowJournal> journal_;
+    std::optional<io::CheckpointFile> journal_;
     std::uint32_t size_ = 0;
     std::uint64_t reused_ = 0;
 };

@@ -4,11 +4,9 @@
 #include "cli/report.hpp"
 #include "cli/signals.hpp"
 #include "cli/terminal.hpp"
-#include "hemi/engine/engine.hpp"
 
 #include <exception>
 #include <new>
-#include <string_view>
 #include <variant>
 
 namespace {
@@ -56,9 +54,6 @@ ExitStatus run_program(int argc, const char* const* argv) {
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc > 1 && std::string_view(argv[1]) == hemi::worker_argument) {
-        return hemi::run_hemicube_worker();
-    }
     install_signal_handlers();
     return static_cast<int>(run_program(argc, argv));
 }

@@ -55,7 +55,7 @@ Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOpt
     const std::optional<CameraOption>& option = options.camera;
     Camera camera = scene.camera ? *scene.camera
                     : option     ? default_camera(mesh.bounds())
-                                 : walk_in_camera(mesh).value_or(default_camera(mesh.bounds()));
+                                 : interior_camera(mesh).value_or(default_camera(mesh.bounds()));
     camera.orthographic = options.orthographic || (camera.orthographic && !option);
     if (option) {
         camera.eye = option->eye;

@@ -6,9 +6,9 @@
 #include "core/nearest_word.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
-#include "hemi/engine/contacts.hpp"
+#include "hemi/engine/baselines.hpp"
 #include "hemi/engine/leaks.hpp"
-#include "hemi/engine/yardsticks.hpp"
+#include "hemi/engine/touching_faces.hpp"
 #include "hemi/io/scene_reader.hpp"
 
 #include <fmt/format.h>
@@ -269,8 +269,7 @@ std::unique_ptr<RowProvider> make_engine(const PatchMesh& mesh, const HemicubeSe
     EngineSettings settings;
     settings.device = options.device;
     settings.jobs = options.jobs;
-    settings.worker_program =
-        "/proc/self/exe"; // the very file that runs, even if its name is another's by now
+    settings.worker_program = find_worker_program();
     return std::make_unique<StoppableEngine>(make_hemicube_engine(mesh, hemicube, settings));
 }
 
@@ -279,8 +278,8 @@ namespace {
 /// Whether the hybrid's table of pairs and its matrix fit; says so where they do not.
 bool hybrid_fits(RowProvider& visibility, std::span<const std::uint32_t> patches, const RowOptions& options,
                  const Terminal& terminal) {
-    const HybridEstimate estimate =
-        estimate_hybrid(visibility, patches, patches.size() > sample_above ? sample_rows : 0);
+    const VisibilityWeightedEstimate estimate =
+        estimate_visibility_weighted(visibility, patches, patches.size() > sample_above ? sample_rows : 0);
     if (patches.size() > sample_above) {
         terminal.detail(fmt::format("{} rows and their pairs will need about {}, and {} for visibility",
                                     count_text(patches.size()), memory_text(estimate.memory_bytes),
@@ -300,7 +299,7 @@ bool hybrid_fits(RowProvider& visibility, std::span<const std::uint32_t> patches
 } // namespace
 
 /// What the raw rows depend on, besides the renderer.
-io::JournalKey journal_key(const io::FactorFile& file, const HemicubeSettings& hemicube) {
+io::CheckpointKey journal_key(const io::FactorFile& file, const HemicubeSettings& hemicube) {
     return {{"hemi", HEMI_VERSION},
             {"geometry", fmt::format("{:016x}", file.geometry_hash)},
             {"method", file.method},
@@ -317,36 +316,36 @@ struct MaybeKept {
     std::unique_ptr<RowProvider> keeping;
     RowProvider& provider;
 
-    MaybeKept(RowProvider& bare, KeptRows* kept, io::JournalKey key)
+    MaybeKept(RowProvider& bare, KeptRows* kept, io::CheckpointKey key)
         : keeping(kept != nullptr && kept->active() ? kept->keep(bare, std::move(key)) : nullptr),
           provider(keeping ? *keeping : bare) {}
 };
 
 /// Rows by one of the slow methods.
-Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
-                            const RowOptions& options, const Terminal& terminal, KeptRows* kept,
-                            const RowWatcher& watcher) {
-    static const std::map<std::string, Yardstick> methods{{"direct", Yardstick::direct},
-                                                          {"contour", Yardstick::contour},
-                                                          {"montecarlo", Yardstick::montecarlo},
-                                                          {"hemisphere", Yardstick::hemisphere}};
-    YardstickSettings settings;
+Rows compute_baseline_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patches,
+                           const RowOptions& options, const Terminal& terminal, KeptRows* kept,
+                           const RowWatcher& watcher) {
+    static const std::map<std::string, BaselineMethod> methods{{"direct", BaselineMethod::direct},
+                                                               {"contour", BaselineMethod::contour},
+                                                               {"montecarlo", BaselineMethod::montecarlo},
+                                                               {"hemisphere", BaselineMethod::hemisphere}};
+    BaselineSettings settings;
     settings.method = methods.at(options.method);
     settings.rays = options.rays.value_or(settings.rays);
     settings.resolution = options.resolution.value_or(settings.resolution);
     settings.seed = options.seed.value_or(settings.seed);
-    StoppableEngine provider(make_yardstick(loaded.mesh, settings));
+    StoppableEngine provider(make_baseline(loaded.mesh, settings));
     RowPlan plan;
     plan.hemicube.seed = settings.seed;
-    plan.hemicube.resolution = settings.method == Yardstick::hemisphere ? settings.resolution : 0;
+    plan.hemicube.resolution = settings.method == BaselineMethod::hemisphere ? settings.resolution : 0;
     RowOptions named = options;
     named.preset = "none";
     Rows rows;
     rows.file = describe(loaded, named, plan);
-    if (settings.method == Yardstick::direct || settings.method == Yardstick::contour) {
+    if (settings.method == BaselineMethod::direct || settings.method == BaselineMethod::contour) {
         terminal.note(fmt::format("--method {} finds factors as if nothing lay between", options.method));
     }
-    io::JournalKey key = journal_key(rows.file, plan.hemicube);
+    io::CheckpointKey key = journal_key(rows.file, plan.hemicube);
     key["rays"] = std::to_string(settings.rays);
     const MaybeKept source(provider, kept, std::move(key));
     WatchedRows watched(source.provider, plan.hemicube.quantity, watcher);
@@ -354,7 +353,7 @@ Rows compute_yardstick_rows(const LoadedScene& loaded, std::span<const std::uint
     rows.file.factors = compute_matrix(watched, patches, bar.callback());
     rows.computed = patches.size() - (kept != nullptr ? kept->reused() : 0);
     rows.file.renderer = provider.renderer();
-    rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
+    rows.file.contacts = find_touching_faces(rows.file.factors, loaded.mesh);
     stop_if_interrupted();
     return rows;
 }
@@ -363,7 +362,7 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
                   const RowOptions& options, const Terminal& terminal, KeptRows* kept,
                   const RowWatcher& watcher) {
     if (options.method != "hemicube") {
-        return compute_yardstick_rows(loaded, patches, options, terminal, kept, watcher);
+        return compute_baseline_rows(loaded, patches, options, terminal, kept, watcher);
     }
     RowPlan plan = plan_rows(options, loaded.mesh.size());
     Rows rows;
@@ -410,9 +409,9 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
                 return bar->callback()(done, total);
             };
         };
-        rows.file.factors = compute_hybrid(watched, loaded.mesh, patches, *plan.hybrid,
-                                           loaded.scene.enclosure, timed(seen.callback()),
-                                           in_turn(combined, "pairs"), in_turn(paired, "form factors"));
+        rows.file.factors = compute_visibility_weighted(
+            watched, loaded.mesh, patches, *plan.hybrid, loaded.scene.enclosure, timed(seen.callback()),
+            in_turn(combined, "pairs"), in_turn(paired, "form factors"));
     } else {
         ProgressBar bar(terminal, "form factors", "rows");
         rows.file.factors = compute_matrix(watched, patches, timed(bar.callback()));
@@ -420,7 +419,7 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
     rows.hemicubes = engine->hemicubes() - hemicubes_before;
     rows.computed = patches.size() - (kept != nullptr ? kept->reused() : 0);
     rows.file.renderer = engine->renderer();
-    rows.file.contacts = find_contacts(rows.file.factors, loaded.mesh);
+    rows.file.contacts = find_touching_faces(rows.file.factors, loaded.mesh);
     stop_if_interrupted();
     return rows;
 }
@@ -457,7 +456,7 @@ void settle_contacts(io::FactorFile& file) {
     const Enclosure enclosure = file.enclosure == "closed" ? Enclosure::closed
                                 : file.enclosure == "open" ? Enclosure::open
                                                            : Enclosure::automatic;
-    cover_contacts(file.factors, file.contacts, enclosure);
+    mark_touching_faces_buried(file.factors, file.contacts, enclosure);
 }
 
 EnclosureFinding find_leaks(const FormFactorMatrix& factors, const std::string& enclosure,

@@ -5,7 +5,7 @@
 #include "cli/report.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/engine/engine.hpp"
-#include "hemi/engine/hybrid.hpp"
+#include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/io/factor_file.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
@@ -56,7 +56,8 @@ void refuse_all_but(const CommonOptions& common, std::span<const std::string> al
 /// How rows will be computed: the preset, and what single options replaced in it.
 struct RowPlan {
     HemicubeSettings hemicube;
-    std::optional<HybridSettings> hybrid; ///< exact factors times visibility; else the texels alone
+    std::optional<VisibilityWeightedSettings>
+        hybrid; ///< exact factors times visibility; else the texels alone
 };
 /// @param patches  of the whole scene: where many share the texels, one sharper eye sees more than several
 [[nodiscard]] RowPlan plan_rows(const RowOptions& options, std::uint32_t patches);
@@ -98,7 +99,7 @@ using RowWatcher = std::function<void(std::uint32_t patch, const RowView& row, R
 [[nodiscard]] std::vector<std::uint32_t> all_patches(std::uint32_t size);
 
 /// Counts patches that lie face to face against a surface as covered where the scene is closed; after the raw
-/// rows were stored. @see cover_contacts
+/// rows were stored. @see mark_touching_faces_buried
 void settle_contacts(io::FactorFile& file);
 
 /// What the rows say about the enclosure.

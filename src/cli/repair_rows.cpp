@@ -15,7 +15,7 @@ double unoccluded_error(const io::FactorFile& file) {
     return file.preset == "exact" ? exact_rule : RepairSettings().unoccluded_error;
 }
 
-Json errors_json(const RowError& rows, const Reciprocity& pairs) {
+Json errors_json(const RowImbalance& rows, const Reciprocity& pairs) {
     return {{"row_error", {{"max", rows.max}, {"rms", rows.rms}}},
             {"reciprocity", pairs.pairs > 0 ? reciprocity_json(pairs) : Json(nullptr)}};
 }

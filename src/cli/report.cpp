@@ -1,7 +1,7 @@
 #include "cli/report.hpp"
 
 #include "hemi/core/error.hpp"
-#include "io/text_scan.hpp"
+#include "io/formats/text_scan.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

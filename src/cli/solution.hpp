@@ -28,7 +28,7 @@ struct Solution {
     double residual = 0.0;
     double dominance = 0.0;
     double seconds = 0.0;
-    std::optional<RadiosityError> error; ///< estimated, see estimate_solution
+    std::optional<RadiosityErrorEstimate> error; ///< estimated, see estimate_solution
 };
 
 /// Patches whose rows the radiosity depends on: those that reflect in some channel.

@@ -8,7 +8,7 @@
 #include "cli/report.hpp"
 #include "cli/signals.hpp"
 #include "cli/solution.hpp"
-#include "engine/draw_list.hpp"
+#include "engine/hemicube/draw_list.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"

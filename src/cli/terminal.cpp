@@ -1,6 +1,6 @@
 #include "cli/terminal.hpp"
 
-#include "io/text_scan.hpp"
+#include "io/formats/text_scan.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
+#include "cli/candidate.hpp"
 #include "cli/commands.hpp"
-#include "cli/contender.hpp"
 #include "cli/outputs.hpp"
 #include "cli/report.hpp"
 #include "cli/solution.hpp"
@@ -25,7 +25,7 @@ constexpr double reference_share = 0.12; // of the budget
 constexpr double least_error = 1e-9;
 
 struct Entry {
-    Contender contender;
+    Candidate candidate;
     std::optional<Measurement> measurement;
     std::string omitted; ///< why there is no measurement
     bool front = false;  ///< nothing is both faster and better
@@ -38,21 +38,21 @@ struct Entry {
 /// Cheap ones first.
 std::vector<Entry> all_entries(const RowOptions& base, std::uint32_t patches) {
     std::vector<Entry> entries;
-    const auto add = [&entries](Contender contender) {
-        entries.push_back({std::move(contender), {}, "", false, false});
+    const auto add = [&entries](Candidate candidate) {
+        entries.push_back({std::move(candidate), {}, "", false, false});
     };
     const auto hemicube = [&](const std::string& preset, std::uint32_t eyes = 0, std::uint32_t resolution = 0,
                               std::optional<std::uint32_t> rays = {}) {
-        Contender contender = hemicube_contender(base, preset, patches, eyes, resolution, rays);
+        Candidate candidate = hemicube_candidate(base, preset, patches, eyes, resolution, rays);
         const bool known = std::any_of(entries.begin(), entries.end(), [&](const Entry& entry) {
-            const RowPlan a = plan_rows(entry.contender.options, patches);
-            RowPlan b = plan_rows(contender.options, patches);
+            const RowPlan a = plan_rows(entry.candidate.options, patches);
+            RowPlan b = plan_rows(candidate.options, patches);
             // More points near surfaces are no reason to try the same eyes twice.
             b.hemicube.near_eye_points = a.hemicube.near_eye_points;
-            return !entry.contender.yardstick && a.hemicube == b.hemicube && a.hybrid == b.hybrid;
+            return !entry.candidate.yardstick && a.hemicube == b.hemicube && a.hybrid == b.hybrid;
         });
         if (!known) {
-            add(std::move(contender));
+            add(std::move(candidate));
         }
     };
     hemicube("plain", 1, 32);
@@ -61,26 +61,26 @@ std::vector<Entry> all_entries(const RowOptions& base, std::uint32_t patches) {
     hemicube("fast");
     hemicube("default", 0, 0, 0);
     hemicube("default");
-    const bool few = patches <= yardstick_patches_max;
+    const bool few = patches <= max_baseline_patches;
     if (few) {
-        add(yardstick_contender(base, Yardstick::montecarlo, 1024));
-        add(yardstick_contender(base, Yardstick::montecarlo, 4096));
+        add(baseline_candidate(base, BaselineMethod::montecarlo, 1024));
+        add(baseline_candidate(base, BaselineMethod::montecarlo, 4096));
     }
     hemicube("plain", 1, 256);
     hemicube("plain", 4, 64);
     hemicube("default", 4, 64);
     if (few) {
-        add(yardstick_contender(base, Yardstick::montecarlo, 16384));
-        add(yardstick_contender(base, Yardstick::hemisphere));
+        add(baseline_candidate(base, BaselineMethod::montecarlo, 16384));
+        add(baseline_candidate(base, BaselineMethod::hemisphere));
     }
     hemicube("plain", 1, 512);
     hemicube("plain", 16, 64);
     hemicube("default", 9, 64);
     hemicube("exact");
     if (few) {
-        add(yardstick_contender(base, Yardstick::montecarlo, 65536));
-        add(yardstick_contender(base, Yardstick::contour));
-        add(yardstick_contender(base, Yardstick::direct));
+        add(baseline_candidate(base, BaselineMethod::montecarlo, 65536));
+        add(baseline_candidate(base, BaselineMethod::contour));
+        add(baseline_candidate(base, BaselineMethod::direct));
     }
     return entries;
 }
@@ -130,7 +130,7 @@ public:
             return "Nothing was measured: give more time with --budget.";
         }
         const auto tell = [](const Entry& entry) {
-            return fmt::format("{} ({} for a row error of {:.2g})", entry.contender.command,
+            return fmt::format("{} ({} for a row error of {:.2g})", entry.candidate.command,
                                seconds_text(entry.seconds()), entry.error());
         };
         std::string text = "Take " + tell(*chosen);
@@ -162,24 +162,24 @@ public:
 private:
     /// On a sample first; then on all rows if half of what time is left will do.
     void measure(Entry& entry) {
-        const Contender& contender = entry.contender;
+        const Candidate& candidate = entry.candidate;
         const double left = arguments_.budget - spent();
         if (left <= 0.0) {
             entry.omitted = "no time was left";
             return;
         }
-        if (table_of_pairs(contender, loaded_.mesh.size(), patches_.size()) > memory_limit(arguments_.rows)) {
+        if (table_of_pairs(candidate, loaded_.mesh.size(), patches_.size()) > memory_limit(arguments_.rows)) {
             entry.omitted = "its table of pairs does not fit into the memory";
             return;
         }
-        terminal_.detail(contender.label());
-        entry.measurement = try_on_sample(loaded_, contender, reference_, patches_.size(), radiosity_);
+        terminal_.detail(candidate.label());
+        entry.measurement = try_on_sample(loaded_, candidate, reference_, patches_.size(), radiosity_);
         if (entry.measurement->seconds > 0.5 * (arguments_.budget - spent())) {
             return;
         }
         io::FactorFile rows;
-        entry.measurement = try_on_all(loaded_, contender, reference_, radiosity_, &rows);
-        if (radiosity_.empty() && !contender.yardstick) {
+        entry.measurement = try_on_all(loaded_, candidate, reference_, radiosity_, &rows);
+        if (radiosity_.empty() && !candidate.yardstick) {
             const Terminal silent(true);
             radiosity_ = solve_scene(loaded_, rows.factors, SolverSettings{}, false, silent).radiosity;
             entry.measurement->radiosity =
@@ -203,7 +203,7 @@ private:
 
     void find_front() {
         const auto anything = [](const Entry&) { return true; };
-        const auto can_be_chosen = [](const Entry& entry) { return !entry.contender.command.empty(); };
+        const auto can_be_chosen = [](const Entry& entry) { return !entry.candidate.command.empty(); };
         for (Entry& entry : entries_) {
             entry.front = entry.measurement && !beaten(entry, anything);
             entry.choice = entry.measurement && can_be_chosen(entry) && !beaten(entry, can_be_chosen);
@@ -247,7 +247,7 @@ std::string report(const Trade& trade, const LoadedScene& loaded) {
     for (const Entry* const entry : by_time(trade.entries())) {
         const Measurement& m = *entry->measurement;
         sampled = sampled || !m.all_rows;
-        table.add({entry->front ? "*" : "", entry->contender.family, entry->contender.settings,
+        table.add({entry->front ? "*" : "", entry->candidate.family, entry->candidate.settings,
                    fmt::format("{:.3g}", m.seconds), fmt::format("{:.1e}", m.error.rms),
                    fmt::format("{:.1e}", m.error.max), fmt::format("{:.1e}", m.error.row_rms),
                    m.radiosity ? fmt::format("{:.1e}", *m.radiosity) : "-", m.all_rows ? "all" : "sample"});
@@ -263,7 +263,7 @@ std::string report(const Trade& trade, const LoadedScene& loaded) {
                     : ".\n";
     for (const Entry& entry : trade.entries()) {
         if (!entry.measurement) {
-            text += fmt::format("Not measured: {}, {}.\n", entry.contender.label(), entry.omitted);
+            text += fmt::format("Not measured: {}, {}.\n", entry.candidate.label(), entry.omitted);
         }
     }
     return text + "\n" + trade.advice() + "\n";
@@ -274,27 +274,27 @@ Json to_json(const Trade& trade, const LoadedScene& loaded, const TradeArguments
     Json measurements = Json::array();
     Json omitted = Json::array();
     for (const Entry& entry : trade.entries()) {
-        const Contender& contender = entry.contender;
+        const Candidate& candidate = entry.candidate;
         if (!entry.measurement) {
-            omitted.push_back({{"label", contender.label()}, {"why", entry.omitted}});
+            omitted.push_back({{"label", candidate.label()}, {"why", entry.omitted}});
         }
     }
     for (const Entry* const entry : by_time(trade.entries())) {
-        const Contender& contender = entry->contender;
+        const Candidate& candidate = entry->candidate;
         const Measurement& m = *entry->measurement;
-        const RowPlan plan = plan_rows(contender.options, loaded.mesh.size());
+        const RowPlan plan = plan_rows(candidate.options, loaded.mesh.size());
         const HemicubeSettings& hemicube = plan.hemicube;
-        const bool rays = contender.yardstick && contender.yardstick->method == Yardstick::montecarlo;
+        const bool rays = candidate.yardstick && candidate.yardstick->method == BaselineMethod::montecarlo;
         measurements.push_back(
-            {{"label", contender.label()},
-             {"method", contender.options.method},
-             {"preset", contender.yardstick ? Json(nullptr) : Json(contender.options.preset)},
-             {"eye_points", contender.yardstick ? Json(nullptr) : Json(hemicube.eye_points)},
-             {"resolution", contender.yardstick ? Json(nullptr) : Json(hemicube.resolution)},
+            {{"label", candidate.label()},
+             {"method", candidate.options.method},
+             {"preset", candidate.yardstick ? Json(nullptr) : Json(candidate.options.preset)},
+             {"eye_points", candidate.yardstick ? Json(nullptr) : Json(hemicube.eye_points)},
+             {"resolution", candidate.yardstick ? Json(nullptr) : Json(hemicube.resolution)},
              {"shadow_rays",
-              plan.hybrid && !contender.yardstick ? Json(plan.hybrid->shadow_rays) : Json(nullptr)},
-             {"rays", rays ? Json(contender.yardstick->rays) : Json(nullptr)},
-             {"options", contender.command.empty() ? Json(nullptr) : Json(contender.command)},
+              plan.hybrid && !candidate.yardstick ? Json(plan.hybrid->shadow_rays) : Json(nullptr)},
+             {"rays", rays ? Json(candidate.yardstick->rays) : Json(nullptr)},
+             {"options", candidate.command.empty() ? Json(nullptr) : Json(candidate.command)},
              {"rows", m.all_rows ? "all" : "sample"},
              {"seconds", m.seconds},
              {"rms", m.error.rms},
@@ -317,7 +317,7 @@ Json to_json(const Trade& trade, const LoadedScene& loaded, const TradeArguments
               {"seconds", reference.seconds}}},
             {"measurements", measurements},
             {"omitted", omitted},
-            {"best", best != nullptr ? Json(best->contender.command) : Json(nullptr)},
+            {"best", best != nullptr ? Json(best->candidate.command) : Json(nullptr)},
             {"advice", trade.advice()}};
 }
 
@@ -326,9 +326,9 @@ void write_plot(const std::filesystem::path& path, const Trade& trade, const Loa
     std::vector<PlotPoint> points;
     for (const Entry& entry : trade.entries()) {
         if (entry.measurement) {
-            const Contender& contender = entry.contender;
-            points.push_back({contender.family,
-                              contender.settings.empty() ? contender.family : contender.settings,
+            const Candidate& candidate = entry.candidate;
+            points.push_back({candidate.family,
+                              candidate.settings.empty() ? candidate.family : candidate.settings,
                               std::max(entry.seconds(), 1e-3), entry.error(), entry.front});
         }
     }

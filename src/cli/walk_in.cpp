@@ -1,6 +1,6 @@
 #include "cli/walk_in.hpp"
 
-#include "engine/ray_tracer.hpp"
+#include "engine/rays/ray_tracer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -71,7 +71,7 @@ private:
 
 } // namespace
 
-std::optional<Camera> walk_in_camera(const PatchMesh& mesh) {
+std::optional<Camera> interior_camera(const PatchMesh& mesh) {
     const Room room(mesh);
     const Bounds& bounds = mesh.bounds();
     const Vec3 size = bounds.upper - bounds.lower;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hemi/core/covered.hpp"
+#include "hemi/core/buried.hpp"
 
 #include "display/smooth_surfaces.hpp"
 
@@ -12,7 +12,7 @@ namespace hemi {
 
 /// A patch more than half of whose view meets back faces: its eye lies under or inside something.
 [[nodiscard]] inline bool is_covered(std::span<const double> blocked, std::uint32_t patch) {
-    return !blocked.empty() && blocked[patch] > covered_above;
+    return !blocked.empty() && blocked[patch] > buried_above;
 }
 
 /// As the public corner_values, for callers that need the welded surfaces too.

@@ -91,14 +91,14 @@ RowSums row_sums(const FormFactorMatrix& factors) {
         sums.mean += sum;
         sums.environment_max = std::max(sums.environment_max, row.environment);
         sums.blocked_max = std::max(sums.blocked_max, row.blocked);
-        if (row.blocked <= covered_above) {
+        if (row.blocked <= buried_above) {
             sums.balance_error_max =
                 std::max(sums.balance_error_max, std::abs(sum + row.environment + row.blocked - 1.0));
         }
         ++sums.known;
         sums.leaking += row.environment > 0.0 ? 1 : 0;
-        sums.covered += row.blocked > covered_above ? 1 : 0;
-        sums.partly_blocked += row.blocked > 0.0 && row.blocked <= covered_above ? 1 : 0;
+        sums.covered += row.blocked > buried_above ? 1 : 0;
+        sums.partly_blocked += row.blocked > 0.0 && row.blocked <= buried_above ? 1 : 0;
     }
     if (sums.known == 0) {
         return {};

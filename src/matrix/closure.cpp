@@ -1,7 +1,7 @@
 #include "matrix/closure.hpp"
 
 #include "core/parallel_for.hpp"
-#include "hemi/core/covered.hpp"
+#include "hemi/core/buried.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +100,7 @@ void Closure::find_diagonal() {
     multiply(std::vector<double>(gap_.size(), 1.0), diagonal_);
     for (std::uint32_t i = 0; i < gap_.size(); ++i) {
         const RowBlock& block = block_of(blocks_, i);
-        if (!is_known(blocks_, i) || block.blocked[i % block_rows] > covered_above) {
+        if (!is_known(blocks_, i) || block.blocked[i % block_rows] > buried_above) {
             diagonal_[i] = 0.0;
         } else if (!all_known_) {
             visit_unknown_left(blocks_, i, [&](std::uint64_t k) {

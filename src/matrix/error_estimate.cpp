@@ -247,8 +247,8 @@ double amplification(const FormFactorMatrix& factors, std::span<const double> ar
 
 } // namespace
 
-FactorError estimate_factor_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
-                                  std::span<const std::uint32_t> columns) {
+FactorErrorEstimate estimate_factor_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
+                                          std::span<const std::uint32_t> columns) {
     const auto sampled = sampled_rows(factors, reference);
     const double share = share_of(factors, columns);
     std::vector<double> squares(sampled.size());
@@ -264,7 +264,7 @@ FactorError estimate_factor_error(const FormFactorMatrix& factors, const FormFac
         squares[k] /= share;
     }
     const Variances variances = spread(factors, sampled, squares, {});
-    FactorError estimate;
+    FactorErrorEstimate estimate;
     estimate.sampled = static_cast<std::uint32_t>(sampled.size());
     double sum = 0.0;
     std::uint32_t known = 0;
@@ -281,11 +281,11 @@ FactorError estimate_factor_error(const FormFactorMatrix& factors, const FormFac
     return estimate;
 }
 
-RadiosityError estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
-                                        std::span<const double> areas, std::uint32_t channels,
-                                        std::span<const double> reflectance, std::span<const double> exitance,
-                                        std::span<const double> radiosity,
-                                        std::span<const std::uint32_t> columns) {
+RadiosityErrorEstimate
+estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
+                         std::span<const double> areas, std::uint32_t channels,
+                         std::span<const double> reflectance, std::span<const double> exitance,
+                         std::span<const double> radiosity, std::span<const std::uint32_t> columns) {
     const std::uint32_t size = factors.size();
     const std::size_t values = std::size_t{size} * channels;
     if (areas.size() != size || reflectance.size() != values || exitance.size() != values ||
@@ -296,7 +296,7 @@ RadiosityError estimate_radiosity_error(const FormFactorMatrix& factors, const F
                                           size, channels));
     }
     const auto all_sampled = sampled_rows(factors, reference);
-    RadiosityError estimate;
+    RadiosityErrorEstimate estimate;
     estimate.patches.resize(values);
     std::vector<double> rho(size);
     std::vector<double> b(size);

@@ -1,7 +1,7 @@
 #include "hemi/matrix/repair.hpp"
 
 #include "core/parallel_for.hpp"
-#include "hemi/core/covered.hpp"
+#include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
 #include "matrix/closure.hpp"
 #include "matrix/pairs.hpp"
@@ -30,7 +30,7 @@ void check_settings(const RepairSettings& settings) {
     check("tolerance of row sums", settings.tolerance);
 }
 
-RowError row_error(const FormFactorMatrix& factors) {
+RowImbalance row_error(const FormFactorMatrix& factors) {
     const std::span<const RowBlock> blocks = factors.blocks();
     std::vector<double> largest(blocks.size(), 0.0);
     std::vector<double> squares(blocks.size(), 0.0);
@@ -40,7 +40,7 @@ RowError row_error(const FormFactorMatrix& factors) {
         for (std::size_t b = begin; b < end; ++b) {
             for (std::uint32_t local = 0; local < blocks[b].rows(); ++local) {
                 const RowView row = factors.row(blocks[b].first_row + local);
-                if (blocks[b].known[local] == 0 || row.blocked > covered_above) {
+                if (blocks[b].known[local] == 0 || row.blocked > buried_above) {
                     continue;
                 }
                 const double error = std::abs(row.sum() + row.environment + row.blocked - 1.0);
@@ -50,7 +50,7 @@ RowError row_error(const FormFactorMatrix& factors) {
             }
         }
     });
-    RowError result;
+    RowImbalance result;
     const std::uint32_t all_rows = std::accumulate(rows.begin(), rows.end(), 0u);
     if (all_rows > 0) {
         result.max = *std::max_element(largest.begin(), largest.end());

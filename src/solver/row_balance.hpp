@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hemi/core/covered.hpp"
+#include "hemi/core/buried.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct RowBalance {
 /// @param sum  of the row's factors, with its diagonal
 [[nodiscard]] inline RowBalance balance_row(double sum, double environment, double blocked) {
     constexpr double mendable = 0.01;
-    const bool covered = blocked > covered_above;
+    const bool covered = blocked > buried_above;
     if (covered && sum + environment <= 1.0) {
         return {.lost = 1.0 - sum};
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/gl_rows.hpp"
+#include "engine/hemicube/gl_rows.hpp"
 #include "gl/objects.hpp"
 #include "viewer/overlays.hpp"
 

@@ -21,7 +21,7 @@ struct Relit {
     std::uint32_t sweeps = 0;
     double residual = 0.0;
     double seconds = 0.0;
-    std::optional<RadiosityError> error; ///< estimated; comes a little later than the light
+    std::optional<RadiosityErrorEstimate> error; ///< estimated; comes a little later than the light
     std::string problem; ///< why there is no solution; then `light` is as it was asked for, not solved
 };
 

@@ -48,7 +48,7 @@ struct RowListener {
 struct SolvedLight {
     std::vector<Material> materials; ///< as they are by now
     std::vector<double> radiosity;   ///< N·channels
-    std::optional<RadiosityError> error;
+    std::optional<RadiosityErrorEstimate> error;
     std::string solver;
     std::uint32_t sweeps = 0;
     double residual = 0.0;

@@ -1,5 +1,5 @@
-#include "engine/draw_list.hpp"
-#include "engine/outline.hpp"
+#include "engine/hemicube/draw_list.hpp"
+#include "engine/hemicube/outline.hpp"
 #include "hemi/core/error.hpp"
 #include "support/scenes.hpp"
 

@@ -1,5 +1,5 @@
-#include "engine/gl_rows.hpp"
-#include "engine/reference_engine.hpp"
+#include "engine/baselines/reference_engine.hpp"
+#include "engine/hemicube/gl_rows.hpp"
 #include "support/scenes.hpp"
 
 #include "hemi/core/error.hpp"

@@ -2,8 +2,8 @@
 #include "support/scenes.hpp"
 
 #include "hemi/core/error.hpp"
-#include "hemi/engine/hybrid.hpp"
 #include "hemi/engine/reference_rows.hpp"
+#include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/matrix/error_estimate.hpp"
 #include "hemi/matrix/repair.hpp"
 #include "hemi/solver/solver.hpp"
@@ -114,13 +114,14 @@ void judge(const KnownScene& scene, const Method& method, std::uint64_t seed, Ta
     std::iota(patches.begin(), patches.end(), 0u);
     const auto engine = make_hemicube_engine(scene.mesh, settings, {"osmesa", 1, ""});
     FormFactorMatrix factors =
-        method.hybrid ? compute_hybrid(*engine, scene.mesh, patches, HybridSettings{}, Enclosure::automatic)
+        method.hybrid ? compute_visibility_weighted(*engine, scene.mesh, patches,
+                                                    VisibilityWeightedSettings{}, Enclosure::automatic)
                       : compute_matrix(*engine, patches);
     (void)repair(factors, scene.mesh.areas(), method.repair);
     const auto better = make_hemicube_engine(scene.mesh, reference_settings(settings), {"osmesa", 1, ""});
     const auto reference = compute_reference(
         *better, scene.mesh, reference_patches(patches, reference_count(settings, patches.size(), 0.1)));
-    const FactorError error = estimate_factor_error(factors, reference);
+    const FactorErrorEstimate error = estimate_factor_error(factors, reference);
 
     double rows = 0.0;
     double largest = 0.0;
@@ -149,8 +150,8 @@ void judge(const KnownScene& scene, const Method& method, std::uint64_t seed, Ta
     tallies.max.add(largest, error.max);
 
     const auto radiosity = scene.solve(factors);
-    const RadiosityError shown = estimate_radiosity_error(factors, reference, scene.mesh.areas(), 1,
-                                                          scene.reflectances, scene.exitance, radiosity);
+    const RadiosityErrorEstimate shown = estimate_radiosity_error(
+        factors, reference, scene.mesh.areas(), 1, scene.reflectances, scene.exitance, radiosity);
     double errors = 0.0;
     double all = 0.0;
     for (const std::uint32_t i : patches) {
@@ -232,14 +233,14 @@ TEST_CASE("estimate_factor_error: nothing to say where nothing was compared", "[
     CHECK_THROWS_AS(estimate_factor_error(none, none), InvalidArgument);
     CHECK_THROWS_AS(estimate_factor_error(none, FormFactorMatrix(4)), InvalidArgument);
     const FormFactorMatrix rows = matrix_of({{0.0, 0.5, 0.25}, {0.5, 0.0, 0.25}, {0.25, 0.25, 0.0}});
-    const FactorError same = estimate_factor_error(rows, rows);
+    const FactorErrorEstimate same = estimate_factor_error(rows, rows);
     CHECK(same.sampled == 3);
     CHECK(same.rms > 0.0); // what floats cannot say
     CHECK(same.rms < 3e-8);
     CHECK(same.max < 1e-7);
     CHECK(same.row_max < 1e-7);
     const FormFactorMatrix other = matrix_of({{0.0, 0.5, 0.25}, {0.5, 0.0, 0.25}, {0.25, 0.5, 0.0}});
-    const FactorError off = estimate_factor_error(other, rows);
+    const FactorErrorEstimate off = estimate_factor_error(other, rows);
     CHECK(off.rms == Approx(0.25 / std::sqrt(6.0)));
     CHECK(off.row_rms == Approx(0.25 / std::sqrt(3.0)));
     CHECK(off.max >= 0.25);

@@ -1,7 +1,7 @@
 #include "engine/gathering.hpp"
 
 #include "hemi/core/error.hpp"
-#include "hemi/engine/hybrid.hpp"
+#include "hemi/engine/visibility_weighted.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -64,7 +64,8 @@ TEST_CASE("Gathering: a row of visibility gives about what the hybrid's factors 
     const auto engine = make_hemicube_engine(mesh, settings, {"osmesa", 2, HEMI_PROGRAM});
     std::vector<std::uint32_t> patches(mesh.size());
     std::iota(patches.begin(), patches.end(), 0U);
-    const FormFactorMatrix factors = compute_hybrid(*engine, mesh, patches, {}, Enclosure::closed);
+    const FormFactorMatrix factors =
+        compute_visibility_weighted(*engine, mesh, patches, {}, Enclosure::closed);
     double squares = 0.0;
     double largest = 0.0;
     std::size_t count = 0;

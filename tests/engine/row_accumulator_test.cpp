@@ -1,4 +1,4 @@
-#include "engine/row_accumulator.hpp"
+#include "engine/hemicube/row_accumulator.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "engine/shadow_rays.hpp"
+#include "engine/rays/shadow_rays.hpp"
 
 #include "support/scenes.hpp"
 

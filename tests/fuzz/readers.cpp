@@ -4,7 +4,7 @@
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
-#include "io/row_journal.hpp"
+#include "io/factors/checkpoint_file.hpp"
 
 #include <zlib.h>
 
@@ -81,7 +81,7 @@ void seed_hff(const fs::path& folder) {
     file.contacts = {1};
     io::write_hff(folder / "plain.hff", file);
     file.reference = small_matrix(true);
-    file.error = FactorError{2, 1e-5, 1e-3, 1e-4, 1e-2, {0.1, 0.2}};
+    file.error = FactorErrorEstimate{2, 1e-5, 1e-3, 1e-4, 1e-2, {0.1, 0.2}};
     io::write_hff(folder / "judged.hff", file);
 }
 
@@ -96,7 +96,7 @@ void seed_hres(const fs::path& folder) {
 }
 
 void seed_rows(const fs::path& folder) {
-    io::RowJournal journal(folder / "a", false);
+    io::CheckpointFile journal(folder / "a", false);
     journal.start({{"seed", "0"}}, 2, {});
     journal.append(small_matrix(true).blocks().front());
 }
@@ -220,7 +220,7 @@ const std::map<std::string, Reader> readers{
     {"rows",
      {"fuzzed.rows",
       [](const fs::path& path) {
-          io::RowJournal journal(path.parent_path() / "fuzzed", true);
+          io::CheckpointFile journal(path.parent_path() / "fuzzed", true);
           journal.start({{"seed", "0"}}, 2, [](std::uint32_t, const RowView& row) { (void)row.sum(); });
       },
       seed_rows, true}},

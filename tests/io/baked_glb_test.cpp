@@ -1,7 +1,7 @@
 #include "hemi/io/baked_mesh_file.hpp"
 
 #include "hemi/io/scene_reader.hpp"
-#include "io/gltf_file.hpp"
+#include "io/scenes/gltf_file.hpp"
 #include "io_fixtures.hpp"
 
 #include <cmath>

@@ -40,7 +40,7 @@ io::FactorFile judged_sample(std::uint32_t size) {
         const FormFactorMatrix better = random_matrix(size, true, true);
         file.reference.set_block(better.blocks().back());
     }
-    file.error = FactorError{7, 1e-5, 1.0 / 3.0, 2e-4, 0.5, std::vector<double>(size, 0.1)};
+    file.error = FactorErrorEstimate{7, 1e-5, 1.0 / 3.0, 2e-4, 0.5, std::vector<double>(size, 0.1)};
     file.chosen_for = "--error-target 1e-3";
     return file;
 }

@@ -1,6 +1,6 @@
 #include "hemi/io/scene_reader.hpp"
 
-#include "io/base64.hpp"
+#include "io/formats/base64.hpp"
 #include "io_fixtures.hpp"
 
 #include <nlohmann/json.hpp>

@@ -43,8 +43,8 @@ io::ResultFile sample() {
     result.residual = 1.23456789e-7;
     result.renderer = "Some Renderer";
     result.chosen_for = "--error-target 1e-3";
-    result.factor_error = FactorError{5, 1e-5, 0.25, 2e-4, 0.5, std::vector<double>(patches, 1e-3)};
-    result.radiosity_error = RadiosityError{1.0 / 3.0, std::vector<double>(patches * 2, 0.125)};
+    result.factor_error = FactorErrorEstimate{5, 1e-5, 0.25, 2e-4, 0.5, std::vector<double>(patches, 1e-3)};
+    result.radiosity_error = RadiosityErrorEstimate{1.0 / 3.0, std::vector<double>(patches * 2, 0.125)};
     return result;
 }
 

@@ -270,7 +270,7 @@ TEST_CASE("HDF5: h5py reads rows, patches, groups and what made them", "[io]") {
     file.seed = 18446744073709551615u;
     file.enclosure = "closed";
     file.geometry_hash = 0x0123456789abcdefu;
-    file.error = FactorError{};
+    file.error = FactorErrorEstimate{};
     file.error->rows.assign(150, 1e-4);
     io::write_h5(folder / "a.h5", file, "closure");
 

@@ -1,6 +1,6 @@
 #include "scenes/scene_files.hpp"
 
-#include "engine/draw_list.hpp"
+#include "engine/hemicube/draw_list.hpp"
 #include "support/command.hpp"
 #include "support/scenes.hpp"
 

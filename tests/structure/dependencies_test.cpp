@@ -18,8 +18,9 @@ const std::map<std::string, std::set<std::string>> allowed{
     {"gl", {"core"}},
     {"engine", {"core", "scene", "matrix", "gl"}},
     {"solver", {"core", "matrix"}},
-    {"io", {"core", "scene", "matrix"}},
+    {"io", {"core", "scene", "matrix", "solver"}},
     {"display", {"core", "scene", "gl"}},
+    {"worker", {"core", "engine"}},
     {"viewer", {"core", "scene", "matrix", "gl", "engine", "solver", "io", "display"}},
     {"cli", {"core", "scene", "matrix", "gl", "engine", "solver", "io", "display", "viewer"}}};
 

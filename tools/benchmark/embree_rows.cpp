@@ -1,8 +1,8 @@
 #include "benchmark/embree_rows.hpp"
 
 #include "benchmark/naive_rows.hpp"
-#include "engine/embree_scene.hpp"
-#include "engine/patch_rays.hpp"
+#include "engine/rays/embree_scene.hpp"
+#include "engine/rays/patch_rays.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>

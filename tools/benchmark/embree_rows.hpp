@@ -1,7 +1,7 @@
 #pragma once
 
-#include "engine/eye.hpp"
-#include "engine/row_accumulator.hpp"
+#include "engine/hemicube/eye.hpp"
+#include "engine/hemicube/row_accumulator.hpp"
 #include "hemi/engine/engine.hpp"
 
 #include <array>

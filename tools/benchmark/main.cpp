@@ -63,7 +63,7 @@ void print_findings(Measurements& measurements, Report& report, const Case& offi
 Setup make_setup(const Options& options, unsigned workers) {
     Setup setup;
     setup.device = options.device;
-    setup.worker_program = this_program().string();
+    setup.worker_program = find_worker_program();
     setup.workers = workers;
     setup.effort.seconds = options.quick ? 0.2 : 0.5;
     return setup;
@@ -104,9 +104,6 @@ void run(const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-    if (argc > 1 && std::string_view(argv[1]) == worker_argument) {
-        return run_hemicube_worker();
-    }
     if (argc == 3 && std::string_view(argv[1]) == frames_argument) {
         return run_frames(argv[2]);
     }

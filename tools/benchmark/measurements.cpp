@@ -4,7 +4,7 @@
 #include "benchmark/naive_rows.hpp"
 #include "benchmark/program.hpp"
 #include "hemi/core/error.hpp"
-#include "hemi/engine/yardsticks.hpp"
+#include "hemi/engine/baselines.hpp"
 
 #include <fmt/format.h>
 
@@ -63,7 +63,7 @@ std::unique_ptr<RowProvider> Measurements::engine(const Case& scene, const Hemic
     EngineSettings where;
     where.device = setup_.device;
     where.jobs = workers;
-    where.worker_program = workers == 0 ? "" : setup_.worker_program;
+    where.worker_program = workers == 0 ? std::filesystem::path() : setup_.worker_program;
     return make_hemicube_engine(scene.mesh, settings, where);
 }
 
@@ -87,13 +87,13 @@ void Measurements::compare_rows(const Case& scene) {
     const double naive_difference = row_difference(naive, *ours, rows);
     const double embree_difference = row_difference(embree, *ours, rows);
     double random_difference = 0.0;
-    if (scene.mesh.size() <= yardstick_patches_max) {
+    if (scene.mesh.size() <= max_baseline_patches) {
         EmbreeRows monte_carlo(scene.mesh, compared, EmbreeRows::Rays::monte_carlo);
-        YardstickSettings rays;
-        rays.method = Yardstick::montecarlo;
+        BaselineSettings rays;
+        rays.method = BaselineMethod::montecarlo;
         rays.rays = monte_carlo.rays_a_row();
         rays.seed = compared.seed;
-        random_difference = row_difference(monte_carlo, *make_yardstick(scene.mesh, rays), rows);
+        random_difference = row_difference(monte_carlo, *make_baseline(scene.mesh, rays), rows);
     }
     report_.scene(scene.name, scene.mesh.size(), scene.mesh.surfaces().size(), naive_difference,
                   embree_difference);

@@ -15,7 +15,7 @@ namespace hemi::bench {
 /// What is measured, on which device, and how long.
 struct Setup {
     std::string device = "auto";
-    std::string worker_program;
+    std::filesystem::path worker_program;
     std::uint32_t workers = 1; ///< processes; 0: none, a GPU
     Effort effort{0.5, 3};
     std::uint64_t seed = 0;

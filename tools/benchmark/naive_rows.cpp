@@ -1,6 +1,6 @@
 #include "benchmark/naive_rows.hpp"
 
-#include "engine/draw_list.hpp"
+#include "engine/hemicube/draw_list.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/eye.hpp"
+#include "engine/hemicube/eye.hpp"
 #include "gl/context.hpp"
 #include "gl/objects.hpp"
 #include "hemi/engine/engine.hpp"

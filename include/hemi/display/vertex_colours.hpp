@@ -18,7 +18,7 @@ namespace hemi {
 /// @param mesh      N patches
 /// @param channels  numbers a patch
 /// @param values    N·channels, of channel c of patch i at [i·channels + c]
-/// @param blocked   b_i per patch, or empty; a patch with b_i > covered_above is covered.
+/// @param blocked   b_i per patch, or empty; a patch with b_i > buried_above is covered.
 [[nodiscard]] std::vector<float> corner_values(const PatchMesh& mesh, std::uint32_t channels,
                                                std::span<const double> values,
                                                std::span<const double> blocked);

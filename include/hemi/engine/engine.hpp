@@ -4,6 +4,7 @@
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,9 +43,9 @@ void check_eye_points(std::uint32_t count);
 struct EngineSettings {
     std::string device = "auto"; ///< auto, egl, egl:N or osmesa
     std::uint32_t jobs = 0; ///< worker processes on software OpenGL; 0: one per core. A GPU is served by one
-    /// Program that is started as worker (`PROGRAM --hemicube-worker`, which must call
-    /// run_hemicube_worker). Empty: rows are computed in this process, by one context.
-    std::string worker_program;
+    /// Program that is started for every worker, see find_worker_program(). Empty: rows are computed in this
+    /// process, by one context.
+    std::filesystem::path worker_program;
 };
 
 /// Hemicube rows by OpenGL item buffers. Contexts are made on the first call of rows() or renderer().
@@ -63,10 +64,16 @@ make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings, co
 [[nodiscard]] std::unique_ptr<RowProvider> make_reference_engine(const PatchMesh& mesh,
                                                                  const HemicubeSettings& settings);
 
-/// First argument by which a program is started as a worker.
-inline constexpr const char* worker_argument = "--hemicube-worker";
-/// Serves rows to the process that started this one, until that closes the connection.
+/// The worker program that belongs to this library: what the environment variable HEMI_WORKER names, else
+/// libexec/hemi/hemi-hemicube-worker in the folder of the running program (or of the shared library that hemi
+/// is part of) or up to two folders above it, else where it was installed. Empty if it is in none of these
+/// places.
+[[nodiscard]] std::filesystem::path find_worker_program();
+
+/// What the worker program does: serves rows to the process that started this one, until that closes the
+/// connection.
 /// @return exit status for main().
+/// @throws InvalidArgument if there is no connection: the program was started by hand.
 int run_hemicube_worker();
 
 /// An OpenGL device that can be chosen by name.

@@ -33,8 +33,8 @@ struct FactorFile {
     /// Better rows of a few patches, by which the rows are judged, whatever is done to them; no row is known
     /// where none were computed. See compute_reference().
     FormFactorMatrix reference{0};
-    std::optional<FactorError> error; ///< of the rows as they are here
-    std::string chosen_for;           ///< why the settings are what they are, where the program chose them
+    std::optional<FactorErrorEstimate> error; ///< of the rows as they are here
+    std::string chosen_for; ///< why the settings are what they are, where the program chose them
 };
 
 /// Writes `.hff`: a chunk file, whose rows are independent, checksummed blocks with

@@ -29,8 +29,8 @@ struct ResultFile {
     std::string renderer;            ///< what computed the rows
     std::string chosen_for;          ///< why the settings are what they are, where the program chose them
     /// What the factors and the radiosity are off by, with arrays of N and of N·channels.
-    std::optional<FactorError> factor_error;
-    std::optional<RadiosityError> radiosity_error; ///< only with factor_error
+    std::optional<FactorErrorEstimate> factor_error;
+    std::optional<RadiosityErrorEstimate> radiosity_error; ///< only with factor_error
 };
 
 /// Writes `.hres`.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hemi/core/covered.hpp"
+#include "hemi/core/buried.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct RowSums {
     double balance_error_max = 0.0;   ///< largest |sum + e + b - 1| of a row that is not covered
     std::uint32_t known = 0;          ///< rows that were computed
     std::uint32_t leaking = 0;        ///< rows with e_i > 0
-    std::uint32_t covered = 0;        ///< rows with b_i > covered_above
-    std::uint32_t partly_blocked = 0; ///< rows with 0 < b_i <= covered_above
+    std::uint32_t covered = 0;        ///< rows with b_i > buried_above
+    std::uint32_t partly_blocked = 0; ///< rows with 0 < b_i <= buried_above
 };
 
 /// Row sums, environment and blocked shares of all known rows.

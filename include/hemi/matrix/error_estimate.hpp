@@ -12,7 +12,7 @@ namespace hemi {
 ///
 /// The error of a row is the root of sum_j (F(i, j) - F*(i, j))²: the error of its irradiance, in units of
 /// the radiosity of what it sees, where single factors err independently.
-struct FactorError {
+struct FactorErrorEstimate {
     std::uint32_t sampled = 0; ///< rows that were compared with the reference
     double rms = 0.0;          ///< of a factor, over the pairs that see each other
     double max = 0.0;          ///< of a factor, over all pairs
@@ -33,12 +33,12 @@ struct FactorError {
 /// @param columns    compare in these columns only, ascending; empty: in all. What lies in others is taken to
 ///   be as wrong as what lies in these.
 /// @throws InvalidArgument if the sizes differ, or no row of the reference is known in `factors`.
-[[nodiscard]] FactorError estimate_factor_error(const FormFactorMatrix& factors,
-                                                const FormFactorMatrix& reference,
-                                                std::span<const std::uint32_t> columns = {});
+[[nodiscard]] FactorErrorEstimate estimate_factor_error(const FormFactorMatrix& factors,
+                                                        const FormFactorMatrix& reference,
+                                                        std::span<const std::uint32_t> columns = {});
 
 /// Estimated error of a radiosity, from the errors of the factors alone: not from patches of finite size.
-struct RadiosityError {
+struct RadiosityErrorEstimate {
     /// Relative to what is reflected, B - E: both rms, area-weighted, over patches that reflect; the worst
     /// channel.
     double rms = 0.0;
@@ -58,7 +58,7 @@ struct RadiosityError {
 /// @param reflectance,exitance,radiosity  N·channels, channel c of patch i at [i·channels + c]
 /// @param columns    as in estimate_factor_error()
 /// @throws InvalidArgument as estimate_factor_error, and for spans that do not fit.
-[[nodiscard]] RadiosityError
+[[nodiscard]] RadiosityErrorEstimate
 estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
                          std::span<const double> areas, std::uint32_t channels,
                          std::span<const double> reflectance, std::span<const double> exitance,

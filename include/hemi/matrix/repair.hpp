@@ -32,7 +32,7 @@ struct RepairSettings {
 };
 
 /// |sum_j F(i, j) + e_i + b_i - 1| over the rows that are known and not covered.
-struct RowError {
+struct RowImbalance {
     double max = 0.0; ///< the largest
     double rms = 0.0; ///< root of the mean square
 };
@@ -40,8 +40,8 @@ struct RowError {
 /// What a repair did.
 struct RepairReport {
     Repair repair = Repair::none;    ///< what was asked for
-    RowError row_error_before;       ///< how far rows were from balance
-    RowError row_error_after;        ///< how far they are now
+    RowImbalance row_error_before;   ///< how far rows were from balance
+    RowImbalance row_error_after;    ///< how far they are now
     Reciprocity reciprocity_before;  ///< how far pairs were apart
     Reciprocity reciprocity_after;   ///< how far they are now
     std::uint64_t added = 0;         ///< entries that only the other direction had stored
@@ -60,7 +60,7 @@ struct RepairReport {
 /// conjugate gradients with a diagonal preconditioner. Pairs beyond a bound are put there and held, and the
 /// rest is solved again. Where targets contradict each other (two facing plates of different targets) the
 /// rows come as close as they can.
-/// Covered rows (b > covered_above) and unknown rows set no target; unknown rows stay empty, and pairs with
+/// Covered rows (b > buried_above) and unknown rows set no target; unknown rows stay empty, and pairs with
 /// them are in the known row only. The diagonal does not change. Rows that are reciprocal to the rounding of
 /// floats are afterwards, too.
 /// Memory: O(N), 1 bit an entry where something is held at F0, and the entries that are added. The

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "hemi/core/geometry.hpp"
+#include "hemi/engine/row_provider.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace hemi {
+
+/// The field's other ways to find form factors, to measure the hemicube against. None is meant to be fast.
+enum class BaselineMethod {
+    /// Both areas: closed forms for rectangles that are parallel or perpendicular to each other (Howell's
+    /// C-13 and C-15), otherwise Lambert's point factor integrated adaptively over the row's patch, to 1e-6.
+    /// As if nothing lay between. Source: J. R. Howell, "A Catalog of Radiation Heat Transfer Configuration
+    /// Factors"; G. N. Walton, NISTIR 6925, 2002.
+    direct,
+    /// Both contours by Stokes' theorem: one integral in closed form, the other by one Gauss rule of 10
+    /// points; edges that touch or coincide, and near parallel ones, in closed form. As if nothing lay
+    /// between. Loses digits where edges that are neither parallel nor touching come near each other.
+    /// Source: E. M. Sparrow, J. Heat Transfer 85, 1963; S. Mazumder, M. Ravishankar, Int. J. Heat Mass
+    /// Transfer 55, 2012.
+    contour,
+    /// Rays from Sobol points of the patch in cosine-weighted Sobol directions, with occlusion; back faces
+    /// block. The error falls as rays^-0.6 to rays^-0.7.
+    /// Source: T. J. V. Malley, "A Shading Method for Computer Generated Images", 1988 (directions);
+    /// J. R. Howell, "The Monte Carlo Method in Radiative Heat Transfer", J. Heat Transfer 120, 1998.
+    montecarlo,
+    /// Nusselt's analog: the hemisphere about the centroid, projected to its base. A ray through every cell
+    /// centre of a square grid on the unit disc, turned by an angle hashed from patch and seed; with
+    /// occlusion; back faces block. One point a patch, as the plain hemicube.
+    /// Source: W. Nusselt, "Graphische Bestimmung des Winkelverhältnisses bei der Wärmestrahlung", 1928.
+    hemisphere,
+};
+
+/// Settings that change the rows.
+struct BaselineSettings {
+    BaselineMethod method = BaselineMethod::direct; ///< how F is found
+    std::uint32_t rays = 16384;                     ///< montecarlo: rays a patch; powers of two are best
+    std::uint32_t resolution = 256;                 ///< hemisphere: grid cells along the disc's diameter
+    std::uint64_t seed = 0;                         ///< montecarlo, hemisphere
+};
+
+/// Patches above which yardsticks are refused: they would take hours.
+inline constexpr std::uint32_t max_baseline_patches = 4000;
+
+/// Rows by another method, on all cores; the same bits whatever their number.
+///
+/// Where the method knows occlusion, environment and blocked shares are counted as the factors are. direct
+/// and contour know none: the environment has what is missing to 1, and nothing is blocked; rows whose view
+/// is obstructed then sum to more than 1.
+/// @param mesh      must outlive the provider
+/// @param settings  method and how much of it
+/// @throws InvalidArgument for more than max_baseline_patches patches, or no rays, more than 2^31 of them,
+///   or a resolution outside 1 to 16384.
+[[nodiscard]] std::unique_ptr<RowProvider> make_baseline(const PatchMesh& mesh,
+                                                         const BaselineSettings& settings);
+
+/// Factors from a surface element at `point` with unit normal `normal` to every patch.
+///
+/// Without occlusion, Lambert's closed form. With it, that form times the share of the patch that the point
+/// sees, weighted as the factor is, from 16 x 16 points of the patch; a surface in whose plane the element
+/// lies does not hide.
+/// @throws InvalidArgument if `normal` is not of unit length.
+[[nodiscard]] std::vector<double> point_factors(const PatchMesh& mesh, const Vec3& point, const Vec3& normal,
+                                                bool occlusion);
+
+} // namespace hemi

@@ -1,0 +1,56 @@
+#include "engine/hemicube/gl_rows.hpp"
+#include "engine/workers/worker_pool.hpp"
+#include "gl/context.hpp"
+#include "hemi/engine/delta_form_factors.hpp"
+#include "hemi/engine/engine.hpp"
+
+namespace hemi {
+
+namespace {
+
+/// Rows by one context of this process.
+class InProcessEngine final : public RowProvider {
+public:
+    InProcessEngine(std::unique_ptr<const EngineGeometry> geometry, const HemicubeSettings& settings,
+                    std::string device)
+        : geometry_(std::move(geometry)), settings_(settings), device_(std::move(device)) {}
+
+    [[nodiscard]] std::uint32_t size() const override { return geometry_->eyes.patches(); }
+    [[nodiscard]] std::string renderer() const override { return engine().renderer(); }
+    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
+        engine().rows(patches, [&](std::uint32_t patch, const RowView& row) {
+            hemicubes_ += geometry_->eyes.of(patch).size();
+            sink(patch, row);
+        });
+    }
+    [[nodiscard]] std::uint64_t hemicubes() const override { return hemicubes_; }
+
+private:
+    GlRows& engine() const {
+        if (!engine_) {
+            engine_ = std::make_unique<GlRows>(*geometry_, settings_, device_);
+        }
+        return *engine_;
+    }
+
+    std::unique_ptr<const EngineGeometry> geometry_;
+    HemicubeSettings settings_;
+    std::string device_;
+    mutable std::unique_ptr<GlRows> engine_;
+    std::uint64_t hemicubes_ = 0;
+};
+
+} // namespace
+
+std::unique_ptr<RowProvider> make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
+                                                  const EngineSettings& engine) {
+    DeltaFormFactors::check_resolution(settings.resolution);
+    gl::check_device_name(engine.device);
+    auto geometry = std::make_unique<const EngineGeometry>(make_engine_geometry(mesh, settings));
+    if (engine.worker_program.empty()) {
+        return std::make_unique<InProcessEngine>(std::move(geometry), settings, engine.device);
+    }
+    return make_worker_pool(std::move(geometry), settings, engine);
+}
+
+} // namespace hemi

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "engine/hemicube/draw_list.hpp"
+#include "engine/hemicube/eye.hpp"
+#include "engine/hemicube/view_builder.hpp"
+#include "hemi/engine/delta_form_factors.hpp"
+#include "hemi/matrix/form_factor_matrix.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// Makes rows of RowQuantity::visibility: V = visible / (visible + hidden) delta form factors, on the same
+/// texels. What is visible is in the item buffers; what a polygon's front covers but others hide is found by
+/// scanning the spans of its outline, on the CPU.
+/// Memory: 16 bytes a draw id and 16 a cell of the largest polygon.
+class VisibilityAccumulator {
+public:
+    /// @param list  must outlive this.
+    VisibilityAccumulator(const DrawList& list, std::uint32_t patches);
+
+    /// Adds one hemicube.
+    /// @param ids    3·resolution rows of `resolution` draw ids
+    /// @param views  what the eye would see if nothing hid it
+    void add(const std::uint32_t* ids, const DeltaFormFactors& weights, const FrontViews& views,
+             const EyePoint& eye, const EyeFrame& frame);
+
+    /// The row so far, and starts the next one. The view is valid until the next call.
+    [[nodiscard]] RowView take();
+
+private:
+    /// A weight in the upper and the number of its texels in the lower half: both are summed at once.
+    using Tally = std::uint64_t;
+
+    /// Grid coordinates of a polygon as an affine function of the position on its plane.
+    struct GridMap {
+        Vec3 origin{0.0};
+        Vec3 gradient_u{0.0}, gradient_v{0.0};
+        double u = 0.0, v = 0.0; ///< at the origin
+    };
+    /// One side of a polygon that some eye of the row saw.
+    struct Side {
+        std::uint32_t polygon;
+        bool back;
+    };
+
+    void add_visible(const std::uint32_t* ids, const DeltaFormFactors& weights);
+    void add_hidden(const std::uint32_t* ids, const DeltaFormFactors& weights, const FrontViews& views,
+                    const FrontViews::View& view, const EyePoint& eye, const EyeFrame& frame);
+    void spans(std::span<const FrontViews::Point> outline, std::uint32_t face, std::uint32_t resolution);
+    void pool(const Side& side);
+    void pool_cells(const DrawPolygon& polygon, std::uint32_t first_id);
+    void set(std::uint32_t id, Tally visible, Tally hidden);
+
+    const DrawList& list_;
+    std::uint32_t patches_;
+    /// draw id -> item, nothing for ids that stand for the same patch as a lower one: on the rim of a cut
+    /// triangle rounding reaches cells outside it.
+    std::vector<std::uint32_t> item_of_id_;
+    struct Double {
+        std::uint32_t id;
+        std::uint32_t first;
+    };
+    std::vector<Double> doubles_; ///< those ids and the lower ones, ascending
+    std::vector<GridMap> maps_;   ///< per polygon
+    std::vector<Tally> visible_;  ///< per draw id
+    std::vector<Tally> hidden_;
+    std::vector<std::uint8_t> side_seen_; ///< bit 0: front, bit 1: back, per polygon
+    std::vector<Side> sides_;
+    std::uint32_t total_ = 0;
+    struct Span {
+        double left, right;
+    };
+    std::int32_t first_span_ = 0; ///< rows of the face that spans_ has
+    std::vector<Span> spans_;
+    std::vector<Tally> visible_table_; ///< sums over [0, u) x [0, v) cells
+    std::vector<Tally> hidden_table_;
+    std::vector<float> share_;           ///< per patch
+    std::vector<std::uint8_t> evidence_; ///< per patch, 0: none
+    std::vector<std::uint32_t> columns_;
+    std::vector<float> values_;
+    std::vector<std::uint8_t> evidences_;
+};
+
+} // namespace hemi

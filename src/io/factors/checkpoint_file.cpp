@@ -1,0 +1,215 @@
+#include "io/factors/checkpoint_file.hpp"
+
+#include "hemi/core/error.hpp"
+#include "io/factors/row_block_chunk.hpp"
+#include "io/formats/chunk_file.hpp"
+#include "io/formats/json_node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <optional>
+#include <set>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+namespace hemi::io {
+
+namespace {
+
+constexpr ChunkFormat journal_format{"HEMIROW\n", 1, "rows of an unfinished run (.rows)"};
+
+/// Whether a file starts as a journal does, as far as it goes.
+bool is_journal(int descriptor) {
+    std::string start(journal_format.magic.size(), '\0');
+    const ssize_t got = ::pread(descriptor, start.data(), start.size(), 0);
+    return got >= 0 && journal_format.magic.starts_with(start.substr(0, static_cast<std::size_t>(got)));
+}
+
+CheckpointKey read_key(ChunkReader& reader) {
+    const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
+    const JsonNode head(document, reader.file());
+    CheckpointKey key;
+    for (const auto& [name, value] : document.items()) {
+        key[name] = head.member(name).any_text();
+    }
+    return key;
+}
+
+/// Puts the next block into `rows` if it is sound, all its rows are known, and it is the first of its place.
+/// @return its first row and the end of its rows
+std::optional<std::pair<std::uint32_t, std::uint32_t>> next_block(ChunkReader& reader, FormFactorMatrix& rows,
+                                                                  std::set<std::uint32_t>& seen) {
+    try {
+        Payload payload = reader.chunk("ROWS");
+        RowBlock block = take_row_block(payload);
+        const std::uint32_t first = block.first_row;
+        const std::uint32_t count = block.rows();
+        const bool whole = std::find(block.known.begin(), block.known.end(), 0) == block.known.end();
+        rows.set_block(std::move(block));
+        if (whole && seen.insert(first).second) {
+            return std::pair(first, first + count);
+        }
+    } catch (const InputError&) {
+    } catch (const InvalidArgument&) {
+    }
+    return {}; // cut short, or damaged: from here on nothing is certain
+}
+
+/// Sets the block back to unknown rows.
+void forget(FormFactorMatrix& rows, std::uint32_t first, std::uint32_t end) {
+    const std::size_t count = end - first;
+    RowBlock unknown;
+    unknown.first_row = first;
+    unknown.begin.assign(count + 1, 0);
+    unknown.environment.assign(count, 0.0);
+    unknown.blocked.assign(count, 0.0);
+    unknown.known.assign(count, 0);
+    rows.set_block(std::move(unknown));
+}
+
+} // namespace
+
+CheckpointFile::CheckpointFile(const std::filesystem::path& output, bool resume) : path_(output) {
+    path_ += ".rows";
+    const auto leave_alone = [&](const std::string& why) {
+        usable_ = false;
+        if (descriptor_ >= 0) {
+            ::close(std::exchange(descriptor_, -1));
+        }
+        if (resume) {
+            throw IoError(fmt::format("{}: {}; nothing can be resumed", path_.string(), why));
+        }
+    };
+    descriptor_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor_ < 0) {
+        if (errno != ENOENT) {
+            leave_alone(std::strerror(errno));
+        }
+        return;
+    }
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode) || !is_journal(descriptor_)) {
+        leave_alone("is there and holds no rows of an unfinished run");
+    } else if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+        leave_alone("another run is writing to it");
+    } else if (!resume) {
+        remove();
+        usable_ = true;
+    }
+}
+
+CheckpointFile::~CheckpointFile() {
+    if (descriptor_ >= 0) {
+        ::close(descriptor_);
+    }
+}
+
+void CheckpointFile::start(const CheckpointKey& key, std::uint32_t size,
+                           const std::function<void(std::uint32_t, const RowView&)>& each) {
+    key_ = key;
+    if (descriptor_ < 0) {
+        return;
+    }
+    std::uint64_t sound = 0;
+    std::optional<ChunkReader> reader;
+    std::optional<CheckpointKey> stored;
+    try {
+        stored = read_key(reader.emplace(path_, journal_format));
+    } catch (const InputError&) { // it was killed before there was a row
+    }
+    if (stored) {
+        for (const auto& [name, value] : key) {
+            if ((*stored)[name] != value) {
+                throw InputError(
+                    fmt::format("{}: holds rows of another run: {} {}, here {}; leave --resume out "
+                                "to begin anew",
+                                path_.string(), name, (*stored)[name], value));
+            }
+        }
+        FormFactorMatrix rows(size);
+        std::set<std::uint32_t> seen;
+        for (;;) {
+            sound = reader->position();
+            const auto block = next_block(*reader, rows, seen);
+            if (!block) {
+                break;
+            }
+            const auto [first, end] = *block;
+            for (std::uint32_t patch = first; patch < end; ++patch) {
+                each(patch, rows.row(patch));
+            }
+            rows_ += end - first;
+            forget(rows, first, end);
+        }
+    }
+    if (sound == 0) {
+        remove();
+        usable_ = true;
+        return;
+    }
+    if (::ftruncate(descriptor_, static_cast<off_t>(sound)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0) {
+        give_up(errno);
+    }
+}
+
+void CheckpointFile::append(const RowBlock& block) {
+    if (!usable_) {
+        return;
+    }
+    const ByteSink sink = [this](const void* data, std::size_t bytes) { write(data, bytes); };
+    if (descriptor_ < 0) {
+        descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor_ < 0) {
+            usable_ = errno == EEXIST ? false : usable_; // another run of the same command was faster
+            if (!usable_) {
+                return;
+            }
+            give_up(errno);
+        }
+        ::flock(descriptor_, LOCK_EX);
+        write_start(sink, journal_format);
+        const std::string head = json_text(Json(key_));
+        write_chunk(sink, "HEAD", {bytes_of(head)});
+    }
+    write_row_block(sink, "ROWS", block);
+    // The disk begins now, while rows are computed, and not when the output is made safe, which would wait
+    // for all of this too. What is on the disk need not stay in memory.
+    ::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_DONTNEED);
+    rows_ += block.rows();
+}
+
+void CheckpointFile::remove() noexcept {
+    if (descriptor_ >= 0) {
+        ::unlink(path_.c_str());
+        ::close(std::exchange(descriptor_, -1));
+    }
+    rows_ = 0;
+    usable_ = false;
+}
+
+void CheckpointFile::write(const void* data, std::size_t bytes) {
+    const auto* from = static_cast<const char*>(data);
+    while (bytes > 0) {
+        const ssize_t written = ::write(descriptor_, from, bytes);
+        if (written < 0 && errno != EINTR) {
+            give_up(errno);
+        }
+        if (written > 0) {
+            from += written;
+            bytes -= static_cast<std::size_t>(written);
+        }
+    }
+}
+
+void CheckpointFile::give_up(int error) {
+    remove();
+    throw IoError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(error)));
+}
+
+} // namespace hemi::io

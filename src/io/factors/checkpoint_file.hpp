@@ -1,0 +1,64 @@
+#pragma once
+
+#include "hemi/matrix/form_factor_matrix.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+namespace hemi::io {
+
+/// What the rows of a journal belong to: names and values, all of which must be equal for rows to be used.
+using CheckpointKey = std::map<std::string, std::string>;
+
+/// Finished blocks of raw rows, kept beside a file of form factors while that is not complete, so that a run
+/// that was killed can be taken up again: FILE.rows.
+///
+/// A chunk file (see chunk_file.hpp): `HEAD`, the key as JSON, then a `ROWS` a block, in the order in which
+/// they were finished, each handed to the system at once. A tail that was cut by the end of a process (or of
+/// the machine) is dropped. Locked while a run uses it. Appears with its first block, so that a run that
+/// finished none leaves nothing behind.
+class CheckpointFile {
+public:
+    /// Looks for the journal of `output`. What another run is using, and files that are no journals, are left
+    /// alone; this one then keeps nothing.
+    /// @param resume  use what is there; else it is removed
+    /// @throws IoError with `resume` if it is in use or no journal
+    CheckpointFile(const std::filesystem::path& output, bool resume);
+    ~CheckpointFile();
+    CheckpointFile(const CheckpointFile&) = delete;
+    CheckpointFile& operator=(const CheckpointFile&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+    /// Gives every row of the sound blocks that are there, and says what will be appended. Before append().
+    /// @param size  of the matrix
+    /// @param each  takes patch and row; the view is valid during the call only
+    /// @throws InputError if what is there has another key, naming the first difference; what `each` throws
+    void start(const CheckpointKey& key, std::uint32_t size,
+               const std::function<void(std::uint32_t, const RowView&)>& each);
+
+    /// @param block  all of whose rows are known
+    /// @throws IoError, for example when the disk is full; the journal is then gone, and keeps nothing more.
+    void append(const RowBlock& block);
+
+    /// Rows in it.
+    [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
+
+    /// The output is complete: removes the journal.
+    void remove() noexcept;
+
+private:
+    void write(const void* data, std::size_t bytes);
+    [[noreturn]] void give_up(int error);
+
+    std::filesystem::path path_;
+    CheckpointKey key_;
+    int descriptor_ = -1; ///< locked; -1: there is no journal yet
+    bool usable_ = true;  ///< whether this run may keep rows
+    std::uint64_t rows_ = 0;
+};
+
+} // namespace hemi::io

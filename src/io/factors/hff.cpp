@@ -1,0 +1,250 @@
+#include "hemi/core/error.hpp"
+#include "hemi/io/factor_file.hpp"
+#include "io/factors/row_block_chunk.hpp"
+#include "io/formats/chunk_file.hpp"
+#include "io/formats/json_node.hpp"
+#include "io/formats/text_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hemi::io {
+
+namespace {
+
+constexpr ChunkFormat hff_format{"HEMIFF\r\n", 4, "form factors (.hff)"};
+
+/// First rows of the blocks that have a known row.
+std::vector<std::uint32_t> known_blocks(const FormFactorMatrix& factors) {
+    std::vector<std::uint32_t> first_rows;
+    for (const RowBlock& block : factors.blocks()) {
+        if (std::find(block.known.begin(), block.known.end(), 1) != block.known.end()) {
+            first_rows.push_back(block.first_row);
+        }
+    }
+    return first_rows;
+}
+
+Json header(const FactorFile& file) {
+    Json head{{"size", file.factors.size()},
+              {"block_rows", FormFactorMatrix::block_rows},
+              {"groups", file.groups},
+              {"geometry", fmt::format("{:016x}", file.geometry_hash)},
+              {"preset", file.preset},
+              {"method", file.method},
+              {"resolution", file.resolution},
+              {"eye_points", file.eye_points},
+              {"shadow_rays", file.shadow_rays},
+              {"seed", file.seed},
+              {"renderer", file.renderer},
+              {"enclosure", file.enclosure},
+              {"reference_blocks", known_blocks(file.reference)},
+              {"chosen_for", file.chosen_for}};
+    if (file.error) {
+        const FactorErrorEstimate& error = *file.error;
+        head["error"] = {{"sampled", error.sampled},
+                         {"rms", error.rms},
+                         {"max", error.max},
+                         {"row_rms", error.row_rms},
+                         {"row_max", error.row_max}};
+    }
+    return head;
+}
+
+void check(const FactorFile& file) {
+    const std::size_t size = file.factors.size();
+    if (file.areas.size() != size || file.group_of.size() != size) {
+        throw InvalidArgument(fmt::format("{} areas and {} groups for {} patches; must be one for each",
+                                          file.areas.size(), file.group_of.size(), size));
+    }
+    if (std::any_of(file.group_of.begin(), file.group_of.end(),
+                    [&](std::uint32_t group) { return group >= file.groups.size(); })) {
+        throw InvalidArgument("a patch belongs to a group that has no name");
+    }
+    const bool has_reference = !known_blocks(file.reference).empty();
+    if ((has_reference && file.reference.size() != size) || (file.error && file.error->rows.size() != size)) {
+        throw InvalidArgument(fmt::format("{} rows of reference and {} errors of rows for {} patches",
+                                          file.reference.size(), file.error ? file.error->rows.size() : 0,
+                                          size));
+    }
+}
+
+std::uint32_t integer32(const JsonNode& node) {
+    return static_cast<std::uint32_t>(node.integer(std::numeric_limits<std::uint32_t>::max()));
+}
+
+std::uint64_t read_hash(const JsonNode& node) {
+    const std::string text = node.any_text();
+    std::uint64_t hash = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+    if (text.size() != 16 || error != std::errc() || end != text.data() + text.size()) {
+        node.expect("16 hexadecimal digits");
+    }
+    return hash;
+}
+
+double magnitude(const JsonNode& node) {
+    const double value = node.number();
+    if (!(value >= 0.0) || !std::isfinite(value)) {
+        node.expect("a finite number that is not negative");
+    }
+    return value;
+}
+
+FactorErrorEstimate read_error(const JsonNode& node) {
+    FactorErrorEstimate error;
+    error.sampled = integer32(node.member("sampled"));
+    error.rms = magnitude(node.member("rms"));
+    error.max = magnitude(node.member("max"));
+    error.row_rms = magnitude(node.member("row_rms"));
+    error.row_max = magnitude(node.member("row_max"));
+    return error;
+}
+
+/// Everything but the rows. The matrix is made only after the file proved long enough for that many.
+/// @return first rows of the blocks of the reference
+std::vector<std::uint32_t> read_header(ChunkReader& reader, FactorFile& file) {
+    const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
+    const JsonNode head(document, reader.file());
+    if (integer32(head.member("block_rows")) != FormFactorMatrix::block_rows) {
+        head.member("block_rows").expect(fmt::format("{}", FormFactorMatrix::block_rows));
+    }
+    const std::uint32_t size = integer32(head.member("size"));
+    file.groups = head.member("groups").texts();
+    file.geometry_hash = read_hash(head.member("geometry"));
+    file.preset = head.member("preset").any_text();
+    file.method = head.member("method").any_text();
+    file.resolution = integer32(head.member("resolution"));
+    file.eye_points = integer32(head.member("eye_points"));
+    file.shadow_rays = integer32(head.member("shadow_rays"));
+    file.seed = head.member("seed").integer(std::numeric_limits<std::uint64_t>::max());
+    file.renderer = head.member("renderer").any_text();
+    file.enclosure = head.member("enclosure").any_text();
+    if (file.enclosure != "auto" && file.enclosure != "closed" && file.enclosure != "open") {
+        head.member("enclosure").expect("\"auto\", \"closed\" or \"open\"");
+    }
+    file.chosen_for = head.member("chosen_for").any_text();
+    if (head.has("error")) {
+        file.error = read_error(head.member("error"));
+    }
+    std::vector<std::uint32_t> reference_blocks;
+    const JsonNode blocks = head.member("reference_blocks");
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        reference_blocks.push_back(integer32(blocks.element(k)));
+        const std::uint32_t first_row = reference_blocks.back();
+        if (first_row >= size || first_row % FormFactorMatrix::block_rows != 0 ||
+            (k > 0 && first_row <= reference_blocks[k - 1])) {
+            blocks.element(k).expect("the first row of a block, in ascending order");
+        }
+    }
+
+    Payload areas = reader.chunk("AREA");
+    file.areas = areas.take_array<double>(size);
+    areas.expect_end();
+    for (const double area : file.areas) {
+        if (!(area >= 0.0) || !std::isfinite(area)) {
+            areas.fail(fmt::format("an area of {}; must be finite and not negative", area));
+        }
+    }
+    file.factors = FormFactorMatrix(size);
+    file.reference = FormFactorMatrix(reference_blocks.empty() ? 0 : size);
+    return reference_blocks;
+}
+
+void read_groups(ChunkReader& reader, FactorFile& file) {
+    Payload groups = reader.chunk("GRUP");
+    file.group_of = groups.take_array<std::uint32_t>(file.factors.size());
+    groups.expect_end();
+    for (const std::uint32_t group : file.group_of) {
+        if (group >= file.groups.size()) {
+            groups.fail(fmt::format("group {}; there are {}", group, file.groups.size()));
+        }
+    }
+}
+
+void read_contacts(ChunkReader& reader, FactorFile& file) {
+    Payload contacts = reader.chunk("CONT");
+    const auto count = contacts.take<std::uint32_t>();
+    file.contacts = contacts.take_array<std::uint32_t>(count);
+    contacts.expect_end();
+    for (std::size_t k = 0; k < file.contacts.size(); ++k) {
+        if (file.contacts[k] >= file.factors.size() || (k > 0 && file.contacts[k] <= file.contacts[k - 1])) {
+            contacts.fail(fmt::format("patch {} in contact; patches must ascend and be below {}",
+                                      file.contacts[k], file.factors.size()));
+        }
+    }
+}
+
+void read_block(ChunkReader& reader, std::string_view tag, FormFactorMatrix& factors,
+                std::uint32_t first_row) {
+    Payload payload = reader.chunk(tag);
+    RowBlock block = take_row_block(payload);
+    if (block.first_row != first_row) {
+        payload.fail(fmt::format("starts at row {}, where row {} must come", block.first_row, first_row));
+    }
+    try {
+        factors.set_block(std::move(block));
+    } catch (const InvalidArgument& error) {
+        payload.fail(error.what());
+    }
+}
+
+void read_row_errors(ChunkReader& reader, FactorFile& file) {
+    Payload payload = reader.chunk("RERR");
+    file.error->rows = payload.take_array<double>(file.factors.size());
+    payload.expect_end();
+    for (const double error : file.error->rows) {
+        if (!(error >= 0.0) || !std::isfinite(error)) {
+            payload.fail(fmt::format("the error of a row is {}; must be finite and not negative", error));
+        }
+    }
+}
+
+} // namespace
+
+void write_hff(const std::filesystem::path& path, const FactorFile& file) {
+    check(file);
+    ChunkWriter writer(path, hff_format);
+    writer.chunk("HEAD", {bytes_of(json_text(header(file)))});
+    writer.chunk("AREA", {bytes_of(file.areas)});
+    writer.chunk("GRUP", {bytes_of(file.group_of)});
+    const auto contacts = static_cast<std::uint32_t>(file.contacts.size());
+    writer.chunk("CONT", {bytes_of(contacts), bytes_of(file.contacts)});
+    for (const RowBlock& block : file.factors.blocks()) {
+        write_row_block(writer.sink(), "ROWS", block);
+    }
+    for (const std::uint32_t first_row : known_blocks(file.reference)) {
+        write_row_block(writer.sink(), "REFR",
+                        file.reference.blocks()[first_row / FormFactorMatrix::block_rows]);
+    }
+    if (file.error) {
+        writer.chunk("RERR", {bytes_of(file.error->rows)});
+    }
+    writer.finish();
+}
+
+FactorFile read_hff(const std::filesystem::path& path) {
+    ChunkReader reader(path, hff_format);
+    FactorFile file;
+    const auto reference_blocks = read_header(reader, file);
+    read_groups(reader, file);
+    read_contacts(reader, file);
+    for (std::uint32_t row = 0; row < file.factors.size();) {
+        read_block(reader, "ROWS", file.factors, row);
+        row += std::min(FormFactorMatrix::block_rows, file.factors.size() - row);
+    }
+    for (const std::uint32_t first_row : reference_blocks) {
+        read_block(reader, "REFR", file.reference, first_row);
+    }
+    if (file.error) {
+        read_row_errors(reader, file);
+    }
+    reader.finish();
+    return file;
+}
+
+} // namespace hemi::io

@@ -1,0 +1,45 @@
+#include "io/meshes/face_mesh.hpp"
+
+#include "hemi/core/error.hpp"
+#include "io/formats/text_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
+namespace hemi::io {
+
+namespace {
+
+struct Reader {
+    std::string_view extension;
+    FaceMesh (*read)(const std::filesystem::path&, bool, Diagnostics&);
+};
+constexpr Reader readers[] = {
+    {".obj", read_obj_mesh}, {".msh", read_msh_mesh}, {".ply", read_ply_mesh}, {".stl", read_stl_mesh}};
+
+const Reader* reader_of(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    const auto* found = std::find_if(std::begin(readers), std::end(readers),
+                                     [&](const Reader& reader) { return reader.extension == extension; });
+    return found == std::end(readers) ? nullptr : found;
+}
+
+} // namespace
+
+FaceMesh read_face_mesh(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics) {
+    const Reader* reader = reader_of(path);
+    if (reader == nullptr) {
+        throw InputError(
+            fmt::format("{}: meshes are read from .obj, .msh, .ply and .stl files", path.string()));
+    }
+    return reader->read(path, skip_degenerate, diagnostics);
+}
+
+bool is_face_mesh(const std::filesystem::path& path) {
+    return reader_of(path) != nullptr;
+}
+
+} // namespace hemi::io

@@ -1,0 +1,258 @@
+#include "hemi/core/error.hpp"
+#include "hemi/io/result_file.hpp"
+#include "io/formats/chunk_file.hpp"
+#include "io/formats/json_node.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hemi::io {
+
+namespace {
+
+constexpr ChunkFormat hres_format{"HEMIRS\r\n", 2, "a solution (.hres)"};
+constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+
+/// A surface as it lies in the file. The grid is the one that was used, wherever it came from: the patches of
+/// a stored solution must not depend on how a later version cuts surfaces.
+struct StoredSurface {
+    std::array<double, 12> vertices;
+    std::uint32_t vertex_count;
+    std::uint32_t material;
+    std::uint32_t group;
+    std::uint32_t two_sided;
+    std::uint32_t grid_u;
+    std::uint32_t grid_v;
+};
+static_assert(sizeof(StoredSurface) == 12 * 8 + 6 * 4);
+
+Json point(const Vec3& p) {
+    return Json::array({p.x, p.y, p.z});
+}
+
+Json header(const ResultFile& result, const PatchMesh& mesh) {
+    const Scene& scene = result.scene;
+    Json materials = Json::array();
+    for (const Material& material : scene.materials) {
+        materials.push_back({{"name", material.name},
+                             {"reflectance", material.reflectance},
+                             {"exitance", material.exitance}});
+    }
+    Json head{{"name", scene.name},
+              {"channels", scene.channels},
+              {"materials", std::move(materials)},
+              {"groups", scene.groups},
+              {"enclosure", static_cast<int>(scene.enclosure)},
+              {"environment", scene.environment},
+              {"surfaces", mesh.surfaces().size()},
+              {"patches", mesh.size()},
+              {"solver", result.solver},
+              {"sweeps", result.sweeps},
+              {"residual", result.residual},
+              {"renderer", result.renderer},
+              {"chosen_for", result.chosen_for}};
+    if (result.factor_error && result.radiosity_error) {
+        const FactorErrorEstimate& error = *result.factor_error;
+        head["error"] = {{"sampled", error.sampled}, {"rms", error.rms},
+                         {"max", error.max},         {"row_rms", error.row_rms},
+                         {"row_max", error.row_max}, {"radiosity_rms", result.radiosity_error->rms}};
+    }
+    if (scene.camera) {
+        const Camera& camera = *scene.camera;
+        head["camera"] = {{"eye", point(camera.eye)},
+                          {"target", point(camera.target)},
+                          {"up", point(camera.up)},
+                          {"fov", camera.fov},
+                          {"orthographic", camera.orthographic}};
+    }
+    return head;
+}
+
+std::vector<StoredSurface> stored_surfaces(const PatchMesh& mesh) {
+    std::vector<StoredSurface> result;
+    result.reserve(mesh.surfaces().size());
+    for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
+        const Surface& surface = mesh.surfaces()[s];
+        const Grid grid = mesh.grid(s);
+        StoredSurface stored{
+            {},    surface.vertex_count, surface.material, surface.group, surface.two_sided ? 1u : 0u, grid.u,
+            grid.v};
+        for (std::size_t k = 0; k < stored.vertices.size(); ++k) {
+            const auto axis = static_cast<Vec3::length_type>(k % 3);
+            stored.vertices[k] = k / 3 < surface.vertex_count ? surface.vertices[k / 3][axis] : 0.0;
+        }
+        result.push_back(stored);
+    }
+    return result;
+}
+
+void check_array(const std::vector<double>& values, std::size_t size, const char* name) {
+    if (values.size() != size) {
+        throw InvalidArgument(
+            fmt::format("{} values of {}; the solution needs {}", values.size(), name, size));
+    }
+    for (const double value : values) {
+        if (!std::isfinite(value)) {
+            throw InvalidArgument(fmt::format("{}: a value of {}; must be finite", name, value));
+        }
+    }
+}
+
+std::vector<Material> read_materials(const JsonNode& all) {
+    std::vector<Material> materials;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const JsonNode node = all.element(k);
+        materials.push_back({node.member("name").any_text(), node.member("reflectance").numbers(),
+                             node.member("exitance").numbers()});
+    }
+    return materials;
+}
+
+Camera read_camera(const JsonNode& node) {
+    return {node.member("eye").point(), node.member("target").point(), node.member("up").point(),
+            node.member("fov").number(), node.has("orthographic") && node.member("orthographic").boolean()};
+}
+
+/// What the header says of sizes.
+struct Sizes {
+    std::uint64_t surfaces = 0;
+    std::uint64_t patches = 0;
+};
+
+Sizes read_header(const JsonNode& head, ResultFile& result) {
+    Scene& scene = result.scene;
+    scene.name = head.member("name").any_text();
+    scene.channels = head.member("channels").texts();
+    scene.materials = read_materials(head.member("materials"));
+    scene.groups = head.member("groups").texts();
+    scene.enclosure = static_cast<Enclosure>(head.member("enclosure").integer(2));
+    scene.environment = head.member("environment").numbers();
+    if (head.has("camera")) {
+        scene.camera = read_camera(head.member("camera"));
+    }
+    result.solver = head.member("solver").any_text();
+    result.sweeps = static_cast<std::uint32_t>(head.member("sweeps").integer(most));
+    result.residual = head.member("residual").number();
+    result.renderer = head.member("renderer").any_text();
+    result.chosen_for = head.member("chosen_for").any_text();
+    if (head.has("error")) {
+        const JsonNode error = head.member("error");
+        result.factor_error =
+            FactorErrorEstimate{static_cast<std::uint32_t>(error.member("sampled").integer(most)),
+                                error.member("rms").number(),
+                                error.member("max").number(),
+                                error.member("row_rms").number(),
+                                error.member("row_max").number(),
+                                {}};
+        result.radiosity_error = RadiosityErrorEstimate{error.member("radiosity_rms").number(), {}};
+    }
+    return {head.member("surfaces").integer(most), head.member("patches").integer(most)};
+}
+
+Surface scene_surface(const StoredSurface& stored) {
+    Surface surface;
+    for (std::size_t k = 0; k < stored.vertices.size(); ++k) {
+        surface.vertices[k / 3][static_cast<Vec3::length_type>(k % 3)] = stored.vertices[k];
+    }
+    surface.vertex_count = stored.vertex_count;
+    surface.material = stored.material;
+    surface.group = stored.group;
+    surface.two_sided = stored.two_sided != 0;
+    surface.patches = Grid{stored.grid_u, stored.grid_v};
+    return surface;
+}
+
+void read_surfaces(Payload payload, const Sizes& sizes, Scene& scene) {
+    std::uint64_t patches = 0;
+    for (const StoredSurface& stored : payload.take_array<StoredSurface>(sizes.surfaces)) {
+        if (stored.vertex_count < 3 || stored.vertex_count > 4 || stored.two_sided > 1) {
+            payload.fail(fmt::format("a surface of {} vertices and {} sides", stored.vertex_count,
+                                     std::uint64_t{stored.two_sided} + 1));
+        }
+        const std::uint64_t per_side = std::uint64_t{stored.grid_u} * stored.grid_v;
+        patches += per_side <= most ? per_side * (stored.two_sided + 1) : most + 1;
+        if (patches > sizes.patches) {
+            break;
+        }
+        scene.surfaces.push_back(scene_surface(stored));
+    }
+    if (patches != sizes.patches) {
+        payload.fail(fmt::format("the surfaces have not the {} patches of the solution", sizes.patches));
+    }
+    payload.expect_end();
+}
+
+std::vector<double> read_array(ChunkReader& reader, std::string_view tag, std::uint64_t size) {
+    Payload payload = reader.chunk(tag);
+    std::vector<double> values = payload.take_array<double>(size);
+    payload.expect_end();
+    for (const double value : values) {
+        if (!std::isfinite(value)) {
+            payload.fail("a value that is not finite");
+        }
+    }
+    return values;
+}
+
+} // namespace
+
+void write_hres(const std::filesystem::path& path, const ResultFile& result) {
+    const PatchMesh mesh(result.scene, result.subdivision);
+    const std::size_t patches = mesh.size();
+    const std::size_t values = patches * result.scene.channels.size();
+    check_array(result.radiosity, values, "radiosity");
+    check_array(result.irradiance, values, "irradiance");
+    check_array(result.row_sum, patches, "row sum");
+    check_array(result.environment, patches, "environment share");
+    check_array(result.blocked, patches, "blocked share");
+    check_array({result.residual}, 1, "residual");
+    const bool estimated = result.factor_error && result.radiosity_error;
+    if (estimated) {
+        check_array(result.factor_error->rows, patches, "error of a row");
+        check_array(result.radiosity_error->patches, values, "error of the radiosity");
+    }
+
+    ChunkWriter writer(path, hres_format);
+    writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh)))});
+    writer.chunk("SURF", {bytes_of(stored_surfaces(mesh))});
+    writer.chunk("RADI", {bytes_of(result.radiosity)});
+    writer.chunk("IRRA", {bytes_of(result.irradiance)});
+    writer.chunk("RSUM", {bytes_of(result.row_sum)});
+    writer.chunk("ENVI", {bytes_of(result.environment)});
+    writer.chunk("BLOC", {bytes_of(result.blocked)});
+    if (estimated) {
+        writer.chunk("RERR", {bytes_of(result.factor_error->rows)});
+        writer.chunk("BERR", {bytes_of(result.radiosity_error->patches)});
+    }
+    writer.finish();
+}
+
+ResultFile read_hres(const std::filesystem::path& path) {
+    ChunkReader reader(path, hres_format);
+    ResultFile result;
+    const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
+    const Sizes sizes = read_header(JsonNode(document, reader.file()), result);
+    read_surfaces(reader.chunk("SURF"), sizes, result.scene);
+    try {
+        validate(result.scene);
+    } catch (const InputError& error) {
+        reader.fail(error.what());
+    }
+    const std::uint64_t values = sizes.patches * result.scene.channels.size();
+    result.radiosity = read_array(reader, "RADI", values);
+    result.irradiance = read_array(reader, "IRRA", values);
+    result.row_sum = read_array(reader, "RSUM", sizes.patches);
+    result.environment = read_array(reader, "ENVI", sizes.patches);
+    result.blocked = read_array(reader, "BLOC", sizes.patches);
+    if (result.factor_error) {
+        result.factor_error->rows = read_array(reader, "RERR", sizes.patches);
+        result.radiosity_error->patches = read_array(reader, "BERR", values);
+    }
+    reader.finish();
+    return result;
+}
+
+} // namespace hemi::io

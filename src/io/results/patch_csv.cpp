@@ -1,0 +1,86 @@
+#include "hemi/core/error.hpp"
+#include "hemi/io/result_file.hpp"
+#include "io/formats/text_output.hpp"
+
+namespace hemi::io {
+
+namespace {
+
+/// The columns of every patch table; group names are made ready once.
+class PatchColumns {
+public:
+    explicit PatchColumns(const PatchMesh& mesh) : mesh_(mesh) {
+        for (const std::string& name : mesh.groups()) {
+            groups_.push_back(csv_field(name));
+        }
+    }
+
+    static constexpr const char* header = "index,group,area,cx,cy,cz,nx,ny,nz";
+
+    void print(TextOutput& output, std::uint32_t patch) const {
+        const Vec3& c = mesh_.centres()[patch];
+        const Vec3 n = mesh_.normal(patch) + Vec3(0.0); // no -0
+        output.print(FMT_COMPILE("{},{},{},{},{},{},{},{},{}"), patch, groups_[mesh_.group(patch)],
+                     mesh_.areas()[patch], c.x, c.y, c.z, n.x, n.y, n.z);
+    }
+
+private:
+    const PatchMesh& mesh_;
+    std::vector<std::string> groups_;
+};
+
+} // namespace
+
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\r\n") == std::string::npos) {
+        return text;
+    }
+    std::string result = "\"";
+    for (const char letter : text) {
+        result += letter == '"' ? "\"\"" : std::string(1, letter);
+    }
+    return result + '"';
+}
+
+void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh) {
+    const PatchColumns columns(mesh);
+    TextOutput output(path);
+    output.print(FMT_COMPILE("{}\n"), PatchColumns::header);
+    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        columns.print(output, patch);
+        output.print(FMT_COMPILE("\n"));
+    }
+    output.commit();
+}
+
+void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
+                         std::span<const std::string> channels, std::span<const double> exitance,
+                         std::span<const double> irradiance, std::span<const double> radiosity) {
+    const std::size_t values = std::size_t{mesh.size()} * channels.size();
+    if (exitance.size() != values || irradiance.size() != values || radiosity.size() != values) {
+        throw InvalidArgument(fmt::format(
+            "{} exitances, {} irradiances and {} radiosities for {} patches with {} channels; must be {}",
+            exitance.size(), irradiance.size(), radiosity.size(), mesh.size(), channels.size(), values));
+    }
+    const PatchColumns columns(mesh);
+    TextOutput output(path);
+    output.print(FMT_COMPILE("{}"), PatchColumns::header);
+    for (const char* quantity : {"exitance", "irradiance", "radiosity"}) {
+        for (const std::string& channel : channels) {
+            output.print(FMT_COMPILE(",{}"), csv_field(fmt::format("{}_{}", quantity, channel)));
+        }
+    }
+    output.print(FMT_COMPILE("\n"));
+    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        columns.print(output, patch);
+        for (const auto& quantity : {exitance, irradiance, radiosity}) {
+            for (const double value : quantity.subspan(patch * channels.size(), channels.size())) {
+                output.print(FMT_COMPILE(",{}"), value);
+            }
+        }
+        output.print(FMT_COMPILE("\n"));
+    }
+    output.commit();
+}
+
+} // namespace hemi::io
