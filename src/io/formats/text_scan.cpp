@@ -1,5 +1,7 @@
 #include "io/formats/text_scan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
