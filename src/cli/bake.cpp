@@ -1,19 +1,18 @@
 #include "cli/commands.hpp"
-#include "cli/outputs.hpp"
+#include "cli/loaded_scene.hpp"
+#include "cli/output_paths.hpp"
 #include "cli/picture_output.hpp"
-#include "cli/pipeline.hpp"
-#include "cli/repair_rows.hpp"
-#include "cli/report.hpp"
-#include "cli/solution.hpp"
+#include "cli/report/factor_report.hpp"
+#include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/baked_mesh_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/pipeline/form_factors.hpp"
+#include "hemi/pipeline/radiosity.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <cstdio>
 
 namespace hemi::cli {
 
@@ -31,57 +30,54 @@ std::vector<float> flat_corners(const std::vector<float>& patches) {
     return corners;
 }
 
-void write_baked(const BakeArguments& arguments, const PictureSubject& subject, const Terminal& terminal) {
-    const auto channels = static_cast<std::uint32_t>(subject.scene.channels.size());
-    const PictureMesh mesh =
-        make_picture_mesh(subject.mesh, channels, subject.radiosity, subject.blocked,
-                          channels_to_show(subject.scene.channels, arguments.picture.show));
-    const double exposure =
-        arguments.picture.exposure
-            ? *arguments.picture.exposure
-            : automatic_exposure(subject.mesh, mesh, subject.blocked, subject.exitance, channels);
+void write_baked(const BakeArguments& arguments, const Outputs& outputs, const Scene& scene,
+                 const PatchMesh& mesh, const Solution& solution, const Terminal& terminal) {
+    const PictureMesh picture =
+        make_picture_mesh(mesh, solution.channels, solution.radiosity, solution.back_face_share,
+                          channels_to_show(scene.channels, arguments.picture.show));
+    const double exposure = arguments.picture.exposure
+                                ? *arguments.picture.exposure
+                                : automatic_exposure(mesh, picture, solution.back_face_share,
+                                                     solution.exitance, solution.channels);
     const std::filesystem::path& path = *arguments.picture.output;
-    const std::vector<float> corners = arguments.picture.flat ? flat_corners(mesh.patches) : mesh.corners;
-    (extension_of(path) == ".ply" ? io::write_baked_ply : io::write_baked_glb)(path, subject.mesh, corners,
-                                                                               exposure);
+    const std::vector<float> corners =
+        arguments.picture.flat ? flat_corners(picture.patches) : picture.corners;
+    (extension_of(path) == ".ply" ? io::write_baked_ply : io::write_baked_glb)(path, mesh, corners, exposure);
     if (arguments.common.json) {
         print_json({{"schema", "hemi/bake/1"},
                     {"output", path.string()},
-                    {"patches", subject.mesh.size()},
+                    {"patches", mesh.size()},
                     {"exposure", exposure}});
-    } else if (!terminal.quiet()) {
-        const std::string text = summary_line(
-            "baked", fmt::format("{} ({}, exposure {}{})",
-                                 is_standard_output(path) ? "standard output" : path.string(),
-                                 plural(subject.mesh.size(), "patch", "patches"), number_text(exposure),
-                                 arguments.picture.exposure ? "" : ", automatic"));
-        if (is_standard_output(path)) {
-            std::fputs(text.c_str(), stderr);
-        } else {
-            print(text);
-        }
+        return;
     }
+    outputs.print_summary(
+        summary_line("baked", fmt::format("{} ({}, exposure {}{})",
+                                          is_standard_output(path) ? "standard output" : path.string(),
+                                          plural(mesh.size(), "patch", "patches"), number_text(exposure),
+                                          arguments.picture.exposure ? "" : ", automatic")),
+        terminal);
 }
 
-ExitStatus bake_scene(const BakeArguments& arguments, const Terminal& terminal) {
-    const LoadedScene loaded = load_scene(arguments.scene, terminal);
+ExitStatus bake_scene(const BakeArguments& arguments, const Outputs& outputs, const Terminal& terminal) {
+    TerminalObserver observer(terminal);
+    const auto loaded = load_scene(arguments.scene, terminal);
     (void)channels_to_show(loaded.scene.channels, arguments.picture.show);
-    Rows rows = compute_rows(loaded, reflecting_patches(loaded), arguments.rows, terminal);
-    settle_contacts(rows.file);
-    const EnclosureFinding enclosure =
-        find_leaks(rows.file.factors, enclosure_name(loaded.scene.enclosure), arguments.rows.max_row_error);
-    (void)repair_rows(rows.file, arguments.rows.repair);
-    report_covered(row_sums(rows.file.factors), terminal);
-    const Solution solution = solve_scene(loaded, rows.file.factors, arguments.solver, false, terminal);
-    write_baked(arguments,
-                {loaded.scene, loaded.mesh, solution.radiosity, solution.exitance, solution.blocked},
-                terminal);
-    report_leaks(enclosure, rows.file.factors, loaded.names(), &loaded.mesh, arguments.rows.max_row_error,
+    FactorSettings settings = arguments.rows.factors;
+    settings.estimate_error = false;
+    FormFactors factors = compute_raw_form_factors(
+        loaded.scene, loaded.mesh, reflecting_patches(loaded.scene, loaded.mesh), settings, observer);
+    prepare_form_factors(factors, settings.repair);
+    const EnclosureFinding enclosure = find_leaks(factors, arguments.rows.max_row_error);
+    report_buried(row_sums(factors.matrix), terminal);
+    const Solution solution =
+        solve_radiosity(loaded.scene, loaded.mesh, factors, arguments.solver, observer, false);
+    write_baked(arguments, outputs, loaded.scene, loaded.mesh, solution, terminal);
+    report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, arguments.rows.max_row_error,
                  terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }
 
-void bake_result(const BakeArguments& arguments, const Terminal& terminal) {
+void bake_result(const BakeArguments& arguments, const Outputs& outputs, const Terminal& terminal) {
     const std::filesystem::path& path = arguments.scene.path;
     if (extension_of(path) != ".hres") {
         throw InvalidArgument(fmt::format("{}: bake needs a scene ({}) or a stored solution (.hres)",
@@ -89,11 +85,10 @@ void bake_result(const BakeArguments& arguments, const Terminal& terminal) {
     }
     refuse_all_but(arguments.common, std::vector<std::string>{"--output", "--show", "--flat", "--exposure"},
                    path);
-    const io::ResultFile result = io::read_hres(path);
+    io::ResultFile result = io::read_hres(path);
     const PatchMesh mesh(result.scene, result.subdivision);
-    write_baked(arguments,
-                {result.scene, mesh, result.radiosity, patch_exitance(result.scene, mesh), result.blocked},
-                terminal);
+    result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+    write_baked(arguments, outputs, result.scene, mesh, result.solution, terminal);
 }
 
 } // namespace
@@ -102,13 +97,11 @@ ExitStatus run(const BakeArguments& arguments, const Terminal& terminal) {
     Outputs outputs;
     outputs.keep(arguments.scene.path);
     outputs.add("-o", *arguments.picture.output, {".glb", ".ply"}, true);
-    if (outputs.uses_standard_output() && arguments.common.json) {
-        throw InvalidArgument("--json and an output to - cannot both go to standard output");
-    }
+    outputs.refuse_with_json(arguments.common.json);
     if (io::is_scene_file(arguments.scene.path)) {
-        return bake_scene(arguments, terminal);
+        return bake_scene(arguments, outputs, terminal);
     }
-    bake_result(arguments, terminal);
+    bake_result(arguments, outputs, terminal);
     return ExitStatus::ok;
 }
 

@@ -1,12 +1,11 @@
-#include "cli/cell_data.hpp"
 #include "cli/commands.hpp"
-#include "cli/outputs.hpp"
-#include "cli/pipeline.hpp"
-#include "cli/repair_rows.hpp"
-#include "cli/report.hpp"
-#include "cli/solution.hpp"
-#include "cli/stored_factors.hpp"
+#include "cli/output_paths.hpp"
+#include "cli/report/text.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/io/factor_file.hpp"
+#include "hemi/io/result_file.hpp"
+#include "hemi/io/vtp_file.hpp"
+#include "hemi/pipeline/form_factors.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,20 +16,19 @@ namespace hemi::cli {
 
 namespace {
 
-/// Rows of the --factors file, repaired, if it belongs to the patches of `mesh`.
+/// Rows of the --factors file, prepared, if it belongs to the patches of `mesh`.
 FormFactorMatrix read_rows(const ConvertArguments& arguments, const PatchMesh& mesh) {
-    io::FactorFile file = io::read_hff(*arguments.factors);
-    if (file.geometry_hash != mesh.geometry_hash() || file.factors.size() != mesh.size()) {
+    FormFactors factors = io::read_hff(*arguments.factors);
+    if (factors.geometry_hash != mesh.geometry_hash() || factors.matrix.size() != mesh.size()) {
         throw InputError(fmt::format("{}: belongs to another geometry than {}", arguments.factors->string(),
                                      arguments.input.string()));
     }
-    settle_contacts(file);
-    (void)repair_rows(file, arguments.repair);
-    return std::move(file.factors);
+    prepare_form_factors(factors, arguments.repair);
+    return std::move(factors.matrix);
 }
 
 /// --json: what every conversion says, and `more`.
-void tell(const ConvertArguments& arguments, const Json& more) {
+void report(const ConvertArguments& arguments, const Json& more) {
     if (arguments.common.json) {
         Json object{{"schema", "hemi/convert/1"},
                     {"input", arguments.input.string()},
@@ -45,11 +43,11 @@ std::string output_name(const ConvertArguments& arguments) {
 }
 
 void write_cells(const ConvertArguments& arguments, const io::ResultFile& result, const PatchMesh& mesh) {
-    std::vector<io::CellArray> arrays = cell_data(result, mesh);
+    std::vector<io::CellArray> arrays = io::solution_arrays(result, mesh);
     if (arguments.factors) {
         const FormFactorMatrix factors = read_rows(arguments, mesh);
         for (const std::uint32_t row : arguments.rows) {
-            arrays.push_back(row_data(factors, row));
+            arrays.push_back(io::row_array(factors, row));
         }
     }
     io::write_vtp(arguments.output, mesh, arrays);
@@ -57,7 +55,7 @@ void write_cells(const ConvertArguments& arguments, const io::ResultFile& result
     for (const io::CellArray& array : arrays) {
         names.push_back(array.name);
     }
-    tell(arguments, {{"patches", mesh.size()}, {"arrays", names}});
+    report(arguments, {{"patches", mesh.size()}, {"arrays", names}});
 }
 
 void convert_result(const ConvertArguments& arguments, const Terminal& terminal) {
@@ -71,13 +69,13 @@ void convert_result(const ConvertArguments& arguments, const Terminal& terminal)
         write_cells(arguments, result, mesh);
     } else {
         io::write_radiosity_csv(arguments.output, mesh, result.scene.channels,
-                                patch_exitance(result.scene, mesh), result.irradiance, result.radiosity);
-        tell(arguments, {{"patches", mesh.size()}});
+                                patch_values(mesh, result.scene.materials, &Material::exitance),
+                                result.solution.irradiance, result.solution.radiosity);
+        report(arguments, {{"patches", mesh.size()}});
     }
-    terminal.note(
-        fmt::format("not in {}: materials' names, subdivision, environment, camera, what solved it{}",
-                    output_name(arguments),
-                    to_paraview ? "" : ", corners, reflectance, row balance and estimated errors"));
+    terminal.note(fmt::format("not in {}: names of materials, subdivision, environment, camera, solver{}",
+                              output_name(arguments),
+                              to_paraview ? "" : ", corners, reflectance, row balance and estimated errors"));
 }
 
 /// Whether IN and OUT go together.
@@ -105,8 +103,8 @@ void check_formats(const ConvertArguments& arguments) {
     if (arguments.factors) {
         throw InvalidArgument("--factors and --row are for a .hres that becomes a .vtp");
     }
-    const FactorFormat& format = factor_format(arguments.output);
-    const auto content = factor_content(arguments.input);
+    const io::FactorFormat& format = io::factor_format(arguments.output);
+    const auto content = io::factor_content(arguments.input);
     if (content && *content < format.needs) {
         throw InvalidArgument(fmt::format("{}: {} files hold {}, which {} does not have; `hemi factors SCENE "
                                           "-o FILE{}` writes one",
@@ -122,18 +120,18 @@ void check_formats(const ConvertArguments& arguments) {
 }
 
 /// What the rows are in the other format, and what is left behind.
-void tell_losses(const ConvertArguments& arguments, const FactorFormat& format, bool from_hff,
-                 Repair repaired, const Terminal& terminal) {
+void report_losses(const ConvertArguments& arguments, const io::FactorFormat& format, bool from_hff,
+                   Repair repaired, const Terminal& terminal) {
     if (repaired != Repair::none) {
-        terminal.note(fmt::format("written are the rows after the repair ({})", repair_name(repaired)));
+        terminal.note(fmt::format("the rows are written after repair ({})", to_word(repaired)));
     }
     if (from_hff) {
         terminal.note(fmt::format("not in {}: {}", output_name(arguments), format.lost));
-    } else if (factor_content(arguments.input) == FactorContent::areas) {
+    } else if (io::factor_content(arguments.input) == io::FactorContent::areas) {
         terminal.note(fmt::format("not in {}: emissivities{}", output_name(arguments),
                                   format.lost.starts_with("areas") ? " and areas" : ""));
     }
-    if (format.needs == FactorContent::areas) {
+    if (format.needs == io::FactorContent::areas) {
         terminal.note("emissivities are written as 0.999; `hemi factors SCENE -o FILE` writes the scene's");
     }
 }
@@ -142,32 +140,30 @@ void tell_losses(const ConvertArguments& arguments, const FactorFormat& format, 
 
 ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
     Outputs outputs;
-    std::vector<std::string_view> extensions = factor_extensions();
+    std::vector<std::string_view> extensions = io::factor_extensions();
     extensions.push_back(".vtp");
     outputs.add("OUT", arguments.output, extensions, true);
-    if (outputs.uses_standard_output() && arguments.common.json) {
-        throw InvalidArgument("--json and an output to - cannot both go to standard output");
-    }
+    outputs.refuse_with_json(arguments.common.json);
     check_formats(arguments);
     if (extension_of(arguments.input) == ".hres") {
         convert_result(arguments, terminal);
         return ExitStatus::ok;
     }
-    const FactorFormat& format = factor_format(arguments.output);
-    io::FactorFile file = read_factors(arguments.input);
+    const io::FactorFormat& format = io::factor_format(arguments.output);
+    FormFactors file = io::read_factors(arguments.input);
     const bool from_hff = extension_of(arguments.input) == ".hff";
     Repair repaired = Repair::none;
     if (from_hff && format.extension != ".hff") {
-        settle_contacts(file);
-        repaired = repair_rows(file, arguments.repair).report.repair;
+        prepare_form_factors(file, arguments.repair);
+        repaired = file.repair->repair;
     }
     Diagnostics diagnostics;
-    write_factors(arguments.output, file, {{}, repaired}, diagnostics);
+    io::write_factors(arguments.output, file, {}, diagnostics);
     terminal.warn(diagnostics);
     if (format.extension != ".hff") {
-        tell_losses(arguments, format, from_hff, repaired, terminal);
+        report_losses(arguments, format, from_hff, repaired, terminal);
     }
-    tell(arguments, {{"patches", file.factors.size()}, {"entries", file.factors.entries()}});
+    report(arguments, {{"patches", file.matrix.size()}, {"entries", file.matrix.entries()}});
     return ExitStatus::ok;
 }
 

@@ -1,5 +1,5 @@
 #include "cli/commands.hpp"
-#include "cli/report.hpp"
+#include "cli/report/text.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
 

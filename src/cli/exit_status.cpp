@@ -1,5 +1,7 @@
 #include "cli/exit_status.hpp"
 
+#include "hemi/pipeline/accuracy.hpp"
+
 #include "hemi/core/error.hpp"
 
 namespace hemi::cli {
@@ -14,7 +16,7 @@ ExitStatus exit_status_for(const std::exception& error) noexcept {
     if (dynamic_cast<const NoDevice*>(&error) != nullptr) {
         return ExitStatus::no_device;
     }
-    if (dynamic_cast<const ToleranceMissed*>(&error) != nullptr) {
+    if (dynamic_cast<const TargetMissed*>(&error) != nullptr) {
         return ExitStatus::out_of_tolerance;
     }
     if (dynamic_cast<const Cancelled*>(&error) != nullptr) {

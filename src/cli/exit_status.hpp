@@ -17,12 +17,6 @@ enum class ExitStatus : int {
     interrupted = 130,
 };
 
-/// What was asked for cannot be computed as closely as was asked.
-class ToleranceMissed : public Error {
-public:
-    using Error::Error;
-};
-
 /// Exit status for an exception that reached main().
 [[nodiscard]] ExitStatus exit_status_for(const std::exception& error) noexcept;
 

@@ -1,55 +1,29 @@
-#include "cli/cell_data.hpp"
 #include "cli/commands.hpp"
-#include "cli/error_report.hpp"
-#include "cli/error_target.hpp"
-#include "cli/outputs.hpp"
-#include "cli/pipeline.hpp"
-#include "cli/repair_rows.hpp"
-#include "cli/report.hpp"
-#include "cli/solution.hpp"
-#include "cli/stored_factors.hpp"
+#include "cli/factor_source.hpp"
+#include "cli/factor_tables.hpp"
+#include "cli/output_paths.hpp"
+#include "cli/report/factor_report.hpp"
+#include "cli/report/seconds.hpp"
+#include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
-#include "hemi/engine/baselines.hpp"
-#include "hemi/io/output_file.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/io/factor_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
-#include "io/formats/text_output.hpp"
+#include "hemi/io/vtp_file.hpp"
+#include "hemi/pipeline/accuracy.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
 #include <numeric>
 
 namespace hemi::cli {
 
 namespace {
 
-struct Seconds {
-    double load = 0.0;
-    double factors = 0.0;
-    double repair = 0.0;
-    double estimate = 0.0; ///< of errors
-    double search = 0.0;   ///< for settings that meet --error-target
-    double total = 0.0;
-};
-
-/// Rows of a scene or of a file, with what is known of their patches.
-struct Subject {
-    std::optional<LoadedScene> loaded;
-    Rows rows;
-    RowRepair repair;
-    Seconds seconds;
-
-    [[nodiscard]] PatchNames names() const {
-        return loaded ? loaded->names() : PatchNames{rows.file.groups, rows.file.group_of, {}};
-    }
-};
-
-/// Where a group table goes: into the .csv that -o names, else to stdout.
+/// Whether the group table goes into the .csv that -o names, else to stdout.
 bool table_goes_to_file(const FactorsArguments& arguments) {
     return arguments.by_group && arguments.output &&
            (is_standard_output(*arguments.output) || extension_of(*arguments.output) == ".csv");
@@ -60,24 +34,14 @@ bool holds_raw_rows(const std::filesystem::path& path) {
     return extension_of(path) == ".hff";
 }
 
-/// 1 - reflectance of every patch, the mean of all channels.
-std::vector<double> emissivities(const Subject& subject) {
-    const LoadedScene& loaded = *subject.loaded;
-    const std::vector<double> reflectance = patch_reflectance(loaded.scene, loaded.mesh);
-    const std::size_t channels = loaded.scene.channels.size();
-    std::vector<double> result;
-    for (auto first = reflectance.begin(); first != reflectance.end();
-         first += static_cast<std::ptrdiff_t>(channels)) {
-        const double sum = std::accumulate(first, first + static_cast<std::ptrdiff_t>(channels), 0.0);
-        result.push_back(1.0 - sum / static_cast<double>(channels));
-    }
-    return result;
+bool is_scene(const FactorsArguments& arguments) {
+    return io::is_scene_file(arguments.scene.path);
 }
 
 Outputs check_outputs(const FactorsArguments& arguments) {
     Outputs outputs;
     if (arguments.output) {
-        std::vector<std::string_view> extensions = factor_extensions();
+        std::vector<std::string_view> extensions = io::factor_extensions();
         extensions.push_back(".vtp");
         outputs.add("-o", *arguments.output, extensions, true);
     }
@@ -92,425 +56,293 @@ Outputs check_outputs(const FactorsArguments& arguments) {
     return outputs;
 }
 
-/// Rows by the cheapest settings that are good enough, as far as a few of them show; those of the next where
-/// all together are not.
-void compute_to_target(const FactorsArguments& arguments, Subject& subject, const Terminal& terminal) {
-    const LoadedScene& loaded = *subject.loaded;
-    const auto patches = all_patches(loaded.mesh.size());
-    const Stopwatch search_watch;
-    TargetSearch search(loaded, patches, arguments.rows, *arguments.rows.error_target, terminal);
-    double searched = 0.0;
-    for (;;) {
-        const Stopwatch watch;
-        const RowOptions options = search.next();
-        searched += watch.seconds();
-        subject.rows = compute_rows(loaded, patches, options, terminal);
-        subject.rows.file.reference = search.reference().rows;
-        subject.rows.file.chosen_for = search.told();
-        io::FactorFile repaired = subject.rows.file;
-        settle_contacts(repaired);
-        (void)repair_rows(repaired, arguments.rows.repair);
-        estimate_rows(repaired);
-        if (search.met(repaired.error ? repaired.error->row_rms : 0.0)) {
-            break;
-        }
-    }
-    subject.seconds.search = search.reference().seconds + searched;
-    subject.seconds.factors = search_watch.seconds() - subject.seconds.search;
-}
-
 /// The file of all rows, if one is to be written; rows are kept beside it meanwhile.
 std::optional<std::filesystem::path> factor_file(const FactorsArguments& arguments) {
     const bool writes = arguments.output && !table_goes_to_file(arguments) &&
                         !is_standard_output(*arguments.output) && !arguments.rows.error_target &&
-                        io::is_scene_file(arguments.scene.path);
+                        is_scene(arguments);
     if (arguments.rows.resume && !writes) {
         throw InvalidArgument(
-            "--resume needs a file of form factors to go on with (-o FILE.hff), made from a "
-            "scene");
+            "--resume needs a file of form factors to go on with (-o FILE.hff), made from a scene");
     }
     return writes ? arguments.output : std::nullopt;
 }
 
-Subject from_scene(const FactorsArguments& arguments, const Terminal& terminal, KeptRows& kept) {
-    Subject subject;
-    subject.loaded = load_scene(arguments.scene, terminal);
-    const PatchMesh& mesh = subject.loaded->mesh;
-    if (arguments.row && arguments.rows.repair.value_or(Repair::none) != Repair::none) {
-        throw InvalidArgument("--repair needs all rows, but --row computes one; store them first with -o "
-                              "FILE.hff");
+/// 1 - reflectance of every patch, the mean of all channels.
+std::vector<double> emissivities(const LoadedScene& loaded) {
+    const std::vector<double> reflectance =
+        patch_values(loaded.mesh, loaded.scene.materials, &Material::reflectance);
+    const auto channels = static_cast<std::ptrdiff_t>(loaded.scene.channels.size());
+    std::vector<double> result;
+    for (auto first = reflectance.begin(); first != reflectance.end(); first += channels) {
+        const double sum = std::accumulate(first, first + channels, 0.0);
+        result.push_back(1.0 - sum / static_cast<double>(channels));
     }
-    if (arguments.row && *arguments.row >= mesh.size()) {
-        throw InvalidArgument(fmt::format("--row {}: the scene has {}, counted from 0", *arguments.row,
-                                          plural(mesh.size(), "patch", "patches")));
-    }
-    subject.seconds.load = subject.loaded->seconds;
-    const Stopwatch watch;
-    const auto patches =
-        arguments.row ? std::vector<std::uint32_t>{*arguments.row} : all_patches(mesh.size());
-    if (arguments.rows.error_target) {
-        compute_to_target(arguments, subject, terminal);
-    } else {
-        subject.rows = compute_rows(*subject.loaded, patches, arguments.rows, terminal, &kept);
-        subject.seconds.factors = watch.seconds();
-    }
-    if (!arguments.row && !arguments.rows.error_target) {
-        add_reference(subject.rows, *subject.loaded, arguments.rows, terminal);
-        subject.seconds.estimate = subject.rows.reference_seconds;
-    }
-    if (arguments.patches) {
-        io::write_patches_csv(*arguments.patches, mesh);
-    }
-    return subject;
+    return result;
 }
 
-Subject from_file(const FactorsArguments& arguments) {
-    const std::filesystem::path& path = arguments.scene.path;
-    if (extension_of(path) != ".hff") {
-        throw InvalidArgument(fmt::format("{}: must be a scene ({}) or form factors with names (.hff)",
-                                          path.string(), io::scene_extensions()));
-    }
-    refuse_all_but(arguments.common, std::vector<std::string>{"--row", "--by-group", "--output", "--repair"},
-                   path);
-    if (!arguments.row && !arguments.by_group) {
-        throw InvalidArgument(
-            fmt::format("{}: of a file, --row or --by-group can be shown; `hemi info` tells what "
-                        "is in it, `hemi convert` writes it in other formats",
-                        path.string()));
-    }
-    if (arguments.output && !table_goes_to_file(arguments)) {
-        throw InvalidArgument("-o: of a file only the table of --by-group can be written, as .csv; for other "
-                              "formats there is `hemi convert`");
-    }
-    Subject subject;
-    const Stopwatch watch;
-    subject.rows.file = io::read_hff(path);
-    subject.rows.reused = true;
-    subject.seconds.load = watch.seconds();
-    const std::uint32_t size = subject.rows.file.factors.size();
-    if (arguments.row && *arguments.row >= size) {
-        throw InvalidArgument(fmt::format("--row {}: the file has {}, counted from 0", *arguments.row,
-                                          plural(size, "row", "rows")));
-    }
-    if (arguments.row && !subject.rows.file.factors.known(*arguments.row)) {
-        throw InputError(fmt::format("{}: row {} was not computed", path.string(), *arguments.row));
-    }
-    return subject;
-}
-
-void show_row(const FactorsArguments& arguments, const Subject& subject) {
-    const std::uint32_t index = *arguments.row;
-    const RowView row = subject.rows.file.factors.row(index);
-    const PatchNames names = subject.names();
-    std::vector<std::size_t> order(row.columns.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&row](std::size_t a, std::size_t b) { return row.values[a] > row.values[b]; });
-    if (arguments.common.json) {
-        Json entries = Json::array();
-        for (const std::size_t k : order) {
-            entries.push_back({{"patch", row.columns[k]},
-                               {"group", names.group(row.columns[k])},
-                               {"factor", row.values[k]}});
-        }
-        print_json({{"schema", "hemi/factors/1"},
-                    {"renderer", subject.rows.file.renderer},
-                    {"patches", subject.rows.file.factors.size()},
-                    {"row", index},
-                    {"group", names.group(index)},
-                    {"entries", entries},
-                    {"sum", row.sum()},
-                    {"environment", row.environment},
-                    {"blocked", row.blocked}});
-        return;
-    }
-    Table table({"group", "patch", "F"});
-    for (const std::size_t k : order) {
-        table.add({names.group(row.columns[k]), std::to_string(row.columns[k]),
-                   fmt::format("{:.9f}", row.values[k])});
-    }
-    print(fmt::format("row {}: what leaves {}\nsum {:.9f}, to the environment {:.9f}, blocked {:.9f}\n\n",
-                      index, names.describe(index), row.sum(), row.environment, row.blocked) +
-          table.text());
-}
-
-/// What leaves a surface element at a point, patch by patch.
-void show_point(const FactorsArguments& arguments, const Terminal& terminal) {
-    const LoadedScene loaded = load_scene(arguments.scene, terminal);
-    const std::array<double, 6>& at = *arguments.from_point;
-    const Vec3 point(at[0], at[1], at[2]);
-    const Vec3 normal(at[3], at[4], at[5]);
-    const double length = glm::length(normal);
-    if (!(length > 0.0) || !std::isfinite(length)) {
-        throw InvalidArgument("--from-point: the normal must have a length");
-    }
-    const std::vector<double> factors = point_factors(loaded.mesh, point, normal / length, true);
-    const PatchNames names = loaded.names();
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t patch = 0; patch < factors.size(); ++patch) {
-        if (factors[patch] > 0.0) {
-            order.push_back(patch);
-        }
-    }
-    std::stable_sort(order.begin(), order.end(),
-                     [&factors](std::uint32_t a, std::uint32_t b) { return factors[a] > factors[b]; });
-    double sum = 0.0;
-    for (const std::uint32_t patch : order) {
-        sum += factors[patch];
-    }
-    if (arguments.common.json) {
-        Json entries = Json::array();
-        for (const std::uint32_t patch : order) {
-            entries.push_back({{"patch", patch}, {"group", names.group(patch)}, {"factor", factors[patch]}});
-        }
-        print_json({{"schema", "hemi/factors/1"},
-                    {"patches", factors.size()},
-                    {"point", {point.x, point.y, point.z}},
-                    {"normal", {normal.x / length, normal.y / length, normal.z / length}},
-                    {"entries", entries},
-                    {"sum", sum}});
-        return;
-    }
-    Table table({"group", "patch", "F"});
-    for (const std::uint32_t patch : order) {
-        table.add({names.group(patch), std::to_string(patch), fmt::format("{:.9f}", factors[patch])});
-    }
-    print(fmt::format("what leaves a surface element at {} {} {}\nsum {:.9f}\n\n", number_text(point.x),
-                      number_text(point.y), number_text(point.z), sum) +
-          table.text());
-}
-
-GroupFactors sum_groups(const io::FactorFile& file, const std::filesystem::path& path) {
-    if (!file.factors.all_known()) {
+GroupFactors sum_groups(const FormFactors& factors, const std::filesystem::path& path) {
+    if (!factors.matrix.all_known()) {
         throw InputError(fmt::format("{}: some rows were not computed; --by-group needs all", path.string()));
     }
-    return group_factors(file.factors, file.areas, file.group_of,
-                         static_cast<std::uint32_t>(file.groups.size()));
+    return group_factors(factors.matrix, factors.areas, factors.group_of,
+                         static_cast<std::uint32_t>(factors.groups.size()));
 }
 
-Json groups_json(const Subject& subject, const GroupFactors& groups) {
-    const io::FactorFile& file = subject.rows.file;
-    return {{"schema", "hemi/factors/1"},
-            {"renderer", file.renderer},
-            {"patches", file.factors.size()},
-            {"groups", file.groups},
-            {"areas", groups.areas},
-            {"factors", rows_json(groups.factors, groups.groups)},
-            {"environment", groups.environment},
-            {"blocked", groups.blocked},
-            {"row_sum", row_sum_json(row_sums(file.factors))},
-            {"repair", repair_json(subject.repair)},
-            {"error_estimate", error_json(file.error)},
-            {"seconds",
-             {{"load", subject.seconds.load},
-              {"factors", subject.seconds.factors},
-              {"repair", subject.seconds.repair},
-              {"estimate", subject.seconds.estimate},
-              {"search", subject.seconds.search},
-              {"total", subject.seconds.total}}}};
-}
+/// One run of the command.
+class Factors {
+public:
+    Factors(const FactorsArguments& arguments, const Outputs& outputs, const Terminal& terminal,
+            RowCheckpoint* checkpoint)
+        : arguments_(arguments), outputs_(outputs), terminal_(terminal), observer_(terminal),
+          checkpoint_(checkpoint), seconds_({"load", "factors", "repair", "estimate", "search", "total"}) {}
 
-/// A matrix while it fits a screen, else a line per pair of groups that see each other.
-std::string groups_table(const io::FactorFile& file, const GroupFactors& groups) {
-    constexpr std::uint32_t widest = 10;
-    if (groups.groups > widest) {
-        Table table({"from", "to", "F"}, 2);
-        for (std::uint32_t g = 0; g < groups.groups; ++g) {
-            for (std::uint32_t h = 0; h < groups.groups; ++h) {
-                const double factor = groups.factors[std::size_t{g} * groups.groups + h];
-                if (factor > 0.0) {
-                    table.add({file.groups[g], file.groups[h], fmt::format("{:.6f}", factor)});
-                }
-            }
-            if (groups.environment[g] > 0.0) {
-                table.add({file.groups[g], "(environment)", fmt::format("{:.6f}", groups.environment[g])});
-            }
-            if (groups.blocked[g] > 0.0) {
-                table.add({file.groups[g], "(blocked)", fmt::format("{:.6f}", groups.blocked[g])});
-            }
-        }
-        return table.text();
-    }
-    std::vector<std::string> header{"F from / to"};
-    header.insert(header.end(), file.groups.begin(), file.groups.end());
-    header.insert(header.end(), {"(environment)", "(blocked)", "area"});
-    Table table(header);
-    for (std::uint32_t g = 0; g < groups.groups; ++g) {
-        std::vector<std::string> line{file.groups[g]};
-        for (std::uint32_t h = 0; h < groups.groups; ++h) {
-            line.push_back(fmt::format("{:.6f}", groups.factors[std::size_t{g} * groups.groups + h]));
-        }
-        line.push_back(fmt::format("{:.6f}", groups.environment[g]));
-        line.push_back(fmt::format("{:.6f}", groups.blocked[g]));
-        line.push_back(number_text(groups.areas[g]));
-        table.add(line);
-    }
-    return table.text();
-}
-
-/// group,area,<every group>,environment,blocked: a line per leaving group.
-void write_groups_csv(const std::filesystem::path& path, const io::FactorFile& file,
-                      const GroupFactors& groups) {
-    std::string text = "group,area";
-    for (const std::string& name : file.groups) {
-        text += ',' + io::csv_field(name);
-    }
-    text += ",environment,blocked\n";
-    for (std::uint32_t g = 0; g < groups.groups; ++g) {
-        text += fmt::format("{},{}", io::csv_field(file.groups[g]), groups.areas[g]);
-        for (std::uint32_t h = 0; h < groups.groups; ++h) {
-            text += fmt::format(",{}", groups.factors[std::size_t{g} * groups.groups + h]);
-        }
-        text += fmt::format(",{},{}\n", groups.environment[g], groups.blocked[g]);
-    }
-    io::OutputFile output(path);
-    output.write(text);
-    output.commit();
-}
-
-std::string summary(const Subject& subject, const RowSums& sums, const EnclosureFinding& enclosure,
-                    const FactorsArguments& arguments) {
-    const PatchMesh& mesh = subject.loaded->mesh;
-    std::string text =
-        summary_line("scene", fmt::format("{}, {}, {}", plural(mesh.size(), "patch", "patches"),
-                                          plural(mesh.surfaces().size(), "surface", "surfaces"),
-                                          plural(mesh.groups().size(), "group", "groups")));
-    text += rows_summary(subject.rows, sums, enclosure);
-    text += repair_summary(subject.repair);
-    text += chosen_summary(subject.rows.file.chosen_for) + error_summary(subject.rows.file.error);
-    text += summary_line("seconds",
-                         fmt::format("load {:.3f}, factors {:.3f}, repair {:.3f}, estimate {:.3f}, "
-                                     "total {:.3f}",
-                                     subject.seconds.load, subject.seconds.factors, subject.seconds.repair,
-                                     subject.seconds.estimate, subject.seconds.total));
-    if (arguments.output && !is_standard_output(*arguments.output)) {
-        const bool repaired = subject.repair.report.repair != Repair::none;
-        const char* const which = !repaired                           ? ""
-                                  : holds_raw_rows(*arguments.output) ? " (the rows before the repair)"
-                                                                      : " (the rows after the repair)";
-        text += summary_line("written", arguments.output->string() + which);
-    }
-    return text;
-}
-
-Json summary_json(const Subject& subject, const RowSums& sums) {
-    const FormFactorMatrix& factors = subject.rows.file.factors;
-    return {{"schema", "hemi/factors/1"},
-            {"renderer", subject.rows.file.renderer},
-            {"patches", factors.size()},
-            {"groups", subject.rows.file.groups},
-            {"entries", factors.entries()},
-            {"memory", factors.memory_bytes()},
-            {"row_sum", row_sum_json(sums)},
-            {"environment_max", sums.environment_max},
-            {"blocked_max", sums.blocked_max},
-            {"repair", repair_json(subject.repair)},
-            {"chosen_for",
-             subject.rows.file.chosen_for.empty() ? Json(nullptr) : Json(subject.rows.file.chosen_for)},
-            {"error_estimate", error_json(subject.rows.file.error)},
-            {"seconds",
-             {{"load", subject.seconds.load},
-              {"factors", subject.seconds.factors},
-              {"repair", subject.seconds.repair},
-              {"estimate", subject.seconds.estimate},
-              {"search", subject.seconds.search},
-              {"total", subject.seconds.total}}}};
-}
-
-ExitStatus run(const FactorsArguments& arguments, const Outputs& outputs, const Terminal& terminal,
-               KeptRows& kept) {
-    const Stopwatch total;
-    const bool is_scene = io::is_scene_file(arguments.scene.path);
-    if (arguments.from_point) {
-        if (!is_scene) {
-            throw InvalidArgument(fmt::format("--from-point does not apply to {}, which is not a scene",
-                                              arguments.scene.path.string()));
-        }
-        static const std::vector<std::string> allowed{
-            "--from-point", "--patch-size", "--patches-per-face", "--two-sided", "--skip-degenerate",
-            "--json",       "--quiet",      "--verbose",          "--color"};
-        for (const std::string& option : arguments.common.given) {
-            if (std::find(allowed.begin(), allowed.end(), option) == allowed.end()) {
-                throw InvalidArgument(
-                    fmt::format("{} does not apply to --from-point, which needs no rows", option));
-            }
-        }
-        show_point(arguments, terminal);
-        return ExitStatus::ok;
-    }
-    Subject subject = is_scene ? from_scene(arguments, terminal, kept) : from_file(arguments);
-    io::FactorFile& file = subject.rows.file;
-    if (arguments.row && is_scene) {
-        show_row(arguments, subject);
-        return ExitStatus::ok;
-    }
-    const bool writes = arguments.output && !table_goes_to_file(arguments);
-    Diagnostics diagnostics;
-    if (writes && holds_raw_rows(*arguments.output)) {
-        estimate_rows(file);
-        write_factors(*arguments.output, file, {}, diagnostics);
-        kept.discard();
-    }
-    settle_contacts(file);
-    subject.repair = repair_rows(file, arguments.rows.repair);
-    subject.seconds.repair = subject.repair.seconds;
-    const Stopwatch estimate_watch;
-    estimate_rows(file);
-    subject.seconds.estimate += estimate_watch.seconds();
-    if (writes && !holds_raw_rows(*arguments.output)) {
-        if (extension_of(*arguments.output) == ".vtp") {
-            io::write_vtp(*arguments.output, subject.loaded->mesh, cell_data(file));
+    ExitStatus run() {
+        if (is_scene(arguments_)) {
+            compute();
         } else {
-            const std::vector<double> emissivity = emissivities(subject);
-            write_factors(*arguments.output, file, {emissivity, subject.repair.report.repair}, diagnostics);
+            read();
+        }
+        if (arguments_.row && loaded_) {
+            show_row(factors_, *arguments_.row, names(), arguments_.common.json);
+            return ExitStatus::ok;
+        }
+        write_raw();
+        const Stopwatch watch;
+        prepare_form_factors(factors_, arguments_.rows.factors.repair);
+        seconds_["repair"] = watch.seconds();
+        write_prepared();
+        terminal_.warn(diagnostics_);
+        if (checkpoint_ != nullptr) {
+            checkpoint_->discard();
+        }
+        if (arguments_.row) {
+            show_row(factors_, *arguments_.row, names(), arguments_.common.json);
+            return ExitStatus::ok;
+        }
+        return report();
+    }
+
+private:
+    [[nodiscard]] PatchNames names() const {
+        return loaded_ ? loaded_->names() : PatchNames{factors_.groups, factors_.group_of, {}};
+    }
+
+    void compute() {
+        loaded_ = load_scene(arguments_.scene, terminal_);
+        seconds_["load"] = loaded_->seconds;
+        const PatchMesh& mesh = loaded_->mesh;
+        FactorSettings settings = arguments_.rows.factors;
+        std::vector<std::uint32_t> patches = all_patches(mesh.size());
+        if (arguments_.row) {
+            check_row(mesh);
+            patches = {*arguments_.row};
+            settings.estimate_error = false;
+        }
+        const Stopwatch watch;
+        if (arguments_.rows.error_target) {
+            TargetResult found =
+                factors_to_target(loaded_->scene, mesh, settings, *arguments_.rows.error_target, observer_);
+            factors_ = std::move(found.raw);
+            seconds_["search"] = found.search_seconds;
+            seconds_["factors"] = found.factor_seconds;
+        } else {
+            factors_ =
+                compute_raw_form_factors(loaded_->scene, mesh, patches, settings, observer_, checkpoint_);
+            seconds_["estimate"] = factors_.work.reference_seconds;
+            seconds_["factors"] = watch.seconds() - factors_.work.reference_seconds;
+        }
+        if (arguments_.patches) {
+            io::write_patches_csv(*arguments_.patches, mesh);
         }
     }
-    terminal.warn(diagnostics);
-    kept.discard();
-    if (arguments.row) {
-        show_row(arguments, subject);
-        return ExitStatus::ok;
+
+    void check_row(const PatchMesh& mesh) const {
+        if (arguments_.rows.factors.repair.value_or(Repair::none) != Repair::none) {
+            throw InvalidArgument(
+                "--repair needs all rows, but --row computes one; store them first with -o FILE.hff");
+        }
+        if (*arguments_.row >= mesh.size()) {
+            throw InvalidArgument(fmt::format("--row {}: the scene has {}, counted from 0", *arguments_.row,
+                                              plural(mesh.size(), "patch", "patches")));
+        }
     }
-    const RowSums sums = row_sums(file.factors);
-    const EnclosureFinding enclosure = find_leaks(file.factors, file.enclosure, arguments.rows.max_row_error);
-    if (arguments.by_group) {
-        const GroupFactors groups = sum_groups(file, arguments.scene.path);
-        if (table_goes_to_file(arguments)) {
-            write_groups_csv(*arguments.output, file, groups);
+
+    void read() {
+        const std::filesystem::path& path = arguments_.scene.path;
+        if (extension_of(path) != ".hff") {
+            throw InvalidArgument(fmt::format("{}: must be a scene ({}) or form factors with names (.hff)",
+                                              path.string(), io::scene_extensions()));
         }
-        subject.seconds.total = total.seconds();
-        if (arguments.common.json) {
-            print_json(groups_json(subject, groups));
-        } else if (!table_goes_to_file(arguments)) {
-            print(groups_table(file, groups));
+        refuse_all_but(arguments_.common,
+                       std::vector<std::string>{"--row", "--by-group", "--output", "--repair"}, path);
+        if (!arguments_.row && !arguments_.by_group) {
+            throw InvalidArgument(
+                fmt::format("{}: of a file, --row or --by-group can be shown; `hemi info` says what "
+                            "is in it, `hemi convert` writes it in other formats",
+                            path.string()));
         }
-    } else {
-        subject.seconds.total = total.seconds();
-        if (arguments.common.json) {
-            print_json(summary_json(subject, sums));
-        } else if (!terminal.quiet()) {
-            const std::string text = summary(subject, sums, enclosure, arguments);
-            if (outputs.uses_standard_output()) {
-                std::fputs(text.c_str(), stderr);
-            } else {
-                print(text);
+        if (writes()) {
+            throw InvalidArgument(
+                "-o: of a file only the table of --by-group can be written, as .csv; for other "
+                "formats there is `hemi convert`");
+        }
+        const Stopwatch watch;
+        factors_ = io::read_hff(path);
+        factors_.work.from_file = true;
+        seconds_["load"] = watch.seconds();
+        const std::uint32_t size = factors_.matrix.size();
+        if (arguments_.row && *arguments_.row >= size) {
+            throw InvalidArgument(fmt::format("--row {}: the file has {}, counted from 0", *arguments_.row,
+                                              plural(size, "row", "rows")));
+        }
+        if (arguments_.row && !factors_.matrix.known(*arguments_.row)) {
+            throw InputError(fmt::format("{}: row {} was not computed", path.string(), *arguments_.row));
+        }
+    }
+
+    [[nodiscard]] bool writes() const { return arguments_.output && !table_goes_to_file(arguments_); }
+
+    void write_raw() {
+        if (writes() && holds_raw_rows(*arguments_.output)) {
+            estimate_error(factors_);
+            io::write_factors(*arguments_.output, factors_, {}, diagnostics_);
+            if (checkpoint_ != nullptr) {
+                checkpoint_->discard();
             }
         }
     }
-    if (is_scene) {
-        report_covered(sums, terminal);
+
+    void write_prepared() {
+        if (!writes() || holds_raw_rows(*arguments_.output)) {
+            return;
+        }
+        if (extension_of(*arguments_.output) == ".vtp") {
+            io::write_vtp(*arguments_.output, loaded_->mesh, io::factor_arrays(factors_));
+        } else {
+            const std::vector<double> emissivity = emissivities(*loaded_);
+            io::write_factors(*arguments_.output, factors_, {emissivity}, diagnostics_);
+        }
     }
-    report_leaks(enclosure, file.factors, subject.names(), subject.loaded ? &subject.loaded->mesh : nullptr,
-                 arguments.rows.max_row_error, terminal);
-    return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
+
+    ExitStatus report() {
+        const RowSums sums = row_sums(factors_.matrix);
+        const EnclosureFinding enclosure = find_leaks(factors_, arguments_.rows.max_row_error);
+        if (arguments_.by_group) {
+            report_groups(sums);
+        } else {
+            seconds_["total"] = total_.seconds();
+            if (arguments_.common.json) {
+                print_json(summary_json(sums));
+            } else {
+                outputs_.print_summary(summary(sums, enclosure), terminal_);
+            }
+        }
+        if (loaded_) {
+            report_buried(sums, terminal_);
+        }
+        report_leaks(enclosure, factors_.matrix, names(), loaded_ ? &loaded_->mesh : nullptr,
+                     arguments_.rows.max_row_error, terminal_);
+        return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
+    }
+
+    void report_groups(const RowSums& sums) {
+        const GroupFactors groups = sum_groups(factors_, arguments_.scene.path);
+        if (table_goes_to_file(arguments_)) {
+            io::write_group_factors_csv(*arguments_.output, factors_.groups, groups);
+        }
+        seconds_["total"] = total_.seconds();
+        if (arguments_.common.json) {
+            print_json({{"schema", "hemi/factors/1"},
+                        {"renderer", factors_.provenance.renderer},
+                        {"patches", factors_.matrix.size()},
+                        {"groups", factors_.groups},
+                        {"areas", groups.areas},
+                        {"factors", rows_json(groups.factors, groups.groups)},
+                        {"environment", groups.environment},
+                        {"blocked", groups.blocked},
+                        {"row_sum", row_sum_json(sums)},
+                        {"repair", repair_json(*factors_.repair, seconds_["repair"])},
+                        {"error_estimate", error_json(factors_.error)},
+                        {"seconds", seconds_.json()}});
+        } else if (!table_goes_to_file(arguments_)) {
+            print(groups_table(factors_.groups, groups));
+        }
+    }
+
+    [[nodiscard]] std::string summary(const RowSums& sums, const EnclosureFinding& enclosure) const {
+        std::string text = scene_summary(loaded_->mesh) + rows_summary(factors_, sums, enclosure) +
+                           repair_summary(*factors_.repair) + chosen_summary(factors_.provenance.chosen_for) +
+                           error_summary(factors_.error) + seconds_.summary();
+        if (arguments_.output && !is_standard_output(*arguments_.output)) {
+            const bool repaired = factors_.repair->repair != Repair::none;
+            const char* const which = !repaired                            ? ""
+                                      : holds_raw_rows(*arguments_.output) ? " (rows before repair)"
+                                                                           : " (rows after repair)";
+            text += summary_line("written", arguments_.output->string() + which);
+        }
+        return text;
+    }
+
+    [[nodiscard]] Json summary_json(const RowSums& sums) {
+        const std::string& chosen = factors_.provenance.chosen_for;
+        return {{"schema", "hemi/factors/1"},
+                {"renderer", factors_.provenance.renderer},
+                {"patches", factors_.matrix.size()},
+                {"groups", factors_.groups},
+                {"entries", factors_.matrix.entries()},
+                {"memory", factors_.matrix.memory_bytes()},
+                {"row_sum", row_sum_json(sums)},
+                {"environment_max", sums.environment_max},
+                {"blocked_max", sums.blocked_max},
+                {"repair", repair_json(*factors_.repair, seconds_["repair"])},
+                {"chosen_for", chosen.empty() ? Json(nullptr) : Json(chosen)},
+                {"error_estimate", error_json(factors_.error)},
+                {"seconds", seconds_.json()}};
+    }
+
+    const FactorsArguments& arguments_;
+    const Outputs& outputs_;
+    const Terminal& terminal_;
+    TerminalObserver observer_;
+    RowCheckpoint* checkpoint_;
+    Stopwatch total_;
+    Seconds seconds_;
+    std::optional<LoadedScene> loaded_;
+    FormFactors factors_;
+    Diagnostics diagnostics_;
+};
+
+void check_point_options(const FactorsArguments& arguments) {
+    if (!is_scene(arguments)) {
+        throw InvalidArgument(fmt::format("--from-point does not apply to {}, which is not a scene",
+                                          arguments.scene.path.string()));
+    }
+    static const std::vector<std::string> allowed{"--from-point", "--patch-size",      "--patches-per-face",
+                                                  "--two-sided",  "--skip-degenerate", "--json",
+                                                  "--quiet",      "--verbose",         "--color"};
+    for (const std::string& option : arguments.common.given) {
+        if (std::find(allowed.begin(), allowed.end(), option) == allowed.end()) {
+            throw InvalidArgument(
+                fmt::format("{} does not apply to --from-point, which needs no rows", option));
+        }
+    }
 }
 
 } // namespace
 
 ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     const Outputs outputs = check_outputs(arguments);
-    return keeping_rows(factor_file(arguments), arguments.rows.resume, terminal,
-                        [&](KeptRows& kept) { return run(arguments, outputs, terminal, kept); });
+    const auto output = factor_file(arguments);
+    if (arguments.from_point) {
+        check_point_options(arguments);
+        const LoadedScene loaded = load_scene(arguments.scene, terminal);
+        show_point(loaded.mesh, *arguments.from_point, loaded.names(), arguments.common.json);
+        return ExitStatus::ok;
+    }
+    return with_checkpoint(output, arguments.rows.resume, terminal, [&](RowCheckpoint* checkpoint) {
+        return Factors(arguments, outputs, terminal, checkpoint).run();
+    });
 }
 
 } // namespace hemi::cli

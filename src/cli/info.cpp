@@ -1,13 +1,13 @@
 #include "cli/commands.hpp"
-#include "cli/error_report.hpp"
-#include "cli/outputs.hpp"
-#include "cli/pipeline.hpp"
-#include "cli/report.hpp"
-#include "cli/stored_factors.hpp"
-#include "engine/hemicube/draw_list.hpp"
+#include "cli/loaded_scene.hpp"
+#include "cli/output_paths.hpp"
+#include "cli/report/factor_report.hpp"
+#include "cli/report/text.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/io/factor_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/pipeline/cost.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -51,59 +51,7 @@ std::vector<GroupCounts> count_groups(const PatchMesh& mesh) {
     return groups;
 }
 
-struct Cost {
-    double entries_per_row = 0.0;
-    std::uint64_t memory = 0;
-    double seconds = 0.0;
-    std::string renderer; ///< empty: a rule of thumb, nothing was measured
-    unsigned cores = 1;
-};
-
-/// A rule of thumb, from scenes of 2,000 to 20,000 patches. A patch sees about half of the others; texels
-/// show only one of those that share one. On the software rasteriser a hemicube of resolution 128 takes a
-/// core 0.5 ms and 1 µs more for every polygon drawn, a third more where what is hidden is counted too; then
-/// a pair takes 0.1 µs.
-Cost rule_of_thumb(const PatchMesh& mesh, const RowOptions& options) {
-    const double patches = mesh.size();
-    const RowPlan plan = plan_rows(options, mesh.size());
-    const double resolution = plan.hemicube.resolution;
-    const double texels = 3.0 * resolution * resolution;
-    const double in_view = 0.5 * patches;
-    Cost cost;
-    cost.cores = options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency());
-    const auto polygons = static_cast<double>(count_draw_polygons(mesh, options.merge));
-    const double hemicube = 0.1e-3 + 0.4e-3 * resolution * resolution / (128.0 * 128.0) + 1e-6 * polygons;
-    const double hemicubes = patches * plan.hemicube.eye_points;
-    if (plan.hybrid) {
-        const double pairs = 0.5 * patches * patches;
-        cost.entries_per_row = in_view;
-        cost.memory = static_cast<std::uint64_t>(patches * (1.2 * (9.0 * in_view + 25.0) + 4.0 * patches));
-        cost.seconds = (1.33 * hemicube * hemicubes + 0.1e-6 * pairs) / cost.cores;
-    } else {
-        cost.entries_per_row = texels * -std::expm1(-in_view / texels);
-        cost.memory = static_cast<std::uint64_t>(1.2 * patches * (8.0 * cost.entries_per_row + 25.0));
-        cost.seconds = hemicube * hemicubes / cost.cores;
-    }
-    return cost;
-}
-
-Cost measure(const PatchMesh& mesh, const RowOptions& options) {
-    const RowPlan plan = plan_rows(options, mesh.size());
-    const auto engine = make_engine(mesh, plan.hemicube, options);
-    const auto take = [&engine](const auto& estimate) {
-        Cost cost;
-        cost.entries_per_row = estimate.entries_per_row;
-        cost.memory = estimate.memory_bytes;
-        cost.seconds = estimate.seconds;
-        cost.renderer = engine->renderer();
-        return cost;
-    };
-    const auto patches = all_patches(mesh.size());
-    return plan.hybrid ? take(estimate_visibility_weighted(*engine, patches))
-                       : take(estimate_matrix(*engine, patches));
-}
-
-std::string cost_text(const Cost& cost, const PatchMesh& mesh) {
+std::string cost_text(const FactorCost& cost, const PatchMesh& mesh) {
     std::string text =
         summary_line("memory", fmt::format("about {} for {} rows of {:.0f} entries", memory_text(cost.memory),
                                            count_text(mesh.size()), cost.entries_per_row));
@@ -138,7 +86,7 @@ std::string contents_text(const Contents& contents) {
                                                number_text(bounds.lower.y), number_text(bounds.lower.z),
                                                number_text(bounds.upper.x), number_text(bounds.upper.y),
                                                number_text(bounds.upper.z)));
-    text += summary_line("enclosure", enclosure_name(scene.enclosure));
+    text += summary_line("enclosure", to_word(scene.enclosure));
     text += summary_line("environment", values_text(scene.environment));
     text += summary_line("camera", scene.camera ? "yes" : "no");
     return text;
@@ -189,7 +137,7 @@ Json contents_json(const Contents& contents) {
             {"bounds",
              {{"lower", {bounds.lower.x, bounds.lower.y, bounds.lower.z}},
               {"upper", {bounds.upper.x, bounds.upper.y, bounds.upper.z}}}},
-            {"enclosure", enclosure_name(scene.enclosure)},
+            {"enclosure", to_word(scene.enclosure)},
             {"environment", scene.environment},
             {"camera", scene.camera.has_value()},
             {"groups", groups},
@@ -205,8 +153,8 @@ Json with_head(const char* kind, const Json& body) {
 void show_scene(const InfoArguments& arguments, const Terminal& terminal) {
     const LoadedScene loaded = load_scene(arguments.scene, terminal);
     const Contents contents{loaded.scene, loaded.mesh};
-    const Cost cost =
-        arguments.measure ? measure(loaded.mesh, arguments.rows) : rule_of_thumb(loaded.mesh, arguments.rows);
+    const FactorCost cost = arguments.measure ? measure_cost(loaded.mesh, arguments.rows.factors)
+                                              : estimate_cost(loaded.mesh, arguments.rows.factors);
     if (arguments.common.json) {
         Json object = with_head("scene", contents_json(contents));
         object["estimate"] = {{"measured", arguments.measure},
@@ -226,24 +174,30 @@ void show_result(const InfoArguments& arguments) {
     const Contents contents{result.scene, mesh};
     if (arguments.common.json) {
         Json object = with_head("result", contents_json(contents));
-        object["renderer"] = result.renderer;
-        object["solver"] = {
-            {"name", result.solver}, {"sweeps", result.sweeps}, {"residual", result.residual}};
-        object["chosen_for"] = result.chosen_for;
-        object["error_estimate"] = error_json(result.factor_error, result.radiosity_error);
+        object["renderer"] = result.solution.renderer;
+        object["solver"] = {{"name", to_word(result.solution.method)},
+                            {"sweeps", result.solution.sweeps},
+                            {"residual", result.solution.residual}};
+        object["chosen_for"] = result.solution.chosen_for;
+        object["error_estimate"] = error_json(result.solution.factor_error, result.solution.error);
         print_json(object);
     } else {
-        print(contents_text(contents) + summary_line("renderer", result.renderer) +
-              summary_line("solver", fmt::format("{}, {}, residual {:.3g}", result.solver,
-                                                 plural(result.sweeps, "sweep", "sweeps"), result.residual)) +
-              chosen_summary(result.chosen_for) + error_summary(result.factor_error, result.radiosity_error) +
-              tables_text(contents));
+        print(contents_text(contents) + summary_line("renderer", result.solution.renderer) +
+              summary_line("solver", fmt::format("{}, {}, residual {:.3g}", to_word(result.solution.method),
+                                                 plural(result.solution.sweeps, "sweep", "sweeps"),
+                                                 result.solution.residual)) +
+              chosen_summary(result.solution.chosen_for) +
+              error_summary(result.solution.factor_error, result.solution.error) + tables_text(contents));
     }
 }
 
+std::string_view preset_word(const Provenance& provenance) {
+    return provenance.preset ? to_word(*provenance.preset) : "none";
+}
+
 void show_factors(const InfoArguments& arguments) {
-    const io::FactorFile file = io::read_hff(arguments.scene.path);
-    const RowSums sums = row_sums(file.factors);
+    const FormFactors file = io::read_hff(arguments.scene.path);
+    const RowSums sums = row_sums(file.matrix);
     std::vector<double> areas(file.groups.size(), 0.0);
     std::vector<std::uint64_t> patches(file.groups.size(), 0);
     for (std::size_t i = 0; i < file.group_of.size(); ++i) {
@@ -255,38 +209,40 @@ void show_factors(const InfoArguments& arguments) {
         for (std::size_t g = 0; g < areas.size(); ++g) {
             groups.push_back({{"name", file.groups[g]}, {"patches", patches[g]}, {"area", areas[g]}});
         }
-        print_json(with_head("factors", {{"patches", file.factors.size()},
+        print_json(with_head("factors", {{"patches", file.matrix.size()},
                                          {"rows", sums.known},
-                                         {"entries", file.factors.entries()},
-                                         {"memory", file.factors.memory_bytes()},
-                                         {"preset", file.preset},
-                                         {"method", file.method},
-                                         {"resolution", file.resolution},
-                                         {"eye_points", file.eye_points},
-                                         {"shadow_rays", file.shadow_rays},
-                                         {"seed", file.seed},
-                                         {"renderer", file.renderer},
-                                         {"enclosure", file.enclosure},
+                                         {"entries", file.matrix.entries()},
+                                         {"memory", file.matrix.memory_bytes()},
+                                         {"preset", preset_word(file.provenance)},
+                                         {"method", to_word(file.provenance.method)},
+                                         {"resolution", file.provenance.resolution},
+                                         {"eye_points", file.provenance.eye_points},
+                                         {"shadow_rays", file.provenance.shadow_rays},
+                                         {"seed", file.provenance.seed},
+                                         {"renderer", file.provenance.renderer},
+                                         {"enclosure", to_word(file.enclosure)},
                                          {"geometry_hash", fmt::format("{:016x}", file.geometry_hash)},
                                          {"row_sum", row_sum_json(sums)},
-                                         {"chosen_for", file.chosen_for},
+                                         {"chosen_for", file.provenance.chosen_for},
                                          {"error_estimate", error_json(file.error)},
                                          {"groups", groups}}));
         return;
     }
-    std::string text = summary_line("patches", count_text(file.factors.size()));
+    std::string text = summary_line("patches", count_text(file.matrix.size()));
     text += summary_line("rows", fmt::format("{} computed", count_text(sums.known)));
-    text += summary_line("entries", fmt::format("{}, {}", count_text(file.factors.entries()),
-                                                memory_text(file.factors.memory_bytes())));
+    text += summary_line("entries", fmt::format("{}, {}", count_text(file.matrix.entries()),
+                                                memory_text(file.matrix.memory_bytes())));
     text += summary_line(
-        "made by", fmt::format("{}, preset {}, resolution {}, {}, {}, seed {}", file.method, file.preset,
-                               file.resolution, plural(file.eye_points, "eye point", "eye points"),
-                               plural(file.shadow_rays, "shadow ray", "shadow rays"), file.seed));
-    text += summary_line("renderer", file.renderer);
-    text += summary_line("enclosure", file.enclosure);
+        "made by",
+        fmt::format("{}, preset {}, resolution {}, {}, {}, seed {}", to_word(file.provenance.method),
+                    preset_word(file.provenance), file.provenance.resolution,
+                    plural(file.provenance.eye_points, "sample point", "sample points"),
+                    plural(file.provenance.shadow_rays, "shadow ray", "shadow rays"), file.provenance.seed));
+    text += summary_line("renderer", file.provenance.renderer);
+    text += summary_line("enclosure", to_word(file.enclosure));
     text += summary_line("geometry", fmt::format("{:016x}", file.geometry_hash));
     text += summary_line("row sums", row_sum_text(sums));
-    text += chosen_summary(file.chosen_for) + error_summary(file.error);
+    text += chosen_summary(file.provenance.chosen_for) + error_summary(file.error);
     Table groups({"group", "patches", "area"});
     for (std::size_t g = 0; g < areas.size(); ++g) {
         groups.add({file.groups[g], count_text(patches[g]), number_text(areas[g])});
@@ -295,7 +251,7 @@ void show_factors(const InfoArguments& arguments) {
 }
 
 void show_foreign_factors(const InfoArguments& arguments) {
-    const FormFactorMatrix factors = read_factors(arguments.scene.path).factors;
+    const FormFactorMatrix factors = io::read_factors(arguments.scene.path).matrix;
     const RowSums sums = row_sums(factors);
     if (arguments.common.json) {
         print_json(with_head("factors", {{"patches", factors.size()},
@@ -325,7 +281,7 @@ ExitStatus run(const InfoArguments& arguments, const Terminal& terminal) {
         show_result(arguments);
     } else if (extension == ".hff") {
         show_factors(arguments);
-    } else if (is_foreign_factor_file(path)) {
+    } else if (io::factor_content(path)) {
         show_foreign_factors(arguments);
     } else {
         throw InvalidArgument(

@@ -1,9 +1,13 @@
-#include "cli/arguments.hpp"
+#include "cli/arguments/arguments.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_status.hpp"
-#include "cli/report.hpp"
+#include "cli/report/text.hpp"
 #include "cli/signals.hpp"
 #include "cli/terminal.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
 
 #include <exception>
 #include <new>
@@ -21,6 +25,15 @@ Terminal terminal_for(const Arguments& arguments) {
         arguments);
 }
 
+/// The message, with the options by which the settings that it names are spelled.
+std::string with_options(const std::exception& error) {
+    const auto* const ours = dynamic_cast<const hemi::Error*>(&error);
+    if (ours == nullptr || ours->settings().empty()) {
+        return error.what();
+    }
+    return fmt::format("{} (--{})", error.what(), fmt::join(ours->settings(), ", --"));
+}
+
 /// Whatever went wrong, once the user has interrupted that was the cause: for example workers that ended by
 /// the same Ctrl-C.
 ExitStatus report(const std::exception& error, const Terminal& terminal) {
@@ -30,7 +43,7 @@ ExitStatus report(const std::exception& error, const Terminal& terminal) {
     } else if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
         terminal.error("out of memory; larger patches or a lower --resolution need less");
     } else {
-        terminal.error(error.what());
+        terminal.error(with_options(error));
     }
     return status;
 }

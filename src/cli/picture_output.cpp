@@ -1,11 +1,10 @@
 #include "cli/picture_output.hpp"
 
-#include "cli/report.hpp"
-#include "cli/walk_in.hpp"
-#include "core/nearest_word.hpp"
+#include "cli/report/text.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/nearest_word.hpp"
 #include "hemi/display/picture.hpp"
-#include "hemi/io/image_file.hpp"
+#include "hemi/pipeline/picture.hpp"
 
 #include <fmt/format.h>
 
@@ -53,9 +52,7 @@ std::array<std::uint32_t, 3> channels_to_show(const std::vector<std::string>& ch
 
 Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOptions& options) {
     const std::optional<CameraOption>& option = options.camera;
-    Camera camera = scene.camera ? *scene.camera
-                    : option     ? default_camera(mesh.bounds())
-                                 : interior_camera(mesh).value_or(default_camera(mesh.bounds()));
+    Camera camera = option ? scene.camera.value_or(default_camera(mesh.bounds())) : scene_camera(scene, mesh);
     camera.orthographic = options.orthographic || (camera.orthographic && !option);
     if (option) {
         camera.eye = option->eye;
@@ -72,14 +69,6 @@ Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOpt
     return camera;
 }
 
-std::array<float, 3> shown_environment(const Scene& scene, const std::array<std::uint32_t, 3>& show) {
-    std::array<float, 3> shown{};
-    for (std::size_t k = 0; k < 3 && !scene.environment.empty(); ++k) {
-        shown[k] = static_cast<float>(scene.environment[show[k]]);
-    }
-    return shown;
-}
-
 PictureSettings picture_settings(const PictureOptions& options) {
     PictureSettings settings;
     settings.width = options.size[0];
@@ -93,29 +82,21 @@ PictureSettings picture_settings(const PictureOptions& options) {
     return settings;
 }
 
-WrittenPicture write_picture(const PictureSubject& subject, const PictureOptions& options,
-                             const std::string& device) {
-    const auto channels = static_cast<std::uint32_t>(subject.scene.channels.size());
-    const auto show = channels_to_show(subject.scene.channels, options.show);
-    PictureMesh drawn = make_picture_mesh(subject.mesh, channels, subject.radiosity, subject.blocked, show);
-    drawn.environment = shown_environment(subject.scene, show);
-    PictureSettings settings = picture_settings(options);
-    if (!options.exposure) {
-        settings.exposure =
-            automatic_exposure(subject.mesh, drawn, subject.blocked, subject.exitance, channels);
-    }
-    const Picture picture =
-        draw_picture(drawn, choose_camera(subject.scene, subject.mesh, options), settings, device);
-    if (extension_of(*options.output) == ".hdr") {
-        io::write_hdr(*options.output, picture.width, picture.height, picture.linear);
-    } else {
-        io::write_png(*options.output, picture.width, picture.height, picture.srgb);
-    }
+WrittenPicture write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
+                             const PictureOptions& options, const std::string& device) {
+    DrawSettings settings;
+    settings.picture = picture_settings(options);
+    settings.automatic_exposure = !options.exposure;
+    settings.camera = choose_camera(scene, mesh, options);
+    settings.show = channels_to_show(scene.channels, options.show);
+    settings.device = device;
+    const DrawnPicture drawn = draw_solution(scene, mesh, solution, settings);
+    hemi::write_picture(*options.output, drawn.picture);
     return {fmt::format("{} ({} x {}, exposure {}{})",
                         is_standard_output(*options.output) ? "standard output" : options.output->string(),
-                        picture.width, picture.height, number_text(settings.exposure),
+                        drawn.picture.width, drawn.picture.height, number_text(drawn.exposure),
                         options.exposure ? "" : ", automatic"),
-            settings.exposure};
+            drawn.exposure};
 }
 
 } // namespace hemi::cli

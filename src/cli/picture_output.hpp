@@ -1,8 +1,10 @@
 #pragma once
 
-#include "cli/arguments.hpp"
-#include "cli/outputs.hpp"
+#include "cli/arguments/arguments.hpp"
+#include "cli/output_paths.hpp"
+#include "hemi/display/picture.hpp"
 #include "hemi/scene/patch_mesh.hpp"
+#include "hemi/solver/solution.hpp"
 
 #include <array>
 #include <cstdint>
@@ -25,21 +27,8 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options);
 /// bounds; with `--orthographic`.
 [[nodiscard]] Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOptions& options);
 
-/// Exitance of the environment in the channels shown: what lies behind all surfaces.
-[[nodiscard]] std::array<float, 3> shown_environment(const Scene& scene,
-                                                     const std::array<std::uint32_t, 3>& show);
-
 /// How a picture is drawn; with an exposure of 1 where it is automatic.
 [[nodiscard]] PictureSettings picture_settings(const PictureOptions& options);
-
-/// What a picture shows; arrays as in Solution.
-struct PictureSubject {
-    const Scene& scene;
-    const PatchMesh& mesh;
-    std::span<const double> radiosity;
-    std::span<const double> exitance;
-    std::span<const double> blocked;
-};
 
 struct WrittenPicture {
     std::string text; ///< one line: the path, the size, the exposure
@@ -48,7 +37,7 @@ struct WrittenPicture {
 
 /// Draws and writes the picture.
 /// @throws NoDevice, GlError, IoError
-WrittenPicture write_picture(const PictureSubject& subject, const PictureOptions& options,
-                             const std::string& device);
+WrittenPicture write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
+                             const PictureOptions& options, const std::string& device);
 
 } // namespace hemi::cli

@@ -58,9 +58,6 @@ ProgressBar::~ProgressBar() {
 }
 
 bool ProgressBar::update(std::size_t done, std::size_t total) {
-    if (const auto& listener = terminal_.progress_listener()) {
-        return listener(title_, unit_, done, total) && !interrupted();
-    }
     if (total > 0 && !terminal_.quiet()) {
         const Clock::time_point now = Clock::now();
         if (!terminal_.can_redraw()) {
@@ -70,10 +67,6 @@ bool ProgressBar::update(std::size_t done, std::size_t total) {
         }
     }
     return !interrupted();
-}
-
-Progress ProgressBar::callback() {
-    return [this](std::size_t done, std::size_t total) { return update(done, total); };
 }
 
 void ProgressBar::draw(std::size_t done, std::size_t total, Clock::time_point now) {

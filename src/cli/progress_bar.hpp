@@ -1,7 +1,6 @@
 #pragma once
 
 #include "cli/terminal.hpp"
-#include "hemi/core/progress.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -26,9 +25,6 @@ public:
 
     /// @return false once SIGINT or SIGTERM has arrived.
     bool update(std::size_t done, std::size_t total);
-
-    /// update() for those who ask for a callback; valid as long as this object.
-    [[nodiscard]] Progress callback();
 
 private:
     using Clock = std::chrono::steady_clock;

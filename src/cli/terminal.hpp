@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/diagnostics.hpp"
+#include "hemi/core/names.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -10,6 +11,7 @@
 
 namespace hemi::cli {
 
+/// When messages are coloured.
 enum class ColourChoice { automatic, always, never };
 
 /// Messages for people, on stderr. Standard output is left to data.
@@ -26,13 +28,6 @@ public:
     /// Whether a line on stderr may be drawn again and again.
     [[nodiscard]] bool can_redraw() const noexcept { return can_redraw_; }
 
-    /// Hands progress to `listener` instead of showing it: what is done, what is counted, how much of how
-    /// much. The work stops where it returns false.
-    using ProgressListener = std::function<bool(std::string_view title, std::string_view unit,
-                                                std::size_t done, std::size_t total)>;
-    void set_progress_listener(ProgressListener listener) { progress_listener_ = std::move(listener); }
-    [[nodiscard]] const ProgressListener& progress_listener() const noexcept { return progress_listener_; }
-
     void error(std::string_view message) const;
     void warn(std::string_view message) const;
     void warn(const Diagnostics& diagnostics) const;
@@ -48,7 +43,15 @@ private:
     bool verbose_;
     bool colours_;
     bool can_redraw_;
-    ProgressListener progress_listener_;
 };
 
 } // namespace hemi::cli
+
+namespace hemi {
+template <>
+struct Names<cli::ColourChoice> {
+    static constexpr NamedValue<cli::ColourChoice> table[] = {{cli::ColourChoice::automatic, "auto"},
+                                                              {cli::ColourChoice::always, "always"},
+                                                              {cli::ColourChoice::never, "never"}};
+};
+} // namespace hemi

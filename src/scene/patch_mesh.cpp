@@ -269,4 +269,15 @@ std::uint64_t PatchMesh::geometry_hash() const {
     return hash.value();
 }
 
+std::vector<double> patch_values(const PatchMesh& mesh, std::span<const Material> materials,
+                                 std::vector<double> Material::*property) {
+    std::vector<double> values;
+    values.reserve(mesh.size() * (materials.empty() ? 0 : (materials[0].*property).size()));
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const std::vector<double>& of_material = materials[mesh.material(i)].*property;
+        values.insert(values.end(), of_material.begin(), of_material.end());
+    }
+    return values;
+}
+
 } // namespace hemi

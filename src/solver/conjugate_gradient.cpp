@@ -228,7 +228,7 @@ private:
 ChannelField solve_by_conjugate_gradients(const RadiositySystem& system, std::span<const double> areas,
                                           const SolverRun& run) {
     GradientSolver solver(system, areas);
-    RadiositySolution& solution = run.solution;
+    Solution& solution = run.solution;
     const double tolerance = run.settings.tolerance;
     solution.residual = solver.renew_residual();
     while (solution.residual > tolerance) {

@@ -110,10 +110,7 @@ void SolverRun::count(double residual, const std::function<std::vector<double>()
         solution.residual = residual;
         fail("the values are no longer finite");
     }
-    if (settings.watch) {
-        settings.watch(solution.sweeps, residual, radiosity);
-    }
-    if (callback && !callback(solution.sweeps, residual)) {
+    if (settings.watch && !settings.watch(solution.sweeps, residual, radiosity)) {
         throw Cancelled();
     }
 }

@@ -54,8 +54,7 @@ private:
 /// What every method needs to stop and to say why it failed.
 struct SolverRun {
     const SolverSettings& settings;
-    const SweepCallback& callback;
-    RadiositySolution& solution;
+    Solution& solution;
 
     /// Counts a sweep, shows `radiosity()` to who watches, and calls back.
     /// @throws Cancelled; NotConverged if the residual is not finite

@@ -59,7 +59,7 @@ void check_values(const RadiosityProblem& problem) {
 /// A method and a sentence on why it is the one.
 struct Choice {
     SolverMethod method;
-    std::string why;
+    std::string reason;
 };
 
 std::string pair_text(const Reciprocity& pairs) {
@@ -69,35 +69,37 @@ std::string pair_text(const Reciprocity& pairs) {
 
 /// @throws InvalidArgument if conjugate gradients are asked for and cannot be used
 Choice choose(const RadiosityProblem& problem, const SolverSettings& settings, double dominance) {
-    constexpr double much = 0.9; // Gauss-Seidel needs some 110 sweeps to 1e-10 there, and ten times as many
-                                 // for every nine that follows
+    // Gauss-Seidel needs some 110 sweeps to 1e-10 there, and ten times as many for every nine that follows.
+    constexpr double high_dominance = 0.9;
     const bool asked = settings.method == SolverMethod::conjugate_gradient;
     if (!asked && settings.method != SolverMethod::automatic) {
         return {settings.method, "as asked for"};
     }
-    const auto sweeps = [](const std::string& why) { return Choice{SolverMethod::gauss_seidel, why}; };
-    const std::string dominance_text = fmt::format("reflectance times row sum is {:.6g} at most", dominance);
-    if (!asked && dominance <= much) {
-        return sweeps(dominance_text + ": a few sweeps will do");
+    const auto sweeps = [](const std::string& reason) { return Choice{SolverMethod::gauss_seidel, reason}; };
+    const std::string dominance_text =
+        fmt::format("the largest reflectance times row sum is {:.6g}", dominance);
+    if (!asked && dominance <= high_dominance) {
+        return sweeps(dominance_text + ": sweeps converge quickly");
     }
     if (problem.areas.empty()) {
         if (asked) {
             throw InvalidArgument("conjugate gradients need the areas of the patches");
         }
-        return sweeps(dominance_text + ", but without areas there are no conjugate gradients");
+        return sweeps(dominance_text + ", but conjugate gradients need areas, which are not known");
     }
     const Reciprocity pairs = reciprocity(*problem.factors, problem.areas);
     if (is_reciprocal(pairs)) {
         return {SolverMethod::conjugate_gradient,
-                asked
-                    ? "as asked for"
-                    : dominance_text + " and the rows are reciprocal: conjugate gradients do not slow down"};
+                asked ? "as asked for"
+                      : dominance_text +
+                            " and the rows are reciprocal: conjugate gradients converge as quickly as ever"};
     }
     if (asked) {
-        throw InvalidArgument(fmt::format(
-            "conjugate gradients need reciprocal rows, and {}; --repair closure (or reciprocity) makes them "
-            "so, Gauss-Seidel can do without",
-            pair_text(pairs)));
+        throw InvalidArgument(fmt::format("conjugate gradients need reciprocal rows, and {}; repair the rows "
+                                          "(closure or reciprocity), or use "
+                                          "Gauss-Seidel, which does not need them",
+                                          pair_text(pairs)),
+                              {"repair", "solver"});
     }
     return sweeps(fmt::format("{}, but the rows are not reciprocal, as conjugate gradients need them ({})",
                               dominance_text, pair_text(pairs)));
@@ -105,22 +107,7 @@ Choice choose(const RadiosityProblem& problem, const SolverSettings& settings, d
 
 } // namespace
 
-std::string_view solver_name(SolverMethod method) {
-    switch (method) {
-    case SolverMethod::jacobi:
-        return "jacobi";
-    case SolverMethod::conjugate_gradient:
-        return "cg";
-    case SolverMethod::automatic:
-        return "auto";
-    case SolverMethod::gauss_seidel:
-        break;
-    }
-    return "gauss-seidel";
-}
-
-RadiositySolution solve_radiosity(const RadiosityProblem& problem, const SolverSettings& settings,
-                                  const SweepCallback& callback) {
+Solution solve_radiosity(const RadiosityProblem& problem, const SolverSettings& settings) {
     check_sizes(problem);
     check_values(problem);
     if (!(settings.tolerance > 0.0) || !std::isfinite(settings.tolerance)) {
@@ -137,12 +124,14 @@ RadiositySolution solve_radiosity(const RadiosityProblem& problem, const SolverS
         }
     }
     const RadiositySystem system(problem);
-    RadiositySolution solution;
+    Solution solution;
+    solution.channels = problem.channels;
+    solution.channels_solved = problem.channels;
     solution.dominance = system.dominance();
     Choice choice = choose(problem, settings, solution.dominance);
     solution.method = choice.method;
-    solution.why = std::move(choice.why);
-    const SolverRun run{settings, callback, solution};
+    solution.reason = std::move(choice.reason);
+    const SolverRun run{settings, solution};
     solution.radiosity = system.unscaled(solution.method == SolverMethod::conjugate_gradient
                                              ? solve_by_conjugate_gradients(system, problem.areas, run)
                                              : solve_by_sweeps(system, run));

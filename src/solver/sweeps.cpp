@@ -123,7 +123,7 @@ private:
 
 ChannelField solve_by_sweeps(const RadiositySystem& system, const SolverRun& run) {
     const SolverSettings& settings = run.settings;
-    RadiositySolution& solution = run.solution;
+    Solution& solution = run.solution;
     Sweeper sweeper(system);
     ChannelField radiosity = settings.start.empty() ? system.source() : system.scaled(settings.start);
     const bool jacobi = solution.method == SolverMethod::jacobi;

@@ -1,5 +1,7 @@
 #include "viewer/application.hpp"
 
+#include "hemi/pipeline/settings.hpp"
+
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/io/image_file.hpp"
@@ -39,7 +41,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 
 Application::Application(ViewerInput input, const ViewerSettings& settings)
     : settings_(settings),
-      window_(input.title, input.picture.width, input.picture.height, !settings.script.empty()),
+      window_(input.title(), input.picture.width, input.picture.height, !settings.script.empty()),
       navigator_(settings.controls, input.mesh, input.camera), opener_(settings.open, Window::wake) {
     choices_.look.shading = input.picture.shading;
     choices_.look.tone_mapping = input.picture.tone_mapping;
@@ -67,8 +69,8 @@ void Application::exchange(ViewerInput input) {
     choices_.materials = input.scene->materials;
     inset_.reset();
     document_.reset(); // whose threads end first
-    document_ = std::make_unique<Document>(std::move(input), Window::wake);
-    const auto channels = document_->input().channels;
+    document_ = std::make_unique<Document>(std::move(input), factor_cache_, Window::wake);
+    const auto channels = document_->input().channels();
     if (choices_.look.channel && *choices_.look.channel >= channels) {
         choices_.look.channel.reset();
     }
@@ -330,7 +332,7 @@ void Application::settle() {
     picked_.reset();
     if (choices_.picked) {
         picked_ = PickedPatch{*choices_.picked, {}};
-        if (input.rows.factors != nullptr) {
+        if (input.factors != nullptr) {
             picked_->partners =
                 largest_partners(input, document_->light(), *choices_.picked, quantity == Quantity::column,
                                  choices_.partners_by_light, partner_count);
@@ -354,7 +356,10 @@ void Application::draw_hemicube() {
     }
     const ViewerInput& input = document_->input();
     if (!inset_) {
-        inset_.emplace(*input.mesh, input.hemicube, window_);
+        inset_.emplace(
+            *input.mesh,
+            plan_rows(input.factor_settings.value_or(FactorSettings{}), input.mesh->size()).hemicube,
+            window_);
     }
     inset_->look(*choices_.picked, choices_.hemicube_eye);
     inset_->paint(choices_.hemicube_ids ? item_colours(*input.mesh) : view_.colours());
@@ -362,7 +367,7 @@ void Application::draw_hemicube() {
 
 void Application::update_title() {
     const std::string title = fmt::format(
-        "{} - exposure {:.3g}, {} - {}", document_->input().title,
+        "{} - exposure {:.3g}, {} - {}", document_->input().title(),
         document_->exposure() * std::exp2(choices_.look.stops),
         choices_.look.tone_mapping == ToneMapping::filmic ? "filmic" : "linear", window_.renderer());
     if (title != title_) {

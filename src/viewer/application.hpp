@@ -123,6 +123,7 @@ private:
     bool lost_ = true; ///< what the window holds is not what was drawn last
     bool closing_ = false;
 
+    std::shared_ptr<FactorCache> factor_cache_ = std::make_shared<FactorCache>();
     std::unique_ptr<Document> document_;
     Opener opener_;
     std::optional<FileWatch> watch_;

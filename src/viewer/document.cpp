@@ -1,5 +1,8 @@
 #include "viewer/document.hpp"
 
+#include "hemi/io/result_file.hpp"
+#include "hemi/pipeline/picture.hpp"
+
 #include "display/picture_mesh.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
@@ -10,14 +13,13 @@
 
 namespace hemi::viewer {
 
-Document::Document(ViewerInput input, std::function<void()> wake)
+Document::Document(ViewerInput input, std::shared_ptr<FactorCache> cache, std::function<void()> wake)
     : input_(std::move(input)), wake_(std::move(wake)), surfaces_(*input_.mesh),
-      materials_(input_.scene->materials), light_{input_.reflectance, input_.exitance, {}, {}},
-      blocked_(input_.rows.blocked), exposure_(input_.picture.exposure),
-      exposure_settled_(!input_.automatic_exposure) {
-    show_light(input_.radiosity, input_.find_rows ? State::lamps : State::solved);
-    if (input_.find_rows) {
-        finder_.emplace(input_.find_rows, wake_);
+      materials_(input_.scene->materials), light_(of_materials()), blocked_(input_.solution.back_face_share),
+      exposure_(input_.picture.exposure), exposure_settled_(!input_.automatic_exposure) {
+    show_light(input_.solution.radiosity, input_.factor_settings ? State::lamps : State::solved);
+    if (input_.factor_settings) {
+        finder_.emplace(input_, std::move(cache), wake_);
     }
 }
 
@@ -28,7 +30,7 @@ void Document::show_light(std::vector<double> radiosity, State state) {
         light_.known.assign(input_.mesh->size(), 0);
         for (std::size_t k = 0; k < light_.exitance.size(); ++k) {
             if (light_.exitance[k] > 0.0) {
-                light_.known[k / input_.channels] = 1;
+                light_.known[k / input_.channels()] = 1;
             }
         }
     }
@@ -45,11 +47,12 @@ void Document::make_light_mesh() {
             left_out[i] = light_.knows(i) ? left_out[i] : 1.0;
         }
     }
-    light_mesh_ =
-        make_picture_mesh(*input_.mesh, surfaces_, input_.channels, light_.radiosity, left_out, input_.show);
-    light_mesh_.environment = input_.environment;
+    light_mesh_ = make_picture_mesh(*input_.mesh, surfaces_, input_.channels(), light_.radiosity, left_out,
+                                    input_.show);
+    light_mesh_.environment = shown_environment(*input_.scene, input_.show);
     if (!exposure_settled_ && !(state_ == State::preview && gathered_ > 0)) {
-        exposure_ = automatic_exposure(*input_.mesh, light_mesh_, left_out, input_.exitance, input_.channels);
+        exposure_ = automatic_exposure(*input_.mesh, light_mesh_, left_out, input_.solution.exitance,
+                                       input_.channels());
         exposure_settled_ = state_ == State::solved;
     }
     changed_ = true;
@@ -87,9 +90,9 @@ void Document::show_gathered(const GatheredLight& gathered) {
     blocked_.resize(input_.mesh->size(), 0.0);
     for (std::size_t k = 0; k < gathered.patches.size(); ++k) {
         const std::uint32_t i = gathered.patches[k];
-        for (std::size_t c = 0; c < input_.channels; ++c) {
-            light_.radiosity[i * std::size_t{input_.channels} + c] =
-                gathered.radiosity[k * input_.channels + c];
+        for (std::size_t c = 0; c < input_.channels(); ++c) {
+            light_.radiosity[i * std::size_t{input_.channels()} + c] =
+                gathered.radiosity[k * input_.channels() + c];
         }
         blocked_[i] = gathered.blocked[k];
         if (!light_.known.empty()) {
@@ -99,6 +102,23 @@ void Document::show_gathered(const GatheredLight& gathered) {
     gathered_ += gathered.patches.size();
     work_.light = "provisional: " + gathered_text();
     make_light_mesh();
+}
+
+/// Form factors are there: what they say of rows, and of the hemicubes' scale.
+void Document::show_factors(std::shared_ptr<const FormFactors> factors) {
+    const FormFactorMatrix& matrix = factors->matrix;
+    Solution& solution = input_.solution;
+    for (std::uint32_t i = 0; i < matrix.size(); ++i) {
+        const RowView row = matrix.row(i);
+        solution.row_sum.push_back(row.sum());
+        solution.environment_share.push_back(row.environment);
+        solution.back_face_share.push_back(row.blocked);
+    }
+    solution.renderer = factors->provenance.renderer;
+    solution.factor_error = factors->error;
+    blocked_ = solution.back_face_share;
+    usual_factor_ = usual_largest_factor(matrix);
+    input_.factors = std::move(factors);
 }
 
 void Document::take_rows(bool gathered) {
@@ -114,7 +134,7 @@ void Document::take_rows(bool gathered) {
     if (!finished) {
         return;
     }
-    std::optional<FoundRows> found;
+    std::shared_ptr<const FormFactors> found;
     try {
         found = finder_->take();
     } catch (...) {
@@ -131,37 +151,38 @@ void Document::take_rows(bool gathered) {
         work_.light = "stopped: " + gathered_text();
         return;
     }
-    input_.rows = std::move(*found);
-    blocked_ = input_.rows.blocked;
-    usual_factor_ = usual_largest_factor(*input_.rows.factors);
+    show_factors(std::move(found));
     relighter_.emplace(input_, wake_);
     relighter_->ask(of_materials());
 }
 
 void Document::take_light() {
-    std::optional<Relit> relit = relighter_->take();
+    std::optional<SolveUpdate> update = relighter_->take();
     work_.waits = relighter_->waits();
-    if (!relit) {
+    if (!update) {
         return;
     }
     work_.residuals = relighter_->residuals();
+    const Solution& solution = update->solution;
     const std::string steps =
-        std::string(relit->solver == "cg" ? "iteration" : "sweep") + (relit->sweeps == 1 ? "" : "s");
-    if (!relit->problem.empty()) {
-        work_.light = "no solution: " + relit->problem;
+        std::string(solution.method == SolverMethod::conjugate_gradient ? "iteration" : "sweep") +
+        (solution.sweeps == 1 ? "" : "s");
+    if (!update->problem.empty()) {
+        work_.light = "no solution: " + update->problem;
         changed_ = true;
         return;
     }
-    work_.light = relit->converged ? fmt::format("solved in {:.2f} s: {} {} to {:.1e}", relit->seconds,
-                                                 relit->sweeps, steps, relit->residual)
-                                   : fmt::format("sweep {}: residual {:.1e}", relit->sweeps, relit->residual);
-    light_.reflectance = relit->light.reflectance;
-    light_.exitance = relit->light.exitance;
-    input_.radiosity_error = relit->error ? relit->error->patches : std::vector<double>();
-    show_light(relit->light.radiosity, relit->converged ? State::solved : State::converging);
+    work_.light = update->converged
+                      ? fmt::format("solved in {:.2f} s: {} {} to {:.1e}", solution.seconds, solution.sweeps,
+                                    steps, solution.residual)
+                      : fmt::format("sweep {}: residual {:.1e}", solution.sweeps, solution.residual);
+    light_.reflectance = update->light.reflectance;
+    light_.exitance = update->light.exitance;
+    input_.solution.error = solution.error;
+    show_light(update->light.radiosity, update->converged ? State::solved : State::converging);
     solved_.reset();
-    if (relit->converged) {
-        solved_ = std::move(relit);
+    if (update->converged) {
+        solved_ = std::move(update);
     }
 }
 
@@ -176,8 +197,8 @@ void Document::cancel() {
 }
 
 Light Document::of_materials() const {
-    return {of_patches(materials_, *input_.mesh, &Material::reflectance),
-            of_patches(materials_, *input_.mesh, &Material::exitance),
+    return {patch_values(*input_.mesh, materials_, &Material::reflectance),
+            patch_values(*input_.mesh, materials_, &Material::exitance),
             {},
             {}};
 }
@@ -204,7 +225,7 @@ void Document::start_over() {
     work_.waits = true;
     work_.light = "the lamps alone: no sweep yet";
     solved_.reset();
-    input_.radiosity_error.clear();
+    input_.solution.error.reset();
     show_light(light_.exitance, State::lamps);
     wake_();
 }
@@ -225,19 +246,31 @@ void Document::run_on() {
     }
 }
 
-const char* Document::why_not_save() const {
-    if (!input_.save_result) {
+const char* Document::unsavable_reason() const {
+    if (!input_.factor_settings) {
         return "a stored solution is stored already";
     }
     return solved_ ? nullptr : "the light is not solved yet";
 }
 
 void Document::save_result(const std::filesystem::path& path) {
-    if (const char* reason = why_not_save()) {
+    if (const char* reason = unsavable_reason()) {
         throw InvalidArgument(fmt::format("saving the result: {}", reason));
     }
-    input_.save_result(path, {materials_, light_.radiosity, solved_->error, solved_->solver, solved_->sweeps,
-                              solved_->residual});
+    Scene scene = *input_.scene;
+    scene.materials = materials_;
+    Solution solution = input_.solution;
+    const Solution& found = solved_->solution;
+    solution.radiosity = light_.radiosity;
+    solution.exitance = light_.exitance;
+    solution.irradiance = irradiance({&input_.factors->matrix, input_.channels(), light_.reflectance,
+                                      light_.exitance, scene.environment, input_.mesh->areas()},
+                                     light_.radiosity);
+    solution.method = found.method;
+    solution.sweeps = found.sweeps;
+    solution.residual = found.residual;
+    solution.error = found.error;
+    io::write_hres(path, {std::move(scene), input_.subdivision, std::move(solution)});
 }
 
 } // namespace hemi::viewer

@@ -27,8 +27,9 @@ struct Work {
 /// A scene and its light as they stand: what was opened, found, solved and changed since.
 class Document {
 public:
-    /// @param wake  called on other threads when update() has something to do
-    Document(ViewerInput input, std::function<void()> wake);
+    /// @param cache  form factors that may serve for this input too
+    /// @param wake   called on other threads when update() has something to do
+    Document(ViewerInput input, std::shared_ptr<FactorCache> cache, std::function<void()> wake);
 
     [[nodiscard]] const ViewerInput& input() const { return input_; }
     [[nodiscard]] const Light& light() const { return light_; }
@@ -65,8 +66,8 @@ public:
     void run_on();
 
     /// Why the light cannot be stored; null if it can.
-    [[nodiscard]] const char* why_not_save() const;
-    /// @throws InvalidArgument where why_not_save() has a reason; IoError
+    [[nodiscard]] const char* unsavable_reason() const;
+    /// @throws InvalidArgument where unsavable_reason() has one; IoError
     void save_result(const std::filesystem::path& path);
     /// Whether the light is that of the file as it was opened.
     [[nodiscard]] bool as_opened() const { return materials_ == input_.scene->materials; }
@@ -75,6 +76,7 @@ private:
     enum class State { lamps, preview, converging, solved };
 
     void take_rows(bool gathered);
+    void show_factors(std::shared_ptr<const FormFactors> factors);
     void show_gathered(const GatheredLight& gathered);
     void take_light();
     void show_light(std::vector<double> radiosity, State state);
@@ -96,7 +98,7 @@ private:
     State state_ = State::lamps;
     Work work_;
     bool changed_ = false;
-    std::optional<Relit> solved_;        ///< the last solution
+    std::optional<SolveUpdate> solved_;  ///< the last solution
     std::optional<Relighter> relighter_; ///< where there are form factors
     std::optional<RowFinder> finder_;    ///< while it is at work
 };

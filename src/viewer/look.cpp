@@ -74,7 +74,7 @@ double most_reflected(const std::vector<double>& radiosity, const std::vector<do
 }
 
 std::string channel_text(const ViewerInput& input, const Look& look) {
-    if (input.channels == 1) {
+    if (input.channels() == 1) {
         return "";
     }
     return look.channel ? ", " + input.scene->channels[*look.channel] : ", mean of channels";
@@ -82,7 +82,7 @@ std::string channel_text(const ViewerInput& input, const Look& look) {
 
 Field light_field(const Look& look, const ViewerInput& input, const Light& light) {
     const auto take = [&](const std::vector<double>& values) {
-        return one_channel(values, input.channels, look.channel);
+        return one_channel(values, input.channels(), look.channel);
     };
     const std::string channel = channel_text(input, look);
     if (look.quantity == Quantity::reflectance) {
@@ -94,7 +94,7 @@ Field light_field(const Look& look, const ViewerInput& input, const Light& light
         return field;
     }
     if (look.quantity == Quantity::estimated_error) {
-        Field field{"Radiosity, estimated error" + channel, "W/m²", take(input.radiosity_error), {}};
+        Field field{"Radiosity, estimated error" + channel, "W/m²", take(input.solution.error->patches), {}};
         field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
         return field;
     }
@@ -109,9 +109,9 @@ Field light_field(const Look& look, const ViewerInput& input, const Light& light
 
 Field row_error_field(const ViewerInput& input) {
     Field field{"Row of F: |sum + e + b - 1|", "", {}, {1e-8, 1e-2, true}};
-    for (std::size_t i = 0; i < input.rows.row_sum.size(); ++i) {
-        field.values.push_back(
-            std::abs(input.rows.row_sum[i] + input.rows.environment_share[i] + input.rows.blocked[i] - 1.0));
+    for (std::size_t i = 0; i < input.solution.row_sum.size(); ++i) {
+        field.values.push_back(std::abs(input.solution.row_sum[i] + input.solution.environment_share[i] +
+                                        input.solution.back_face_share[i] - 1.0));
     }
     return field;
 }
@@ -135,16 +135,16 @@ const char* quantity_title(Quantity quantity) {
 }
 
 const char* why_not(Quantity quantity, const ViewerInput& input, std::optional<std::uint32_t> picked) {
-    if (quantity == Quantity::estimated_error && input.radiosity_error.empty()) {
+    if (quantity == Quantity::estimated_error && !input.solution.error) {
         return "no errors were estimated of this light";
     }
-    if (quantity == Quantity::row_error && input.rows.row_sum.empty()) {
+    if (quantity == Quantity::row_error && input.solution.row_sum.empty()) {
         return "needs form factors";
     }
     if (quantity == Quantity::row || quantity == Quantity::column) {
-        if (input.rows.factors == nullptr) {
-            return input.find_rows ? "not computed"
-                                   : "a stored solution has no form factors; open the scene instead";
+        if (input.factors == nullptr) {
+            return input.factor_settings ? "not computed"
+                                         : "a stored solution has no form factors; open the scene instead";
         }
         if (!picked) {
             return "click a patch first";
@@ -192,16 +192,6 @@ std::vector<double> factors_to(const FormFactorMatrix& factors, std::uint32_t pa
     return result;
 }
 
-std::vector<double> of_patches(const std::vector<Material>& materials, const PatchMesh& mesh,
-                               std::vector<double> Material::*property) {
-    std::vector<double> values;
-    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-        const std::vector<double>& of_material = materials[mesh.material(i)].*property;
-        values.insert(values.end(), of_material.begin(), of_material.end());
-    }
-    return values;
-}
-
 std::optional<Field> make_field(const Look& look, const ViewerInput& input, const Light& light,
                                 std::optional<std::uint32_t> picked, double usual_factor) {
     switch (look.quantity) {
@@ -216,7 +206,8 @@ std::optional<Field> make_field(const Look& look, const ViewerInput& input, cons
         const bool row = look.quantity == Quantity::row;
         Field field{
             row ? "F(i, j), i picked: leaves i, arrives at j" : "F(j, i), i picked: leaves j, arrives at i",
-            "", row ? factors_from(*input.rows.factors, *picked) : factors_to(*input.rows.factors, *picked),
+            "",
+            row ? factors_from(input.factors->matrix, *picked) : factors_to(input.factors->matrix, *picked),
             scale_to(usual_factor, look.logarithmic_factors, factor_range)};
         std::replace(field.values.begin(), field.values.end(), 0.0, none);
         return field;

@@ -63,10 +63,6 @@ struct Light {
     [[nodiscard]] bool knows(std::uint32_t patch) const { return known.empty() || known[patch] != 0; }
 };
 
-/// A property of the materials, spread over the patches: N·channels.
-[[nodiscard]] std::vector<double> of_patches(const std::vector<Material>& materials, const PatchMesh& mesh,
-                                             std::vector<double> Material::*property);
-
 /// One value a patch, NaN where there is none, and the scale that it is shown by.
 struct Field {
     std::string title;

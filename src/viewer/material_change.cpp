@@ -9,7 +9,7 @@
 namespace hemi::viewer {
 
 void apply_set(const SetCommand& set, const ViewerInput& input, Choices& choices) {
-    if (input.rows.factors == nullptr) {
+    if (input.factors == nullptr) {
         throw InvalidArgument("set: there are no form factors; open the scene, and let it be solved");
     }
     const auto found =

@@ -61,7 +61,7 @@ void quantity_combo(const PanelContent& content, Choices& choices) {
 }
 
 void channel_choice(const ViewerInput& input, Look& look) {
-    if (input.channels == 1) {
+    if (input.channels() == 1) {
         return;
     }
     const std::string shown = look.channel ? input.scene->channels[*look.channel] : "mean of channels";
@@ -70,7 +70,7 @@ void channel_choice(const ViewerInput& input, Look& look) {
         if (ImGui::Selectable("mean of channels", !look.channel)) {
             look.channel.reset();
         }
-        for (std::uint32_t c = 0; c < input.channels; ++c) {
+        for (std::uint32_t c = 0; c < input.channels(); ++c) {
             if (ImGui::Selectable(input.scene->channels[c].c_str(), look.channel == c)) {
                 look.channel = c;
             }
@@ -156,7 +156,7 @@ std::string channels_text(std::span<const double> values, std::uint32_t channels
 void patch_lines(const PanelContent& content, std::uint32_t i) {
     const ViewerInput& input = content.document.input();
     const Light& light = content.document.light();
-    const FoundRows& rows = input.rows;
+    const Solution& solution = input.solution;
     const PatchMesh& mesh = *input.mesh;
     const Vec3& centre = mesh.centres()[i];
     line("patch", std::to_string(i) + (mesh.is_back(i) ? " (back)" : ""));
@@ -164,18 +164,19 @@ void patch_lines(const PanelContent& content, std::uint32_t i) {
     line("material", input.scene->materials[mesh.material(i)].name);
     line("area", number(mesh.areas()[i]));
     line("centre", fmt::format("{:.4g} {:.4g} {:.4g}", centre.x, centre.y, centre.z));
-    line("reflectance", channels_text(light.reflectance, input.channels, i));
-    line("exitance W/m²", channels_text(light.exitance, input.channels, i));
+    line("reflectance", channels_text(light.reflectance, input.channels(), i));
+    line("exitance W/m²", channels_text(light.exitance, input.channels(), i));
     line("radiosity W/m²",
-         light.knows(i) ? channels_text(light.radiosity, input.channels, i) : "not known yet");
-    if (!rows.row_sum.empty()) {
-        const double defect = rows.row_sum[i] + rows.environment_share[i] + rows.blocked[i] - 1.0;
-        line("row sum", fmt::format("{:.6f}  ({:+.1e})", rows.row_sum[i], defect));
-        line("environment", number(rows.environment_share[i]));
-        line("blocked", number(rows.blocked[i]));
+         light.knows(i) ? channels_text(light.radiosity, input.channels(), i) : "not known yet");
+    if (!solution.row_sum.empty()) {
+        const double defect =
+            solution.row_sum[i] + solution.environment_share[i] + solution.back_face_share[i] - 1.0;
+        line("row sum", fmt::format("{:.6f}  ({:+.1e})", solution.row_sum[i], defect));
+        line("environment", number(solution.environment_share[i]));
+        line("back faces", number(solution.back_face_share[i]));
     }
-    if (!input.radiosity_error.empty()) {
-        line("est. error W/m²", channels_text(input.radiosity_error, input.channels, i, 1));
+    if (input.solution.error) {
+        line("est. error W/m²", channels_text(input.solution.error->patches, input.channels(), i, 1));
     }
 }
 
@@ -249,7 +250,7 @@ void patch_section(const PanelContent& content, Choices& choices) {
     ImGui::Checkbox("hemicube: what the patch sees", &choices.hemicube);
     ImGui::Spacing();
     const ViewerInput& input = content.document.input();
-    if (input.rows.factors == nullptr) {
+    if (input.factors == nullptr) {
         faint(fmt::format("No row of F: {}.", why_not(Quantity::row, input, choices.picked)));
         return;
     }
@@ -286,8 +287,8 @@ void material_section(const PanelContent& content, Choices& choices) {
         return;
     }
     const ViewerInput& input = content.document.input();
-    if (input.rows.factors == nullptr) {
-        faint(input.find_rows
+    if (input.factors == nullptr) {
+        faint(input.factor_settings
                   ? "Light follows changes of materials once there are form factors."
                   : "Light cannot follow a change without form factors: open the scene instead of its "
                     "result.");
@@ -339,8 +340,8 @@ void solution_section(const PanelContent& content, Choices& choices) {
         return;
     }
     const Work& work = content.document.work();
-    if (content.document.input().rows.factors == nullptr) {
-        faint(content.document.input().find_rows
+    if (content.document.input().factors == nullptr) {
+        faint(content.document.input().factor_settings
                   ? work.light.empty() ? "the light of the lamps alone" : work.light
                   : "as it is stored");
         return;

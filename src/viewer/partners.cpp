@@ -6,15 +6,15 @@ namespace hemi::viewer {
 
 std::vector<Partner> largest_partners(const ViewerInput& input, const Light& light, std::uint32_t picked,
                                       bool column, bool by_light, std::size_t count) {
-    const FormFactorMatrix& factors = *input.rows.factors;
+    const FormFactorMatrix& factors = input.factors->matrix;
     const RowView row = factors.row(picked);
     std::vector<double> arriving(factors.size(), 0.0);
     double total = 0.0;
     for (std::size_t k = 0; k < row.columns.size(); ++k) {
         const std::uint32_t j = row.columns[k];
-        for (std::uint32_t c = 0; c < input.channels; ++c) {
+        for (std::uint32_t c = 0; c < input.channels(); ++c) {
             arriving[j] +=
-                static_cast<double>(row.values[k]) * light.radiosity[std::size_t{j} * input.channels + c];
+                static_cast<double>(row.values[k]) * light.radiosity[std::size_t{j} * input.channels() + c];
         }
         total += arriving[j];
     }

@@ -60,7 +60,7 @@ bool Relighter::waits() const {
     return (working_ || wanted_) && stepwise_;
 }
 
-std::optional<Relit> Relighter::take() {
+std::optional<SolveUpdate> Relighter::take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(result_, std::nullopt);
 }
@@ -86,13 +86,13 @@ void Relighter::work(const std::stop_token& stop) {
     }
 }
 
-void Relighter::publish(Relit relit) {
+void Relighter::publish(SolveUpdate update) {
     {
         const std::lock_guard lock(mutex_);
         if (wanted_) {
             return;
         }
-        result_ = std::move(relit);
+        result_ = std::move(update);
     }
     done_();
 }
@@ -108,13 +108,13 @@ void Relighter::wait_for_step(std::unique_lock<std::mutex>& lock, const std::sto
 }
 
 void Relighter::solve(Wish wish, const std::stop_token& stop) {
-    Relit relit;
-    relit.light = std::move(wish.light);
-    const std::vector<double> start = relit.light.radiosity;
+    SolveUpdate update;
+    update.light = std::move(wish.light);
+    const std::vector<double> start = update.light.radiosity;
     Clock::time_point began = Clock::now();
     try {
-        const RadiosityProblem problem{input_.rows.factors.get(), input_.channels,
-                                       relit.light.reflectance,   relit.light.exitance,
+        const RadiosityProblem problem{&input_.factors->matrix,   input_.channels(),
+                                       update.light.reflectance,  update.light.exitance,
                                        input_.scene->environment, input_.mesh->areas()};
         SolverSettings settings = input_.solver;
         settings.start = start;
@@ -133,38 +133,40 @@ void Relighter::solve(Wish wish, const std::stop_token& stop) {
             if (waits || now - told >= interval) {
                 told = now;
                 lock.unlock();
-                Relit so_far{relit.light, false,    std::string(solver_name(settings.method)),
-                             sweep,       residual, std::chrono::duration<double>(now - began).count(),
-                             {},          {}};
+                SolveUpdate so_far;
+                so_far.light = update.light;
+                so_far.solution.method = settings.method;
+                so_far.solution.sweeps = sweep;
+                so_far.solution.residual = residual;
+                so_far.solution.seconds = std::chrono::duration<double>(now - began).count();
                 so_far.light.radiosity = radiosity();
                 publish(std::move(so_far));
                 lock.lock();
             }
             wait_for_step(lock, stop);
+            return true;
         };
         if (wish.stepwise) {
             std::unique_lock lock(mutex_);
             wait_for_step(lock, stop);
         }
         began = Clock::now();
-        RadiositySolution solution = solve_radiosity(problem, settings);
-        relit.converged = true;
-        relit.solver = solver_name(solution.method);
-        relit.sweeps = solution.sweeps;
-        relit.residual = solution.residual;
-        relit.light.radiosity = std::move(solution.radiosity);
+        update.solution = solve_radiosity(problem, settings);
+        update.converged = true;
+        update.light.radiosity = std::exchange(update.solution.radiosity, {});
     } catch (const Cancelled&) {
         throw;
     } catch (const std::exception& error) {
-        relit.problem = error.what();
+        update.problem = error.what();
     }
-    relit.seconds = std::chrono::duration<double>(Clock::now() - began).count();
-    publish(relit);
-    if (relit.converged && input_.rows.reference) {
-        relit.error = estimate_radiosity_error(*input_.rows.factors, *input_.rows.reference,
-                                               input_.mesh->areas(), input_.channels, relit.light.reflectance,
-                                               relit.light.exitance, relit.light.radiosity);
-        publish(std::move(relit));
+    update.solution.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+    publish(update);
+    const FormFactors& factors = *input_.factors;
+    if (update.converged && factors.error) {
+        update.solution.error = estimate_radiosity_error(
+            factors.matrix, factors.reference, input_.mesh->areas(), input_.channels(),
+            update.light.reflectance, update.light.exitance, update.light.radiosity);
+        publish(std::move(update));
     }
 }
 

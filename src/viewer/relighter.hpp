@@ -14,14 +14,11 @@
 namespace hemi::viewer {
 
 /// Light that was asked for: solved, or on the way there.
-struct Relit {
+struct SolveUpdate {
     Light light;
     bool converged = false;
-    std::string solver;
-    std::uint32_t sweeps = 0;
-    double residual = 0.0;
-    double seconds = 0.0;
-    std::optional<RadiosityErrorEstimate> error; ///< estimated; comes a little later than the light
+    Solution
+        solution; ///< how the light was found; its radiosity is the light's. The error comes a little later
     std::string problem; ///< why there is no solution; then `light` is as it was asked for, not solved
 };
 
@@ -49,7 +46,7 @@ public:
     /// Whether it waits for step().
     [[nodiscard]] bool waits() const;
     /// The newest light.
-    [[nodiscard]] std::optional<Relit> take();
+    [[nodiscard]] std::optional<SolveUpdate> take();
     /// Residual after every sweep of the last wish.
     [[nodiscard]] std::vector<double> residuals() const;
 
@@ -63,14 +60,14 @@ private:
     void solve(Wish wish, const std::stop_token& stop);
     /// @throws Cancelled when the wish is no longer wanted
     void wait_for_step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
-    void publish(Relit relit);
+    void publish(SolveUpdate update);
 
     const ViewerInput& input_;
     std::function<void()> done_;
     mutable std::mutex mutex_;
     std::condition_variable_any asked_;
     std::optional<Wish> wanted_;
-    std::optional<Relit> result_;
+    std::optional<SolveUpdate> result_;
     std::vector<double> residuals_;
     bool working_ = false;
     bool stepwise_ = false; ///< what is under way waits for steps

@@ -60,7 +60,7 @@ void write_report(const std::filesystem::path& path, const Report& report) {
         const ColourScale& scale = report.field->scale;
         json["scale"] = {{"low", scale.low}, {"high", scale.high}, {"logarithmic", scale.logarithmic}};
     }
-    const std::uint32_t channels = report.document.input().channels;
+    const std::uint32_t channels = report.document.input().channels();
     for (std::size_t i = 0; i < report.document.light().radiosity.size(); i += channels) {
         Json patch = Json::array();
         for (std::uint32_t c = 0; c < channels; ++c) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "viewer/factor_cache.hpp"
 #include "viewer/viewer.hpp"
 
 #include <cstddef>
@@ -15,18 +16,21 @@
 
 namespace hemi::viewer {
 
-/// Light of some patches, each by its own row: RowListener::gathered.
+/// Light of some patches, each by its own row. Provisional: the solution is found when all rows are there.
 struct GatheredLight {
     std::vector<std::uint32_t> patches;
     std::vector<double> radiosity; ///< one value a channel for each of them
     std::vector<double> blocked;   ///< b_i of each
 };
 
-/// Runs ViewerInput::find_rows on a thread of its own, and tells how far it is.
+/// Computes the form factors of a scene on a thread of its own: first a coarse preview of the light, then the
+/// rows, each of which gives its own patch the light that is shown meanwhile.
 class RowFinder {
 public:
+    /// @param input    scene, mesh and settings are read
+    /// @param cache    asked first, and given what is found
     /// @param changed  called on the other thread when something new is to be had
-    RowFinder(std::function<FoundRows(const RowListener&)> find, std::function<void()> changed);
+    RowFinder(const ViewerInput& input, std::shared_ptr<FactorCache> cache, std::function<void()> changed);
     /// Stops what is under way, and waits until it has.
     ~RowFinder();
     RowFinder(const RowFinder&) = delete;
@@ -41,15 +45,16 @@ public:
     [[nodiscard]] std::optional<std::vector<double>> take_preview();
     /// What was gathered since the last call.
     [[nodiscard]] GatheredLight take_gathered();
-    /// The result, once; afterwards, and where there is none, nothing.
+    /// The result, prepared, once; afterwards, and where there is none, null.
     /// @throws what the search threw, but Cancelled
-    [[nodiscard]] std::optional<FoundRows> take();
+    [[nodiscard]] std::shared_ptr<const FormFactors> take();
     [[nodiscard]] bool finished() const;
 
 private:
+    class Listener;
     struct Progress {
         std::string title;
-        std::string unit;
+        std::string unit; ///< plural; empty: nothing is counted
         std::size_t done = 0;
         std::size_t total = 0;
         double seconds = 0.0; ///< since this title began
@@ -57,13 +62,20 @@ private:
 
     void work(const std::stop_token& stop);
 
-    std::function<FoundRows(const RowListener&)> find_;
+    [[nodiscard]] std::shared_ptr<const FormFactors> find(Listener& listener);
+
+    std::shared_ptr<const Scene> scene_;
+    std::shared_ptr<const PatchMesh> mesh_;
+    FactorSettings settings_;
+    SolverSettings solver_;
+    std::shared_ptr<Observer> observer_;
+    std::shared_ptr<FactorCache> cache_;
     std::function<void()> changed_;
     mutable std::mutex mutex_;
     Progress progress_;
     std::optional<std::vector<double>> preview_;
     GatheredLight gathered_;
-    std::optional<FoundRows> result_;
+    std::shared_ptr<const FormFactors> result_;
     std::exception_ptr problem_;
     bool finished_ = false;
     std::jthread thread_; ///< last: it uses all of the above

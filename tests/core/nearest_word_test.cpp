@@ -1,4 +1,4 @@
-#include "core/nearest_word.hpp"
+#include "hemi/core/nearest_word.hpp"
 
 #include <catch2/catch.hpp>
 

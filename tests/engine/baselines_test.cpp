@@ -19,11 +19,10 @@ using namespace hemi::test;
 
 namespace {
 
-constexpr std::array all_methods{BaselineMethod::direct, BaselineMethod::contour, BaselineMethod::montecarlo,
-                                 BaselineMethod::hemisphere};
-constexpr std::array unoccluded_methods{BaselineMethod::direct, BaselineMethod::contour};
+constexpr std::array all_methods{Method::direct, Method::contour, Method::montecarlo, Method::hemisphere};
+constexpr std::array unoccluded_methods{Method::direct, Method::contour};
 
-BaselineSettings settings_of(BaselineMethod method) {
+BaselineSettings settings_of(Method method) {
     BaselineSettings settings;
     settings.method = method;
     return settings;
@@ -99,8 +98,8 @@ TEST_CASE("yardsticks: direct and contour have the exact factors of the catalogu
         }
         CAPTURE(exact.name);
         const PatchMesh mesh = cut(read_case(exact.file), 1);
-        CHECK(worst_error(exact, mesh, settings_of(BaselineMethod::direct)) < 1e-6);
-        CHECK(worst_error(exact, mesh, settings_of(BaselineMethod::contour)) < 1e-6);
+        CHECK(worst_error(exact, mesh, settings_of(Method::direct)) < 1e-6);
+        CHECK(worst_error(exact, mesh, settings_of(Method::contour)) < 1e-6);
     }
 }
 
@@ -110,7 +109,7 @@ TEST_CASE("yardsticks: rays have the exact factors of the catalogue, occluded or
             continue;
         }
         CAPTURE(exact.name);
-        BaselineSettings settings = settings_of(BaselineMethod::montecarlo);
+        BaselineSettings settings = settings_of(Method::montecarlo);
         const PatchMesh mesh = cut(read_case(exact.file), 1);
         settings.rays = mesh.size() > 20 ? 1024 : 65536;
         CHECK(worst_error(exact, mesh, settings) < 2e-3);
@@ -123,7 +122,7 @@ TEST_CASE("yardsticks: the hemisphere is as good as its one point a patch", "[en
             continue;
         }
         CAPTURE(exact.name);
-        BaselineSettings settings = settings_of(BaselineMethod::hemisphere);
+        BaselineSettings settings = settings_of(Method::hemisphere);
         settings.resolution = 64;
         CHECK(worst_error(exact, cut(read_case(exact.file), exact.patches_per_face), settings) <
               exact.one_point_limit + 2e-3);
@@ -136,12 +135,12 @@ TEST_CASE("yardsticks: all methods see a sphere of facets from inside alike", "[
             continue;
         }
         const PatchMesh mesh = cut(read_case(exact.file), 1);
-        CHECK(worst_error(exact, mesh, settings_of(BaselineMethod::direct)) < 1e-6);
-        CHECK(worst_error(exact, mesh, settings_of(BaselineMethod::contour)) < 1e-6);
-        BaselineSettings settings = settings_of(BaselineMethod::montecarlo);
+        CHECK(worst_error(exact, mesh, settings_of(Method::direct)) < 1e-6);
+        CHECK(worst_error(exact, mesh, settings_of(Method::contour)) < 1e-6);
+        BaselineSettings settings = settings_of(Method::montecarlo);
         settings.rays = 4096;
         CHECK(worst_error(exact, mesh, settings) < 1e-3);
-        settings = settings_of(BaselineMethod::hemisphere);
+        settings = settings_of(Method::hemisphere);
         settings.resolution = 64;
         CHECK(worst_error(exact, mesh, settings) < 5e-3);
     }
@@ -151,12 +150,12 @@ TEST_CASE("yardsticks: a cylinder of facets comes near the round one", "[engine]
     // Howell, C-41: equal coaxial discs, radius = height.
     const double ends = 0.381966011250105;
     const PatchMesh mesh(cylinder(32));
-    for (const BaselineMethod method : all_methods) {
+    for (const Method method : all_methods) {
         BaselineSettings settings = settings_of(method);
         settings.rays = 4096;
         settings.resolution = 64;
         const GroupTable table = by_group(mesh, matrix_of(mesh, settings));
-        const double limit = method == BaselineMethod::hemisphere ? 3e-2 : 3e-3;
+        const double limit = method == Method::hemisphere ? 3e-2 : 3e-3;
         CHECK(table.factor("bottom", "top") == Approx(ends).margin(limit));
         CHECK(table.factor("bottom", "wall") == Approx(1.0 - ends).margin(limit));
         CHECK(table.factor("wall", "wall") == Approx(ends).margin(limit));
@@ -166,8 +165,8 @@ TEST_CASE("yardsticks: a cylinder of facets comes near the round one", "[engine]
 TEST_CASE("yardsticks: direct, contour and exchange areas agree pair by pair", "[engine]") {
     const Scene scene = rotated(tapered_box(3));
     const PatchMesh mesh(scene);
-    const FormFactorMatrix direct = matrix_of(mesh, settings_of(BaselineMethod::direct));
-    const FormFactorMatrix contour = matrix_of(mesh, settings_of(BaselineMethod::contour));
+    const FormFactorMatrix direct = matrix_of(mesh, settings_of(Method::direct));
+    const FormFactorMatrix contour = matrix_of(mesh, settings_of(Method::contour));
     CHECK(rms_difference(direct, contour) < 1e-7);
     const ExchangeAreas areas(mesh, ExchangeRule::exact);
     double worst = 0.0;
@@ -185,8 +184,8 @@ TEST_CASE("yardsticks: more rays come nearer to the exact factors", "[engine]") 
     Scene cube = empty_scene();
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 2);
     const PatchMesh mesh(cube);
-    const FormFactorMatrix exact = matrix_of(mesh, settings_of(BaselineMethod::direct));
-    BaselineSettings settings = settings_of(BaselineMethod::montecarlo);
+    const FormFactorMatrix exact = matrix_of(mesh, settings_of(Method::direct));
+    BaselineSettings settings = settings_of(Method::montecarlo);
     settings.rays = 256;
     const double few = rms_difference(matrix_of(mesh, settings), exact);
     settings.rays = 16384;
@@ -198,7 +197,7 @@ TEST_CASE("yardsticks: more rays come nearer to the exact factors", "[engine]") 
 
 TEST_CASE("yardsticks: every row is balanced", "[engine]") {
     const PatchMesh mesh(room_with_blocks(2));
-    for (const BaselineMethod method : {BaselineMethod::montecarlo, BaselineMethod::hemisphere}) {
+    for (const Method method : {Method::montecarlo, Method::hemisphere}) {
         BaselineSettings settings = settings_of(method);
         settings.rays = 1024;
         settings.resolution = 32;
@@ -209,7 +208,7 @@ TEST_CASE("yardsticks: every row is balanced", "[engine]") {
         CHECK(row_sums(factors).environment_max == 0.0);
         CHECK(row_sums(factors).covered > 0);
     }
-    for (const BaselineMethod method : unoccluded_methods) {
+    for (const Method method : unoccluded_methods) {
         Scene plates = two_plates(true);
         const PatchMesh open(plates);
         const RowSums sums = row_sums(matrix_of(open, settings_of(method)));
@@ -226,7 +225,7 @@ TEST_CASE("yardsticks: two-sided sheets receive on the side that is met, others 
         add_polygon(scene, "sheet", {{-9, -9, 1e-3}, {9, -9, 1e-3}, {9, 9, 1e-3}, {-9, 9, 1e-3}});
         scene.surfaces.back().two_sided = two_sided;
         const PatchMesh mesh(scene);
-        for (const BaselineMethod method : {BaselineMethod::montecarlo, BaselineMethod::hemisphere}) {
+        for (const Method method : {Method::montecarlo, Method::hemisphere}) {
             const FormFactorMatrix factors = matrix_of(mesh, settings_of(method));
             const RowView row = factors.row(0);
             if (two_sided) {
@@ -245,7 +244,7 @@ TEST_CASE("yardsticks: seeds change rays, threads and places do not", "[engine]"
     Scene cube = empty_scene();
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 2);
     const PatchMesh mesh(cube);
-    BaselineSettings settings = settings_of(BaselineMethod::montecarlo);
+    BaselineSettings settings = settings_of(Method::montecarlo);
     settings.rays = 1000;
     const FormFactorMatrix first = matrix_of(mesh, settings);
     CHECK(rms_difference(first, matrix_of(mesh, settings)) == 0.0);
@@ -261,7 +260,7 @@ TEST_CASE("yardsticks: rows come in the order in which they are asked for", "[en
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 4);
     const PatchMesh mesh(cube);
     const std::vector<std::uint32_t> wanted{1, 5, 63, 64, 70, 95};
-    for (const BaselineMethod method : all_methods) {
+    for (const Method method : all_methods) {
         BaselineSettings settings = settings_of(method);
         settings.rays = 16;
         settings.resolution = 8;
@@ -277,13 +276,13 @@ TEST_CASE("yardsticks: what they cannot do is refused with a word why", "[engine
     Scene cube = empty_scene();
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 26);
     const PatchMesh large(cube);
-    CHECK_THROWS_WITH(make_baseline(large, settings_of(BaselineMethod::contour)),
+    CHECK_THROWS_WITH(make_baseline(large, settings_of(Method::contour)),
                       Catch::Matchers::Contains("4056 patches") && Catch::Matchers::Contains("4000"));
     const PatchMesh small = cut(cube, 1);
-    BaselineSettings settings = settings_of(BaselineMethod::montecarlo);
+    BaselineSettings settings = settings_of(Method::montecarlo);
     settings.rays = 0;
     CHECK_THROWS_AS(make_baseline(small, settings), InvalidArgument);
-    settings = settings_of(BaselineMethod::hemisphere);
+    settings = settings_of(Method::hemisphere);
     settings.resolution = 0;
     CHECK_THROWS_AS(make_baseline(small, settings), InvalidArgument);
     CHECK_THROWS_AS(point_factors(small, {0.5, 0.5, 0.5}, {0, 0, 2}, false), InvalidArgument);

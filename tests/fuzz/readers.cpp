@@ -73,12 +73,12 @@ Scene small_scene() {
 }
 
 void seed_hff(const fs::path& folder) {
-    io::FactorFile file;
-    file.factors = small_matrix(true);
+    FormFactors file;
+    file.matrix = small_matrix(true);
     file.areas = {1.0, 0.5};
     file.groups = {"floor", "ceiling"};
     file.group_of = {0, 1};
-    file.contacts = {1};
+    file.touching = {1};
     io::write_hff(folder / "plain.hff", file);
     file.reference = small_matrix(true);
     file.error = FactorErrorEstimate{2, 1e-5, 1e-3, 1e-4, 1e-2, {0.1, 0.2}};
@@ -147,8 +147,8 @@ std::string binary_stl() {
 }
 
 void seed_view3d(const fs::path& folder, const char* name, io::View3dFormat format) {
-    io::FactorFile file;
-    file.factors = small_matrix(false);
+    FormFactors file;
+    file.matrix = small_matrix(false);
     file.areas = {1.0, 0.5};
     file.groups = {"floor", "ceiling"};
     file.group_of = {0, 1};

@@ -256,9 +256,9 @@ TEST_CASE("NPZ: a lie about the compressed size costs no memory", "[io]") {
 
 TEST_CASE("View3D factors: header, areas, rows and emissivities are where View3D's readers look", "[io]") {
     const Folder folder;
-    io::FactorFile file;
-    file.factors = FormFactorMatrix(3);
-    file.factors.set_block(
+    FormFactors file;
+    file.matrix = FormFactorMatrix(3);
+    file.matrix.set_block(
         {0, {0, 1, 2, 2}, {1, 0}, {1.0f / 3.0f, 1e-7f}, {}, {0, 0, 0}, {0, 0, 0}, {1, 1, 1}});
     file.areas = {1.0, 2.0 / 3.0, 3e6};
     file.enclosure = "closed";
@@ -283,8 +283,8 @@ TEST_CASE("View3D factors: header, areas, rows and emissivities are where View3D
 
 TEST_CASE("View3D factors: every factor and every row sum reads back from text", "[io]") {
     const Folder folder;
-    io::FactorFile file;
-    file.factors = random_matrix(150, true);
+    FormFactors file;
+    file.matrix = random_matrix(150, true);
     file.areas.assign(150, 2.5);
     io::write_view3d(folder / "a.txt", file, io::View3dFormat::text);
     std::istringstream stream(io::read_file(folder / "a.txt"));
@@ -293,7 +293,7 @@ TEST_CASE("View3D factors: every factor and every row sum reads back from text",
     REQUIRE(line.size() == 30);
     std::getline(stream, line);
     for (std::uint32_t i = 0; i < 150; ++i) {
-        const RowView row = file.factors.row(i);
+        const RowView row = file.matrix.row(i);
         double sum = 0.0;
         std::size_t entries = 0;
         for (std::uint32_t j = 0; j < 150; ++j) {
@@ -312,7 +312,7 @@ TEST_CASE("View3D factors: every factor and every row sum reads back from text",
     file.areas.pop_back();
     REQUIRE_THROWS_AS(io::write_view3d(folder / "b.txt", file, io::View3dFormat::text), InvalidArgument);
     file.areas.push_back(1.0);
-    file.factors = FormFactorMatrix(150);
+    file.matrix = FormFactorMatrix(150);
     require_parts(message_of<InvalidArgument>(
                       [&] { io::write_view3d(folder / "b.txt", file, io::View3dFormat::text); }),
                   {"not computed", "use .hff"});

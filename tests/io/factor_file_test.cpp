@@ -9,53 +9,53 @@ namespace hemi::io_test {
 
 namespace {
 
-io::FactorFile sample(std::uint32_t size, bool with_visibility = true) {
-    io::FactorFile file;
-    file.factors = random_matrix(size, false, with_visibility);
+FormFactors sample(std::uint32_t size, bool with_visibility = true) {
+    FormFactors file;
+    file.matrix = random_matrix(size, false, with_visibility);
     for (std::uint32_t i = 0; i < size; ++i) {
         file.areas.push_back(1.0 / (i + 3.0));
         file.group_of.push_back(i % 3);
         if (i % 9 == 4) {
-            file.contacts.push_back(i);
+            file.touching.push_back(i);
         }
     }
     file.groups = {"floor", "Decke ä \"1\"", ""};
     file.geometry_hash = 0xFEDCBA9876543210u;
-    file.preset = "exact";
-    file.method = "montecarlo";
-    file.resolution = 512;
-    file.eye_points = 9;
-    file.shadow_rays = 16;
-    file.seed = std::numeric_limits<std::uint64_t>::max();
-    file.renderer = "Some Renderer (line, 4.5)";
+    file.provenance.preset = "exact";
+    file.provenance.method = "montecarlo";
+    file.provenance.resolution = 512;
+    file.provenance.eye_points = 9;
+    file.provenance.shadow_rays = 16;
+    file.provenance.seed = std::numeric_limits<std::uint64_t>::max();
+    file.provenance.renderer = "Some Renderer (line, 4.5)";
     file.enclosure = "closed";
     return file;
 }
 
 /// With the last block of other rows as reference, and an estimate.
-io::FactorFile judged_sample(std::uint32_t size) {
-    io::FactorFile file = sample(size);
+FormFactors judged_sample(std::uint32_t size) {
+    FormFactors file = sample(size);
     file.reference = FormFactorMatrix(size);
     if (size > 0) {
         const FormFactorMatrix better = random_matrix(size, true, true);
         file.reference.set_block(better.blocks().back());
     }
     file.error = FactorErrorEstimate{7, 1e-5, 1.0 / 3.0, 2e-4, 0.5, std::vector<double>(size, 0.1)};
-    file.chosen_for = "--error-target 1e-3";
+    file.provenance.chosen_for = "--error-target 1e-3";
     return file;
 }
 
-void require_equal(const io::FactorFile& a, const io::FactorFile& b) {
-    require_same_entries(a.factors, b.factors);
-    for (std::size_t k = 0; k < a.factors.blocks().size(); ++k) {
-        REQUIRE(a.factors.blocks()[k].environment == b.factors.blocks()[k].environment);
-        REQUIRE(a.factors.blocks()[k].blocked == b.factors.blocks()[k].blocked);
-        REQUIRE(a.factors.blocks()[k].known == b.factors.blocks()[k].known);
+void require_equal(const FormFactors& a, const FormFactors& b) {
+    require_same_entries(a.matrix, b.matrix);
+    for (std::size_t k = 0; k < a.matrix.blocks().size(); ++k) {
+        REQUIRE(a.matrix.blocks()[k].environment == b.matrix.blocks()[k].environment);
+        REQUIRE(a.matrix.blocks()[k].blocked == b.matrix.blocks()[k].blocked);
+        REQUIRE(a.matrix.blocks()[k].known == b.matrix.blocks()[k].known);
     }
     REQUIRE(a.areas == b.areas);
     REQUIRE(a.groups == b.groups);
     REQUIRE(a.group_of == b.group_of);
-    REQUIRE(a.contacts == b.contacts);
+    REQUIRE(a.touching == b.touching);
     REQUIRE(a.geometry_hash == b.geometry_hash);
     REQUIRE(a.preset == b.preset);
     REQUIRE(a.method == b.method);
@@ -87,11 +87,11 @@ TEST_CASE("HFF: what is written is read back bit for bit", "[io]") {
     const Folder folder;
     for (const bool with_visibility : {true, false}) {
         for (const std::uint32_t size : {0u, 1u, 63u, 64u, 65u, 200u}) {
-            const io::FactorFile file = sample(size, with_visibility);
+            const FormFactors file = sample(size, with_visibility);
             io::write_hff(folder / "a.hff", file);
-            const io::FactorFile read = io::read_hff(folder / "a.hff");
+            const FormFactors read = io::read_hff(folder / "a.hff");
             require_equal(file, read);
-            REQUIRE(read.factors.has_visibility() == (with_visibility && file.factors.entries() > 0));
+            REQUIRE(read.matrix.has_visibility() == (with_visibility && file.matrix.entries() > 0));
         }
     }
     REQUIRE(folder.files() == 1);
@@ -100,11 +100,11 @@ TEST_CASE("HFF: what is written is read back bit for bit", "[io]") {
 TEST_CASE("HFF: the reference and the estimate that it gave are kept", "[io]") {
     const Folder folder;
     for (const std::uint32_t size : {0u, 1u, 64u, 65u, 200u}) {
-        const io::FactorFile file = judged_sample(size);
+        const FormFactors file = judged_sample(size);
         io::write_hff(folder / "a.hff", file);
         require_equal(file, io::read_hff(folder / "a.hff"));
     }
-    io::FactorFile file = judged_sample(70);
+    FormFactors file = judged_sample(70);
     file.error->rows.pop_back();
     REQUIRE_THROWS_AS(io::write_hff(folder / "b.hff", file), InvalidArgument);
     file = judged_sample(70);
@@ -203,7 +203,7 @@ TEST_CASE("HFF: other files, other versions and directories are told apart", "[i
 
 TEST_CASE("HFF: arrays that do not fit the matrix are refused, and nothing is written", "[io]") {
     const Folder folder;
-    io::FactorFile file = sample(10);
+    FormFactors file = sample(10);
     file.areas.pop_back();
     REQUIRE_THROWS_AS(io::write_hff(folder / "a.hff", file), InvalidArgument);
     file = sample(10);

@@ -30,21 +30,22 @@ io::ResultFile sample() {
     scene.camera = Camera{{0, -3, 1}, {0, 0, 0.1}, {0, 0.1, 1}, 33.3};
     const std::size_t patches = PatchMesh(scene).size();
     for (std::size_t i = 0; i < patches * 2; ++i) {
-        result.radiosity.push_back(1.0 / static_cast<double>(i + 1));
-        result.irradiance.push_back(std::sqrt(static_cast<double>(i)));
+        result.solution.radiosity.push_back(1.0 / static_cast<double>(i + 1));
+        result.solution.irradiance.push_back(std::sqrt(static_cast<double>(i)));
     }
     for (std::size_t i = 0; i < patches; ++i) {
-        result.row_sum.push_back(0.9 + 1e-9 * static_cast<double>(i));
-        result.environment.push_back(0.01);
-        result.blocked.push_back(0.0);
+        result.solution.row_sum.push_back(0.9 + 1e-9 * static_cast<double>(i));
+        result.solution.environment_share.push_back(0.01);
+        result.solution.back_face_share.push_back(0.0);
     }
-    result.solver = "gauss-seidel";
-    result.sweeps = 17;
-    result.residual = 1.23456789e-7;
-    result.renderer = "Some Renderer";
-    result.chosen_for = "--error-target 1e-3";
-    result.factor_error = FactorErrorEstimate{5, 1e-5, 0.25, 2e-4, 0.5, std::vector<double>(patches, 1e-3)};
-    result.radiosity_error = RadiosityErrorEstimate{1.0 / 3.0, std::vector<double>(patches * 2, 0.125)};
+    result.solution.method = SolverMethod::gauss_seidel;
+    result.solution.sweeps = 17;
+    result.solution.residual = 1.23456789e-7;
+    result.solution.renderer = "Some Renderer";
+    result.solution.chosen_for = "--error-target 1e-3";
+    result.solution.factor_error =
+        FactorErrorEstimate{5, 1e-5, 0.25, 2e-4, 0.5, std::vector<double>(patches, 1e-3)};
+    result.solution.error = RadiosityErrorEstimate{1.0 / 3.0, std::vector<double>(patches * 2, 0.125)};
     return result;
 }
 
@@ -73,25 +74,25 @@ TEST_CASE("HRES: what is written is read back bit for bit", "[io]") {
         REQUIRE(a.scene.surfaces[s].group == b.scene.surfaces[s].group);
         REQUIRE(a.scene.surfaces[s].two_sided == b.scene.surfaces[s].two_sided);
     }
-    REQUIRE(a.radiosity == b.radiosity);
-    REQUIRE(a.irradiance == b.irradiance);
-    REQUIRE(a.chosen_for == b.chosen_for);
-    REQUIRE(b.factor_error.has_value());
-    REQUIRE(a.factor_error->sampled == b.factor_error->sampled);
-    REQUIRE(a.factor_error->rms == b.factor_error->rms);
-    REQUIRE(a.factor_error->max == b.factor_error->max);
-    REQUIRE(a.factor_error->row_rms == b.factor_error->row_rms);
-    REQUIRE(a.factor_error->row_max == b.factor_error->row_max);
-    REQUIRE(a.factor_error->rows == b.factor_error->rows);
-    REQUIRE(a.radiosity_error->rms == b.radiosity_error->rms);
-    REQUIRE(a.radiosity_error->patches == b.radiosity_error->patches);
-    REQUIRE(a.row_sum == b.row_sum);
-    REQUIRE(a.environment == b.environment);
-    REQUIRE(a.blocked == b.blocked);
-    REQUIRE(a.solver == b.solver);
-    REQUIRE(a.sweeps == b.sweeps);
-    REQUIRE(a.residual == b.residual);
-    REQUIRE(a.renderer == b.renderer);
+    REQUIRE(a.solution.radiosity == b.solution.radiosity);
+    REQUIRE(a.solution.irradiance == b.solution.irradiance);
+    REQUIRE(a.solution.chosen_for == b.solution.chosen_for);
+    REQUIRE(b.solution.factor_error.has_value());
+    REQUIRE(a.solution.factor_error->sampled == b.solution.factor_error->sampled);
+    REQUIRE(a.solution.factor_error->rms == b.solution.factor_error->rms);
+    REQUIRE(a.solution.factor_error->max == b.solution.factor_error->max);
+    REQUIRE(a.solution.factor_error->row_rms == b.solution.factor_error->row_rms);
+    REQUIRE(a.solution.factor_error->row_max == b.solution.factor_error->row_max);
+    REQUIRE(a.solution.factor_error->rows == b.solution.factor_error->rows);
+    REQUIRE(a.solution.error->rms == b.solution.error->rms);
+    REQUIRE(a.solution.error->patches == b.solution.error->patches);
+    REQUIRE(a.solution.row_sum == b.solution.row_sum);
+    REQUIRE(a.solution.environment_share == b.solution.environment_share);
+    REQUIRE(a.solution.back_face_share == b.solution.back_face_share);
+    REQUIRE(a.solution.method == b.solution.method);
+    REQUIRE(a.solution.sweeps == b.solution.sweeps);
+    REQUIRE(a.solution.residual == b.solution.residual);
+    REQUIRE(a.solution.renderer == b.solution.renderer);
 }
 
 TEST_CASE("HRES: the patches are those that were solved, however they were asked for", "[io]") {
@@ -100,13 +101,13 @@ TEST_CASE("HRES: the patches are those that were solved, however they were asked
         io::ResultFile a = sample();
         a.subdivision = subdivision;
         const PatchMesh mesh(a.scene, a.subdivision);
-        a.radiosity.resize(mesh.size() * 2);
-        a.irradiance.resize(mesh.size() * 2);
-        a.row_sum.resize(mesh.size());
-        a.environment.resize(mesh.size());
-        a.blocked.resize(mesh.size());
-        a.factor_error->rows.resize(mesh.size());
-        a.radiosity_error->patches.resize(mesh.size() * 2);
+        a.solution.radiosity.resize(mesh.size() * 2);
+        a.solution.irradiance.resize(mesh.size() * 2);
+        a.solution.row_sum.resize(mesh.size());
+        a.solution.environment_share.resize(mesh.size());
+        a.solution.back_face_share.resize(mesh.size());
+        a.solution.factor_error->rows.resize(mesh.size());
+        a.solution.error->patches.resize(mesh.size() * 2);
         io::write_hres(folder / "a.hres", a);
         const io::ResultFile b = io::read_hres(folder / "a.hres");
         const PatchMesh again(b.scene, b.subdivision);
@@ -176,11 +177,11 @@ TEST_CASE("HRES: arrays that do not fit and values that are not finite are refus
           "[io]") {
     const Folder folder;
     io::ResultFile result = sample();
-    result.radiosity.pop_back();
+    result.solution.radiosity.pop_back();
     require_parts(message_of<InvalidArgument>([&] { io::write_hres(folder / "a.hres", result); }),
                   {"radiosity"});
     result = sample();
-    result.row_sum[1] = std::nan("");
+    result.solution.row_sum[1] = std::nan("");
     require_parts(message_of<InvalidArgument>([&] { io::write_hres(folder / "a.hres", result); }),
                   {"row sum: a value of nan; must be finite"});
     REQUIRE_THROWS_AS(io::write_hres("/dev/full", sample()), IoError);
@@ -200,8 +201,8 @@ TEST_CASE("Patch tables: one line a patch, names in quotes where needed, numbers
     const std::string area = text.substr(text.find("0,floor,") + 8);
     REQUIRE(std::stod(area) == mesh.areas()[0]);
 
-    io::write_radiosity_csv(folder / "r.csv", mesh, result.scene.channels, result.radiosity,
-                            result.irradiance, result.radiosity);
+    io::write_radiosity_csv(folder / "r.csv", mesh, result.scene.channels, result.solution.radiosity,
+                            result.solution.irradiance, result.solution.radiosity);
     const std::string table = io::read_file(folder / "r.csv");
     REQUIRE(table.starts_with(
         "index,group,area,cx,cy,cz,nx,ny,nz,exitance_short,\"exitance_long, far\",irradiance_short,"

@@ -15,10 +15,10 @@ namespace {
 using Json = nlohmann::json;
 
 /// Three patches: 0 and 2 of the group "walls", 1 of "Lamp 1"; row 1 is empty.
-io::FactorFile small_file() {
-    io::FactorFile file;
-    file.factors = FormFactorMatrix(3);
-    file.factors.set_block(
+FormFactors small_file() {
+    FormFactors file;
+    file.matrix = FormFactorMatrix(3);
+    file.matrix.set_block(
         {0, {0, 2, 2, 3}, {1, 2, 1}, {1.0f / 3.0f, 0.5f, 1.0f}, {}, {0.25, 1.0, 0.0}, {0, 0, 0}, {1, 1, 1}});
     file.areas = {1.0, 2.0, 3.0};
     file.groups = {"walls", "Lamp 1", "unused"};
@@ -134,16 +134,16 @@ TEST_CASE("Elmer: what is wrong is named with its place, its value and what woul
 
 TEST_CASE("View3D factors: text and binary read back, with areas and enclosure", "[io]") {
     const Folder folder;
-    io::FactorFile file;
-    file.factors = random_matrix(150, true);
+    FormFactors file;
+    file.matrix = random_matrix(150, true);
     for (int i = 0; i < 150; ++i) {
         file.areas.push_back(0.125 * (i + 1));
     }
     file.enclosure = "closed";
     for (const io::View3dFormat format : {io::View3dFormat::text, io::View3dFormat::binary}) {
         io::write_view3d(folder / "a", file, format);
-        const io::FactorFile back = io::read_view3d(folder / "a", format);
-        require_same_entries(file.factors, back.factors);
+        const FormFactors back = io::read_view3d(folder / "a", format);
+        require_same_entries(file.matrix, back.matrix);
         REQUIRE(back.areas == file.areas);
         REQUIRE(back.enclosure == "closed");
     }
@@ -152,7 +152,7 @@ TEST_CASE("View3D factors: text and binary read back, with areas and enclosure",
 TEST_CASE("View3D factors: areas that 32 bits cannot hold are refused", "[io]") {
     const Folder folder;
     for (const double area : {1e39, 1e-50}) {
-        io::FactorFile file = small_file();
+        FormFactors file = small_file();
         file.areas[1] = area;
         require_parts(message_of<InvalidArgument>(
                           [&] { io::write_view3d(folder / "a.vf", file, io::View3dFormat::binary); }),
@@ -226,7 +226,7 @@ TEST_CASE("EnergyPlus: a triple for every pair of groups, by name, area-weighted
 TEST_CASE("EnergyPlus: names that it cannot hold are refused, and nothing is written", "[io]") {
     const Folder folder;
     const auto refusal = [&](const std::vector<std::string>& groups, const std::string& name = "zone.idf") {
-        io::FactorFile file = small_file();
+        FormFactors file = small_file();
         file.groups = groups;
         Diagnostics diagnostics;
         return message_of<InvalidArgument>([&] { io::write_energyplus(folder / name, file, diagnostics); });
@@ -237,8 +237,8 @@ TEST_CASE("EnergyPlus: names that it cannot hold are refused, and nothing is wri
     require_parts(refusal({std::string(101, 'x'), "b"}), {"group \"xxx", "1 to 100 characters"});
     require_parts(refusal({"Wall", "wALL"}), {"groups \"Wall\" and \"wALL\" are one name to EnergyPlus"});
     require_parts(refusal({"a", "b"}, "a,b.idf"), {"zone \"a,b\""});
-    io::FactorFile unknown = small_file();
-    unknown.factors = FormFactorMatrix(3);
+    FormFactors unknown = small_file();
+    unknown.matrix = FormFactorMatrix(3);
     Diagnostics diagnostics;
     REQUIRE_THROWS_AS(io::write_energyplus(folder / "a.idf", unknown, diagnostics), InvalidArgument);
     REQUIRE_THROWS_AS(io::write_energyplus("/dev/full", small_file(), diagnostics), IoError);
@@ -247,8 +247,8 @@ TEST_CASE("EnergyPlus: names that it cannot hold are refused, and nothing is wri
 
 TEST_CASE("HDF5: h5py reads rows, patches, groups and what made them", "[io]") {
     const Folder folder;
-    io::FactorFile file;
-    file.factors = random_matrix(150, false);
+    FormFactors file;
+    file.matrix = random_matrix(150, false);
     std::vector<double> sums;
     std::vector<double> environment;
     std::vector<double> blocked;
@@ -256,18 +256,18 @@ TEST_CASE("HDF5: h5py reads rows, patches, groups and what made them", "[io]") {
     for (std::uint32_t i = 0; i < 150; ++i) {
         file.areas.push_back(1.0 / (1.0 + i));
         file.group_of.push_back(i % 2);
-        const RowView row = file.factors.row(i);
+        const RowView row = file.matrix.row(i);
         sums.push_back(row.sum());
         environment.push_back(row.environment);
         blocked.push_back(row.blocked);
-        known.push_back(file.factors.known(i) ? 1 : 0);
+        known.push_back(file.matrix.known(i) ? 1 : 0);
     }
     file.groups = {"wände \"x\"", "floor"};
-    file.renderer = "llvmpipe";
-    file.preset = "exact";
-    file.resolution = 64;
-    file.eye_points = 4;
-    file.seed = 18446744073709551615u;
+    file.provenance.renderer = "llvmpipe";
+    file.provenance.preset = "exact";
+    file.provenance.resolution = 64;
+    file.provenance.eye_points = 4;
+    file.provenance.seed = 18446744073709551615u;
     file.enclosure = "closed";
     file.geometry_hash = 0x0123456789abcdefu;
     file.error = FactorErrorEstimate{};
@@ -275,7 +275,7 @@ TEST_CASE("HDF5: h5py reads rows, patches, groups and what made them", "[io]") {
     io::write_h5(folder / "a.h5", file, "closure");
 
     Json expected{{"size", 150},
-                  {"entries", entries_of(file.factors)},
+                  {"entries", entries_of(file.matrix)},
                   {"groups", file.groups},
                   {"attributes",
                    {{"schema", "hemi/factors/1"},
@@ -287,7 +287,7 @@ TEST_CASE("HDF5: h5py reads rows, patches, groups and what made them", "[io]") {
                     {"geometry_hash", "0123456789abcdef"},
                     {"resolution", 64},
                     {"eye_points", 4},
-                    {"seed", file.seed}}},
+                    {"seed", file.provenance.seed}}},
                   {"patches",
                    {{"area", file.areas},
                     {"group", file.group_of},
@@ -301,21 +301,21 @@ TEST_CASE("HDF5: h5py reads rows, patches, groups and what made them", "[io]") {
 
 TEST_CASE("HDF5: arrays of many chunks, and rows of which nothing else is known", "[io]") {
     const Folder folder;
-    io::FactorFile file;
-    file.factors = random_matrix(7000, true); // 140,000 entries: two whole chunks and a part
-    REQUIRE(file.factors.entries() > 2 * 65536);
+    FormFactors file;
+    file.matrix = random_matrix(7000, true); // 140,000 entries: two whole chunks and a part
+    REQUIRE(file.matrix.entries() > 2 * 65536);
     io::write_h5(folder / "a.h5", file, "none");
     run_h5py(
         folder / "a.h5",
         folder.write("expected.json", Json{{"size", 7000},
-                                           {"entries", entries_of(file.factors)},
+                                           {"entries", entries_of(file.matrix)},
                                            {"attributes", {{"schema", "hemi/factors/1"}, {"repair", "none"}}}}
                                           .dump()));
 }
 
 TEST_CASE("HDF5: what cannot be written leaves no file", "[io]") {
     const Folder folder;
-    io::FactorFile file = small_file();
+    FormFactors file = small_file();
     require_parts(message_of<IoError>([&] { io::write_h5("/dev/full", file, "none"); }),
                   {"/dev/full: cannot be written: No space left"});
     require_parts(message_of<IoError>([&] { io::write_h5(folder / "no/a.h5", file, "none"); }),

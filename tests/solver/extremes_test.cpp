@@ -107,7 +107,7 @@ std::string refusal(const OwnedProblem& problem, const SolverSettings& settings)
 TEST_CASE("conjugate gradients: a furnace of float factors is right up to reflectance 1 - 1e-6", "[solver]") {
     for (const double rho : {0.5, 0.9, 0.99, 0.9999, 1.0 - 1e-6}) {
         const OwnedProblem problem = furnace(150, rho);
-        const RadiositySolution solution = solve_radiosity(problem.view(), gradients(1e-9));
+        const Solution solution = solve_radiosity(problem.view(), gradients(1e-9));
         INFO("reflectance " << rho);
         CHECK(largest_error(solution.radiosity, 2.0 / (1.0 - rho)) < 1e-7);
         CHECK(solution.residual <= 1e-9);
@@ -125,7 +125,7 @@ TEST_CASE("sweeps: a furnace of float factors is right up to reflectance 1 - 1e-
         const double rho = 1.0 - (method == SolverMethod::jacobi ? 1e-5 : 1e-6);
         OwnedProblem problem = closed_problem(scene_of(exchange, areas), rho);
         problem.exitance.assign(4, 2.0);
-        const RadiositySolution solution =
+        const Solution solution =
             solve_radiosity(problem.view(), {.method = method, .tolerance = 5e-7, .max_sweeps = 100'000'000});
         CHECK(largest_error(solution.radiosity, 2.0 / (1.0 - rho)) < 1e-6);
     }
@@ -141,7 +141,7 @@ TEST_CASE("sweeps: rows that are wrong by some per mille keep a furnace in balan
         }
         problem.factors.set_block(std::move(block));
     }
-    const RadiositySolution solution =
+    const Solution solution =
         solve_radiosity(problem.view(), {.method = SolverMethod::gauss_seidel, .tolerance = 1e-8});
     CHECK(largest_error(solution.radiosity, 2.0 / 1e-4) < 1e-6);
 }
@@ -152,7 +152,7 @@ TEST_CASE("conjugate gradients: the number of iterations does not depend on the 
     std::uint32_t most = 0;
     for (const double rho : {0.5, 0.9, 0.99, 0.9999, 1.0 - 1e-6}) {
         const OwnedProblem problem = closed_problem(scene, rho);
-        const RadiositySolution solution = solve_radiosity(problem.view(), gradients(1e-9));
+        const Solution solution = solve_radiosity(problem.view(), gradients(1e-9));
         fewest = std::min(fewest, solution.sweeps);
         most = std::max(most, solution.sweeps);
         CHECK(largest_relative_difference(solution.radiosity, solve_dense(problem)) < 1e-6);
@@ -180,10 +180,10 @@ TEST_CASE("conjugate gradients: reflectances from 0 to 1 - 1e-6 in one scene", "
         problem.reflectance[i] = levels[static_cast<std::size_t>(4.0 * random())];
         problem.exitance[i] = random() < 0.1 ? 5.0 * random() : 0.0;
     }
-    const RadiositySolution solution = solve_radiosity(problem.view(), gradients());
+    const Solution solution = solve_radiosity(problem.view(), gradients());
     CHECK(largest_relative_difference(solution.radiosity, solve_dense(problem)) < 1e-6);
     CHECK(solution.sweeps <= 40);
-    const RadiositySolution sweeps =
+    const Solution sweeps =
         solve_radiosity(problem.view(), {.method = SolverMethod::gauss_seidel, .tolerance = 1e-10});
     CHECK(largest_relative_difference(solution.radiosity, sweeps.radiosity) < 1e-6);
 }
@@ -192,7 +192,7 @@ TEST_CASE("conjugate gradients: two rooms joined by a small opening", "[solver]"
     for (const double opening : {1e-2, 1e-5}) {
         for (const double rho : {0.9, 0.9999, 1.0 - 1e-6}) {
             const OwnedProblem problem = two_rooms(80, opening, rho);
-            const RadiositySolution solution = solve_radiosity(problem.view(), gradients(1e-9));
+            const Solution solution = solve_radiosity(problem.view(), gradients(1e-9));
             INFO("opening " << opening << ", reflectance " << rho);
             CHECK(solution.sweeps < 40);
             CHECK(largest_relative_difference(solution.radiosity, solve_dense(problem)) < 1e-5);
@@ -213,8 +213,8 @@ TEST_CASE("conjugate gradients: agree with elimination and sweeps in open scenes
         for (const std::uint32_t size : {64u, 101u}) {
             OwnedProblem problem = open_problem(size, channels, 100 * size + channels);
             (void)repair(problem.factors, problem.areas, Repair::reciprocity);
-            const RadiositySolution solution = solve_radiosity(problem.view(), gradients(1e-12));
-            const RadiositySolution sweeps =
+            const Solution solution = solve_radiosity(problem.view(), gradients(1e-12));
+            const Solution sweeps =
                 solve_radiosity(problem.view(), {.method = SolverMethod::gauss_seidel, .tolerance = 1e-12});
             CHECK(solution.residual <= 1e-12);
             CHECK(largest_difference(solution.radiosity, sweeps.radiosity) < 1e-5);
@@ -231,9 +231,9 @@ TEST_CASE("conjugate gradients: black rows may be unknown, lamps among them", "[
         problem.reflectance[2 * i] = problem.reflectance[2 * i + 1] = 0.0;
         problem.exitance[2 * i] = 3.0 + i;
     }
-    const RadiositySolution all = solve_radiosity(problem.view(), gradients());
+    const Solution all = solve_radiosity(problem.view(), gradients());
     problem.factors = forget_rows(problem.factors, unknown);
-    const RadiositySolution some = solve_radiosity(problem.view(), gradients());
+    const Solution some = solve_radiosity(problem.view(), gradients());
     CHECK(largest_relative_difference(some.radiosity, all.radiosity) < 1e-6);
     for (const std::uint32_t i : unknown) {
         CHECK(some.radiosity[2 * i] == problem.exitance[2 * i]);
@@ -245,7 +245,7 @@ TEST_CASE("solve_radiosity: all black, nothing emitting, one patch", "[solver]")
          {SolverMethod::gauss_seidel, SolverMethod::jacobi, SolverMethod::conjugate_gradient}) {
         OwnedProblem black = open_problem(50, 3, 51);
         std::fill(black.reflectance.begin(), black.reflectance.end(), 0.0);
-        const RadiositySolution solution = solve_radiosity(black.view(), {.method = method});
+        const Solution solution = solve_radiosity(black.view(), {.method = method});
         CHECK(solution.radiosity == black.exitance);
         CHECK(solution.residual == 0.0);
         CHECK(solution.sweeps <= 1);
@@ -281,7 +281,7 @@ TEST_CASE("conjugate gradients: channels that differ end together", "[solver]") 
         problem.exitance.insert(problem.exitance.end(),
                                 {1.0, i == 0 ? 1e-200 : 0.0, 0.0, i == 5 ? 1e200 : 0.0});
     }
-    const RadiositySolution solution = solve_radiosity(problem.view(), gradients(1e-9));
+    const Solution solution = solve_radiosity(problem.view(), gradients(1e-9));
     CHECK(solution.residual <= 1e-9);
     CHECK(largest_relative_difference(solution.radiosity, solve_dense(problem)) < 1e-5);
 }
@@ -295,8 +295,8 @@ TEST_CASE("conjugate gradients: a grey channel equals each of three equal channe
             colour.exitance.insert(colour.exitance.end(), channels, grey.exitance[i]);
         }
         colour.environment.assign(channels, grey.environment[0]);
-        const RadiositySolution one = solve_radiosity(grey.view(), gradients());
-        const RadiositySolution many = solve_radiosity(colour.view(), gradients());
+        const Solution one = solve_radiosity(grey.view(), gradients());
+        const Solution many = solve_radiosity(colour.view(), gradients());
         CHECK(one.sweeps == many.sweeps);
         for (std::uint32_t c = 0; c < channels; ++c) {
             std::vector<double> channel;
@@ -310,14 +310,14 @@ TEST_CASE("conjugate gradients: a grey channel equals each of three equal channe
 
 TEST_CASE("conjugate gradients: linear in the light, at any magnitude", "[solver]") {
     const OwnedProblem problem = open_problem(60, 1, 55);
-    const RadiositySolution one = solve_radiosity(problem.view(), gradients());
+    const Solution one = solve_radiosity(problem.view(), gradients());
     for (const int exponent : {-700, -3, 800}) {
         OwnedProblem scaled = problem;
         for (double& value : scaled.exitance) {
             value = std::ldexp(value, exponent);
         }
         scaled.environment[0] = std::ldexp(scaled.environment[0], exponent);
-        RadiositySolution other = solve_radiosity(scaled.view(), gradients());
+        Solution other = solve_radiosity(scaled.view(), gradients());
         for (double& value : other.radiosity) {
             value = std::ldexp(value, -exponent);
         }
@@ -334,7 +334,7 @@ TEST_CASE("conjugate gradients: the same bits on one thread and on many", "[solv
     for (double& exitance : problem.exitance) {
         exitance = random();
     }
-    const RadiositySolution many = solve_radiosity(problem.view(), gradients());
+    const Solution many = solve_radiosity(problem.view(), gradients());
     cpu_set_t before;
     REQUIRE(sched_getaffinity(0, sizeof before, &before) == 0);
     cpu_set_t single;
@@ -345,7 +345,7 @@ TEST_CASE("conjugate gradients: the same bits on one thread and on many", "[solv
         }
     }
     REQUIRE(sched_setaffinity(0, sizeof single, &single) == 0);
-    const RadiositySolution one = solve_radiosity(problem.view(), gradients());
+    const Solution one = solve_radiosity(problem.view(), gradients());
     REQUIRE(sched_setaffinity(0, sizeof before, &before) == 0);
     CHECK(same_bits(one.radiosity, many.radiosity));
 }
@@ -353,26 +353,26 @@ TEST_CASE("conjugate gradients: the same bits on one thread and on many", "[solv
 TEST_CASE("solve_radiosity: chooses the method and says why", "[solver]") {
     OwnedProblem problem = closed_problem(closed_scene(50, 57), 0.95);
     const auto solve = [&] { return solve_radiosity(problem.view()); };
-    RadiositySolution solution = solve();
+    Solution solution = solve();
     CHECK(solution.method == SolverMethod::conjugate_gradient);
-    CHECK_THAT(solution.why, Catch::Contains("0.95") && Catch::Contains("reciprocal"));
+    CHECK_THAT(solution.reason, Catch::Contains("0.95") && Catch::Contains("reciprocal"));
 
     std::fill(problem.reflectance.begin(), problem.reflectance.end(), 0.9);
     solution = solve();
     CHECK(solution.method == SolverMethod::gauss_seidel);
-    CHECK_THAT(solution.why, Catch::Contains("0.9"));
+    CHECK_THAT(solution.reason, Catch::Contains("0.9"));
 
     std::fill(problem.reflectance.begin(), problem.reflectance.end(), 0.95);
     const std::vector<double> areas = std::exchange(problem.areas, {});
     solution = solve();
     CHECK(solution.method == SolverMethod::gauss_seidel);
-    CHECK_THAT(solution.why, Catch::Contains("areas"));
+    CHECK_THAT(solution.reason, Catch::Contains("areas"));
 
     problem.areas = areas;
     problem.factors = dense_matrix(random_rows(50, 1.0, 58));
     solution = solve();
     CHECK(solution.method == SolverMethod::gauss_seidel);
-    CHECK_THAT(solution.why, Catch::Contains("not reciprocal"));
+    CHECK_THAT(solution.reason, Catch::Contains("not reciprocal"));
 
     CHECK(solve_radiosity(problem.view(), {.method = SolverMethod::jacobi}).why == "as asked for");
     CHECK(solver_name(SolverMethod::automatic) == "auto");
@@ -413,12 +413,12 @@ TEST_CASE("conjugate gradients: say so when they do not come to an end", "[solve
     CHECK_THAT(refusal<NotConverged>(energy, gradients()), Catch::Contains("row sum"));
 
     std::uint32_t last = 0;
-    CHECK_THROWS_AS(solve_radiosity(problem.view(), gradients(),
-                                    [&](std::uint32_t iteration, double) {
-                                        last = iteration;
-                                        return iteration < 3;
-                                    }),
-                    Cancelled);
+    SolverSettings watched = gradients();
+    watched.watch = [&](std::uint32_t iteration, double, const auto&) {
+        last = iteration;
+        return iteration < 3;
+    };
+    CHECK_THROWS_AS(solve_radiosity(problem.view(), watched), Cancelled);
     CHECK(last == 3);
 }
 

@@ -42,7 +42,7 @@ TEST_CASE("solve_radiosity: two patches of different area and reflectance", "[so
     const OwnedProblem problem{dense_matrix({{0.0, f01}, {f10, 0.0}}), 1, {rho[0], rho[1]}, {e[0], e[1]}, {}};
     const double determinant = 1.0 - rho[0] * rho[1] * f01 * f10;
     for (const SolverMethod method : methods) {
-        const RadiositySolution solution = solve_radiosity(problem.view(), tight(method));
+        const Solution solution = solve_radiosity(problem.view(), tight(method));
         CHECK(solution.radiosity[0] == Approx((e[0] + rho[0] * f01 * e[1]) / determinant).epsilon(1e-12));
         CHECK(solution.radiosity[1] == Approx((e[1] + rho[1] * f10 * e[0]) / determinant).epsilon(1e-12));
         CHECK(solution.residual <= 1e-13);
@@ -75,7 +75,7 @@ TEST_CASE("solve_radiosity: parallel plates under an open sky", "[solver]") {
         dense_matrix({{0.0, f}, {f, 0.0}}, {sky, sky}), 1, {rho, rho}, {e[0], e[1]}, {3.0}};
     const double source[2] = {e[0] + rho * sky * 3.0, e[1] + rho * sky * 3.0};
     const double determinant = 1.0 - rho * rho * f * f;
-    const RadiositySolution solution = solve_radiosity(problem.view(), tight());
+    const Solution solution = solve_radiosity(problem.view(), tight());
     CHECK(solution.radiosity[0] == Approx((source[0] + rho * f * source[1]) / determinant).epsilon(1e-12));
     CHECK(solution.radiosity[1] == Approx((source[1] + rho * f * source[0]) / determinant).epsilon(1e-12));
 
@@ -94,15 +94,16 @@ TEST_CASE("solve_radiosity: who watches sees every sweep's radiosity, the last o
             CHECK(sweep == seen.size() + 1);
             CHECK(residual >= 0.0);
             seen.push_back(radiosity());
+            return true;
         };
-        const RadiositySolution solution = solve_radiosity(problem.view(), settings);
+        const Solution solution = solve_radiosity(problem.view(), settings);
         REQUIRE(seen.size() == solution.sweeps);
         CHECK(seen.back() == solution.radiosity);
         CHECK(seen[0][0] == Approx(2.0 + 0.8 * 0.5 * 7.0));
         CHECK(seen[0][1] == Approx(7.0 + 0.3 * 0.125 * (method == SolverMethod::jacobi ? 2.0 : seen[0][0])));
     }
     SolverSettings settings = tight();
-    settings.watch = [](std::uint32_t, double, const auto&) { throw Cancelled(); };
+    settings.watch = [](std::uint32_t, double, const auto&) -> bool { throw Cancelled(); };
     CHECK_THROWS_AS(solve_radiosity(problem.view(), settings), Cancelled);
 }
 
@@ -112,7 +113,7 @@ TEST_CASE("solve_radiosity: agrees with Gaussian elimination", "[solver]") {
             const OwnedProblem problem = random_problem(size, channels, 100 * size + channels);
             const std::vector<double> exact = solve_dense(problem);
             for (const SolverMethod method : methods) {
-                const RadiositySolution solution = solve_radiosity(problem.view(), tight(method));
+                const Solution solution = solve_radiosity(problem.view(), tight(method));
                 CHECK(largest_difference(solution.radiosity, exact) < 1e-10);
                 CHECK(solution.residual <= 1e-13);
             }
@@ -124,8 +125,8 @@ TEST_CASE("solve_radiosity: Gauss-Seidel needs about half the sweeps of Jacobi",
     const OwnedProblem problem = random_problem(200, 3, 42, 0.99);
     const SolverSettings gauss_seidel{.tolerance = 1e-10};
     const SolverSettings jacobi{.method = SolverMethod::jacobi, .tolerance = 1e-10};
-    const RadiositySolution one = solve_radiosity(problem.view(), gauss_seidel);
-    const RadiositySolution other = solve_radiosity(problem.view(), jacobi);
+    const Solution one = solve_radiosity(problem.view(), gauss_seidel);
+    const Solution other = solve_radiosity(problem.view(), jacobi);
     CHECK(largest_difference(one.radiosity, other.radiosity) < 1e-7);
     CHECK(one.sweeps < other.sweeps);
     CHECK(one.sweeps > other.sweeps / 4);
@@ -133,7 +134,7 @@ TEST_CASE("solve_radiosity: Gauss-Seidel needs about half the sweeps of Jacobi",
 
 TEST_CASE("solve_radiosity: the residual is the one of its definition", "[solver]") {
     const OwnedProblem problem = random_problem(80, 3, 77);
-    const RadiositySolution solution = solve_radiosity(problem.view(), {.tolerance = 1e-4});
+    const Solution solution = solve_radiosity(problem.view(), {.tolerance = 1e-4});
     CHECK(solution.residual <= 1e-4);
 
     const std::vector<double> arriving = irradiance(problem.view(), solution.radiosity);
@@ -165,7 +166,7 @@ TEST_CASE("solve_radiosity: a furnace glows at E / (1 - rho)", "[solver]") {
     for (const double rho : {0.0, 0.5, 0.9, 0.99}) {
         const OwnedProblem problem = uniform_problem(dense_matrix(rows), rho, 2.0);
         for (const SolverMethod method : methods) {
-            const RadiositySolution solution = solve_radiosity(problem.view(), {.method = method});
+            const Solution solution = solve_radiosity(problem.view(), {.method = method});
             for (const double radiosity : solution.radiosity) {
                 CHECK(radiosity == Approx(2.0 / (1.0 - rho)).epsilon(1e-6 / (1.0 - rho)));
             }
@@ -193,7 +194,7 @@ TEST_CASE("solve_radiosity: an open furnace in an environment as bright as itsel
 TEST_CASE("solve_radiosity: the environment enters by e, the blocked share is dark", "[solver]") {
     const FormFactorMatrix factors = dense_matrix({{0.0, 0.25}, {0.25, 0.0}}, {0.5, 0.0}, {0.25, 0.75});
     const OwnedProblem problem{factors, 2, {0.5, 0.5, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}, {8.0, 0.0}};
-    const RadiositySolution solution = solve_radiosity(problem.view(), tight());
+    const Solution solution = solve_radiosity(problem.view(), tight());
     CHECK(solution.radiosity == std::vector<double>{0.5 * 0.5 * 8.0, 1.0, 0.0, 0.0});
     CHECK(irradiance(problem.view(), solution.radiosity) ==
           std::vector<double>{0.5 * 8.0, 0.0, 0.25 * 2.0, 0.25});
@@ -206,7 +207,7 @@ TEST_CASE("solve_radiosity: the environment enters by e, the blocked share is da
 TEST_CASE("solve_radiosity: a patch that sees itself", "[solver]") {
     const OwnedProblem problem{dense_matrix({{0.75}}, {0.25}), 1, {0.8}, {1.0}, {}};
     for (const SolverMethod method : methods) {
-        const RadiositySolution solution = solve_radiosity(problem.view(), tight(method));
+        const Solution solution = solve_radiosity(problem.view(), tight(method));
         CHECK(solution.radiosity[0] == Approx(1.0 / (1.0 - 0.8 * 0.75)).epsilon(1e-14));
         CHECK(solution.sweeps <= 2);
     }
@@ -216,7 +217,7 @@ TEST_CASE("solve_radiosity: a scene without light is dark and has no residual", 
     OwnedProblem problem = random_problem(20, 3, 4);
     problem.environment.clear();
     std::fill(problem.exitance.begin(), problem.exitance.end(), 0.0);
-    const RadiositySolution solution = solve_radiosity(problem.view());
+    const Solution solution = solve_radiosity(problem.view());
     CHECK(solution.residual == 0.0);
     CHECK(largest_difference(solution.radiosity, problem.exitance) == 0.0);
 }
@@ -227,7 +228,7 @@ TEST_CASE("solve_radiosity: a dark channel does not keep a lit one from convergi
     for (std::size_t k = 0; k < problem.exitance.size(); k += 2) {
         problem.exitance[k] = 0.0;
     }
-    const RadiositySolution solution = solve_radiosity(problem.view(), tight());
+    const Solution solution = solve_radiosity(problem.view(), tight());
     CHECK(solution.residual <= 1e-13);
     CHECK(solution.radiosity[0] == 0.0);
     CHECK(largest_difference(solution.radiosity, solve_dense(problem)) < 1e-10);
@@ -249,8 +250,8 @@ TEST_CASE("solve_radiosity: a grey channel equals each of three equal channels b
         }
         colour.environment.assign(channels, grey.environment[0]);
         for (const SolverMethod method : methods) {
-            const RadiositySolution one = solve_radiosity(grey.view(), {.method = method});
-            const RadiositySolution many = solve_radiosity(colour.view(), {.method = method});
+            const Solution one = solve_radiosity(grey.view(), {.method = method});
+            const Solution many = solve_radiosity(colour.view(), {.method = method});
             CHECK(one.sweeps == many.sweeps);
             CHECK(one.residual == many.residual);
             for (std::uint32_t c = 0; c < channels; ++c) {
@@ -267,8 +268,8 @@ TEST_CASE("solve_radiosity: a grey channel equals each of three equal channels b
 TEST_CASE("solve_radiosity: two runs give the same bytes", "[solver]") {
     const OwnedProblem problem = random_problem(120, 3, 15);
     for (const SolverMethod method : methods) {
-        const RadiositySolution one = solve_radiosity(problem.view(), {.method = method});
-        const RadiositySolution other = solve_radiosity(problem.view(), {.method = method});
+        const Solution one = solve_radiosity(problem.view(), {.method = method});
+        const Solution other = solve_radiosity(problem.view(), {.method = method});
         CHECK(same_bits(one.radiosity, other.radiosity));
         CHECK(one.residual == other.residual);
         CHECK(one.sweeps == other.sweeps);
@@ -277,14 +278,14 @@ TEST_CASE("solve_radiosity: two runs give the same bytes", "[solver]") {
 
 TEST_CASE("solve_radiosity: linear in the light, at any magnitude", "[solver]") {
     const OwnedProblem problem = random_problem(60, 1, 25);
-    const RadiositySolution one = solve_radiosity(problem.view());
+    const Solution one = solve_radiosity(problem.view());
     for (const int exponent : {-700, -3, 800}) {
         OwnedProblem scaled = problem;
         for (double& value : scaled.exitance) {
             value = std::ldexp(value, exponent);
         }
         scaled.environment[0] = std::ldexp(scaled.environment[0], exponent);
-        RadiositySolution other = solve_radiosity(scaled.view());
+        Solution other = solve_radiosity(scaled.view());
         for (double& value : other.radiosity) {
             value = std::ldexp(value, -exponent);
         }
@@ -299,9 +300,9 @@ TEST_CASE("solve_radiosity: unknown rows are allowed where nothing is reflected"
     for (const std::uint32_t i : unknown) {
         problem.reflectance[2 * i] = problem.reflectance[2 * i + 1] = 0.0;
     }
-    const RadiositySolution all = solve_radiosity(problem.view());
+    const Solution all = solve_radiosity(problem.view());
     problem.factors = forget_rows(problem.factors, unknown);
-    const RadiositySolution some = solve_radiosity(problem.view());
+    const Solution some = solve_radiosity(problem.view());
     CHECK(same_bits(all.radiosity, some.radiosity));
 
     const std::vector<double> arriving = irradiance(problem.view(), some.radiosity);
@@ -403,12 +404,15 @@ TEST_CASE("solve_radiosity: an impossible tolerance ends early", "[solver]") {
         for (const std::uint64_t seed : {65u, 66u, 67u}) {
             const OwnedProblem problem = random_problem(50, 3, seed);
             std::uint32_t sweeps = 0;
-            CHECK_THROWS_AS(solve_radiosity(problem.view(), {.method = method, .tolerance = 1e-30},
-                                            [&](std::uint32_t sweep, double) {
-                                                sweeps = sweep;
-                                                return true;
-                                            }),
-                            NotConverged);
+            CHECK_THROWS_AS(
+                solve_radiosity(problem.view(), {.method = method,
+                                                 .tolerance = 1e-30,
+                                                 .watch =
+                                                     [&](std::uint32_t sweep, double, const auto&) {
+                                                         sweeps = sweep;
+                                                         return true;
+                                                     }}),
+                NotConverged);
             CHECK(sweeps < 1000);
         }
     }
@@ -419,10 +423,10 @@ TEST_CASE("solve_radiosity: foresees that the sweeps allowed are too few", "[sol
     std::uint32_t sweeps = 0;
     std::string message;
     try {
-        (void)solve_radiosity(problem.view(), {}, [&](std::uint32_t sweep, double) {
-            sweeps = sweep;
-            return true;
-        });
+        (void)solve_radiosity(problem.view(), {.watch = [&](std::uint32_t sweep, double, const auto&) {
+                                  sweeps = sweep;
+                                  return true;
+                              }});
     } catch (const NotConverged& error) {
         message = error.what();
     }
@@ -442,8 +446,7 @@ TEST_CASE("solve_radiosity: slow convergence within the sweeps allowed is not gi
     problem.exitance[size - 1] = 1.0;
     const std::vector<double> exact = solve_dense(problem);
     for (const SolverMethod method : methods) {
-        const RadiositySolution solution =
-            solve_radiosity(problem.view(), {.method = method, .tolerance = 1e-8});
+        const Solution solution = solve_radiosity(problem.view(), {.method = method, .tolerance = 1e-8});
         CHECK(solution.sweeps > 1000);
         CHECK(largest_difference(solution.radiosity, exact) < 1e-3);
     }
@@ -465,12 +468,12 @@ TEST_CASE("solve_radiosity: calls back after every sweep and can be cancelled", 
     const OwnedProblem problem = random_problem(50, 3, 95);
     std::vector<std::uint32_t> sweeps;
     std::vector<double> residuals;
-    const RadiositySolution solution =
-        solve_radiosity(problem.view(), {}, [&](std::uint32_t sweep, double residual) {
-            sweeps.push_back(sweep);
-            residuals.push_back(residual);
-            return true;
-        });
+    const Solution solution =
+        solve_radiosity(problem.view(), {.watch = [&](std::uint32_t sweep, double residual, const auto&) {
+                            sweeps.push_back(sweep);
+                            residuals.push_back(residual);
+                            return true;
+                        }});
     REQUIRE(sweeps.size() == solution.sweeps);
     for (std::size_t k = 0; k < sweeps.size(); ++k) {
         CHECK(sweeps[k] == k + 1);
@@ -478,11 +481,11 @@ TEST_CASE("solve_radiosity: calls back after every sweep and can be cancelled", 
     CHECK(residuals.back() < residuals.front());
 
     std::uint32_t last = 0;
-    CHECK_THROWS_AS(solve_radiosity(problem.view(), {},
-                                    [&](std::uint32_t sweep, double) {
-                                        last = sweep;
-                                        return sweep < 3;
-                                    }),
+    CHECK_THROWS_AS(solve_radiosity(problem.view(), {.watch =
+                                                         [&](std::uint32_t sweep, double, const auto&) {
+                                                             last = sweep;
+                                                             return sweep < 3;
+                                                         }}),
                     Cancelled);
     CHECK(last == 3);
 }
@@ -492,10 +495,10 @@ TEST_CASE("solve_radiosity: sweeps that begin at the solution end at once, and d
     const OwnedProblem owned = random_problem(30, 2, 5);
     RadiosityProblem problem = owned.view();
     const SolverSettings cold{.method = SolverMethod::gauss_seidel, .tolerance = 1e-9};
-    const RadiositySolution first = solve_radiosity(problem, cold);
+    const Solution first = solve_radiosity(problem, cold);
     SolverSettings warm = cold;
     warm.start = first.radiosity;
-    const RadiositySolution again = solve_radiosity(problem, warm);
+    const Solution again = solve_radiosity(problem, warm);
     CHECK(again.sweeps <= 2);
     CHECK(first.sweeps > 5);
     CHECK(largest_difference(again.radiosity, first.radiosity) < 1e-7);
@@ -507,7 +510,7 @@ TEST_CASE("solve_radiosity: sweeps that begin at the solution end at once, and d
     environment[1] = 0.0;
     problem.exitance = exitance;
     problem.environment = environment;
-    const RadiositySolution dark = solve_radiosity(problem, warm);
+    const Solution dark = solve_radiosity(problem, warm);
     for (std::size_t k = 1; k < dark.radiosity.size(); k += 2) {
         CHECK(dark.radiosity[k] == 0.0);
     }

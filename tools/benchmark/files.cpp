@@ -47,9 +47,9 @@ private:
 };
 
 /// N patches that each see every second one.
-io::FactorFile half_full(std::uint32_t size) {
-    io::FactorFile file;
-    file.factors = FormFactorMatrix(size);
+FormFactors half_full(std::uint32_t size) {
+    FormFactors file;
+    file.matrix = FormFactorMatrix(size);
     file.areas.assign(size, 1.0);
     file.groups = {"even", "odd"};
     std::uint32_t random = 1;
@@ -69,38 +69,36 @@ io::FactorFile half_full(std::uint32_t size) {
             block.known.push_back(1);
             file.group_of.push_back(i % 2);
         }
-        file.factors.set_block(std::move(block));
+        file.matrix.set_block(std::move(block));
     }
     return file;
 }
 
 struct Writer {
     const char* extension;
-    std::function<void(const fs::path&, const io::FactorFile&)> write;
+    std::function<void(const fs::path&, const FormFactors&)> write;
 };
 
 std::vector<Writer> writers() {
     return {
-        {".hff", [](const fs::path& path, const io::FactorFile& file) { io::write_hff(path, file); }},
-        {".npz", [](const fs::path& path, const io::FactorFile& file) { io::write_npz(path, file.factors); }},
-        {".npy", [](const fs::path& path, const io::FactorFile& file) { io::write_npy(path, file.factors); }},
-        {".h5", [](const fs::path& path, const io::FactorFile& file) { io::write_h5(path, file, "none"); }},
-        {".mtx", [](const fs::path& path, const io::FactorFile& file) { io::write_mtx(path, file.factors); }},
-        {".csv", [](const fs::path& path, const io::FactorFile& file) { io::write_csv(path, file.factors); }},
-        {".dat",
-         [](const fs::path& path, const io::FactorFile& file) {
-             io::write_elmer(path, file.factors, io::ElmerFormat::text);
-         }},
+        {".hff", [](const fs::path& path, const FormFactors& file) { io::write_hff(path, file); }},
+        {".npz", [](const fs::path& path, const FormFactors& file) { io::write_npz(path, file.matrix); }},
+        {".npy", [](const fs::path& path, const FormFactors& file) { io::write_npy(path, file.matrix); }},
+        {".h5", [](const fs::path& path, const FormFactors& file) { io::write_h5(path, file, "none"); }},
+        {".mtx", [](const fs::path& path, const FormFactors& file) { io::write_mtx(path, file.matrix); }},
+        {".csv", [](const fs::path& path, const FormFactors& file) { io::write_csv(path, file.matrix); }},
+        {".dat", [](const fs::path& path,
+                    const FormFactors& file) { io::write_elmer(path, file.matrix, io::ElmerFormat::text); }},
         {".bin",
-         [](const fs::path& path, const io::FactorFile& file) {
-             io::write_elmer(path, file.factors, io::ElmerFormat::binary);
+         [](const fs::path& path, const FormFactors& file) {
+             io::write_elmer(path, file.matrix, io::ElmerFormat::binary);
          }},
         {".txt", [](const fs::path& path,
-                    const io::FactorFile& file) { io::write_view3d(path, file, io::View3dFormat::text); }},
+                    const FormFactors& file) { io::write_view3d(path, file, io::View3dFormat::text); }},
         {".vf", [](const fs::path& path,
-                   const io::FactorFile& file) { io::write_view3d(path, file, io::View3dFormat::binary); }},
+                   const FormFactors& file) { io::write_view3d(path, file, io::View3dFormat::binary); }},
         {".idf",
-         [](const fs::path& path, const io::FactorFile& file) {
+         [](const fs::path& path, const FormFactors& file) {
              Diagnostics unused;
              io::write_energyplus(path, file, unused);
          }},
@@ -114,8 +112,8 @@ double seconds_of(const std::function<void()>& work) {
 }
 
 void measure_writers(Report& report, const TemporaryFolder& folder, unsigned rounds) {
-    const io::FactorFile small = half_full(1000);
-    const io::FactorFile large = half_full(4000);
+    const FormFactors small = half_full(1000);
+    const FormFactors large = half_full(4000);
     const auto entries = static_cast<double>(large.factors.entries());
     const double times = entries / static_cast<double>(small.factors.entries());
     for (const Writer& writer : writers()) {

@@ -90,7 +90,7 @@ void Measurements::compare_rows(const Case& scene) {
     if (scene.mesh.size() <= max_baseline_patches) {
         EmbreeRows monte_carlo(scene.mesh, compared, EmbreeRows::Rays::monte_carlo);
         BaselineSettings rays;
-        rays.method = BaselineMethod::montecarlo;
+        rays.method = Method::montecarlo;
         rays.rays = monte_carlo.rays_a_row();
         rays.seed = compared.seed;
         random_difference = row_difference(monte_carlo, *make_baseline(scene.mesh, rays), rows);

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace hemi {
 
@@ -10,7 +12,17 @@ namespace hemi {
 /// value, and what would be right.
 class Error : public std::runtime_error {
 public:
-    using std::runtime_error::runtime_error;
+    /// @param message   one sentence
+    /// @param settings  names of settings (as in "max-memory") that would help; a program may say how they
+    /// are spelled
+    explicit Error(const std::string& message, std::vector<std::string> settings = {})
+        : std::runtime_error(message), settings_(std::move(settings)) {}
+
+    /// Settings that would help, such as "max-memory"; empty where there is none.
+    [[nodiscard]] const std::vector<std::string>& settings() const noexcept { return settings_; }
+
+private:
+    std::vector<std::string> settings_;
 };
 
 /// A function was called with an argument outside its documented range.

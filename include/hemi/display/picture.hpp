@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/core/names.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 
@@ -17,6 +18,14 @@ namespace hemi {
 enum class ToneMapping {
     filmic, ///< an S-curve that rolls off towards white
     linear, ///< as it is, cut off at white
+};
+
+/// Words of ToneMapping.
+template <>
+struct Names<ToneMapping> {
+    /// Every value with its word.
+    static constexpr NamedValue<ToneMapping> table[] = {{ToneMapping::filmic, "filmic"},
+                                                        {ToneMapping::linear, "linear"}};
 };
 
 /// What a patch's pixels show.

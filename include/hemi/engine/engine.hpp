@@ -64,6 +64,11 @@ make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings, co
 [[nodiscard]] std::unique_ptr<RowProvider> make_reference_engine(const PatchMesh& mesh,
                                                                  const HemicubeSettings& settings);
 
+/// Polygons that a hemicube draws: one for every lattice of coplanar parallelogram cells, if they are merged,
+/// and one for every other patch.
+/// @throws InvalidArgument if a surface is cut more than 65,535 ways along an edge
+[[nodiscard]] std::size_t count_draw_polygons(const PatchMesh& mesh, bool merge_lattices);
+
 /// The worker program that belongs to this library: what the environment variable HEMI_WORKER names, else
 /// libexec/hemi/hemi-hemicube-worker in the folder of the running program (or of the shared library that hemi
 /// is part of) or up to two folders above it, else where it was installed. Empty if it is in none of these

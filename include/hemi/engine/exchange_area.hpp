@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/geometry.hpp"
+#include "hemi/matrix/provenance.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <array>
@@ -9,12 +10,6 @@
 #include <vector>
 
 namespace hemi {
-
-/// How closely exchange areas are computed.
-enum class ExchangeRule {
-    standard, ///< factors to 1e-7, row sums to 1e-6; about 40 ns for a far pair, 1 to 20 us for near ones
-    exact,    ///< factors to 1e-11, row sums to 1e-10; about 6 times slower
-};
 
 /// Factor from a surface element at `at` with unit normal `normal` to a polygon, as if nothing lay between.
 ///

@@ -1,51 +1,27 @@
 #pragma once
 
 #include "hemi/core/diagnostics.hpp"
-#include "hemi/matrix/error_estimate.hpp"
-#include "hemi/matrix/form_factor_matrix.hpp"
-#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/matrix/form_factors.hpp"
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hemi::io {
-
-/// Form factors with all that is needed to use them again: what a `.hff` file holds.
-struct FactorFile {
-    FormFactorMatrix factors{0};         ///< N rows
-    std::vector<double> areas;           ///< N
-    std::vector<std::string> groups;     ///< names
-    std::vector<std::uint32_t> group_of; ///< N, index into groups
-    std::vector<std::uint32_t> contacts; ///< ascending: patches that see nothing, face to face with a surface
-    std::uint64_t geometry_hash = 0;     ///< PatchMesh::geometry_hash of what the rows belong to
-    std::string preset = "plain";        ///< of the settings, as `hemi --preset`
-    std::string method = "hemicube";     ///< how the rows were found, as `hemi --method`
-    std::uint32_t resolution = 0;        ///< texels along a hemicube edge; 0 where it does not apply
-    std::uint32_t eye_points = 1;        ///< sample points a patch
-    std::uint32_t shadow_rays = 0;       ///< for each pair that is partly hidden
-    std::uint64_t seed = 0;              ///< of the hemicubes' rotations
-    std::string renderer;                ///< what computed the rows
-    std::string enclosure = "auto";      ///< auto, closed or open, as the scene said
-    /// Better rows of a few patches, by which the rows are judged, whatever is done to them; no row is known
-    /// where none were computed. See compute_reference().
-    FormFactorMatrix reference{0};
-    std::optional<FactorErrorEstimate> error; ///< of the rows as they are here
-    std::string chosen_for; ///< why the settings are what they are, where the program chose them
-};
 
 /// Writes `.hff`: a chunk file, whose rows are independent, checksummed blocks with
 /// their own 64-bit offsets, row balance and, where it is known, visibility. Raw rows, complete under the
 /// final name or not there at all.
 /// @throws InvalidArgument if areas, groups, reference or error do not fit the rows; IoError
-void write_hff(const std::filesystem::path& path, const FactorFile& file);
+void write_hff(const std::filesystem::path& path, const FormFactors& file);
 /// Reads `.hff`.
 /// @throws InputError for anything that is not a sound `.hff`: every length, offset, index and checksum is
 /// tested.
-[[nodiscard]] FactorFile read_hff(const std::filesystem::path& path);
+[[nodiscard]] FormFactors read_hff(const std::filesystem::path& path);
 
 /// Matrix Market, `coordinate real general`, 1-based, entry (i, j) = F(i, j); 9 significant digits.
 void write_mtx(const std::filesystem::path& path, const FormFactorMatrix& factors);
@@ -68,7 +44,7 @@ enum class View3dFormat { text, binary };
 /// @param format      text or binary
 /// @param emissivity  N, limited to [0.001, 0.999] as View3D does; empty: 0.999
 /// @throws InvalidArgument for unknown rows and spans that do not fit; IoError
-void write_view3d(const std::filesystem::path& path, const FactorFile& file, View3dFormat format,
+void write_view3d(const std::filesystem::path& path, const FormFactors& file, View3dFormat format,
                   std::span<const double> emissivity = {});
 
 /// EnergyPlus' ZoneProperty:UserViewFactors:BySurfaceName (.idf): a triple from, to, F for every pair of
@@ -79,7 +55,7 @@ void write_view3d(const std::filesystem::path& path, const FactorFile& file, Vie
 /// @throws InvalidArgument for unknown rows, areas or groups that do not fit, names that EnergyPlus has not
 ///   (with `,` `;` `!`, a line end or outer blanks, of more than 100 characters, equal but for their case);
 ///   IoError
-void write_energyplus(const std::filesystem::path& path, const FactorFile& file, Diagnostics& diagnostics);
+void write_energyplus(const std::filesystem::path& path, const FormFactors& file, Diagnostics& diagnostics);
 
 /// The two kinds of Elmer's ViewFactors.dat.
 enum class ElmerFormat { text, binary };
@@ -95,11 +71,10 @@ void write_elmer(const std::filesystem::path& path, const FormFactorMatrix& fact
 /// /groups/name), row_sum, environment, blocked, known, and row_error where it is known. /groups: name.
 /// Attributes say what made the rows and, as `units`, in what numbers are. The compressed file is put
 /// together in memory.
-/// @param path    of the file
-/// @param file    is written as a whole, but for the reference rows
-/// @param repair  what was made true of the rows, for the attribute: none, reciprocity, closure
+/// @param path  of the file
+/// @param file  is written as a whole, but for the reference rows
 /// @throws InvalidArgument if areas or groups do not fit the rows; IoError
-void write_h5(const std::filesystem::path& path, const FactorFile& file, const std::string& repair);
+void write_h5(const std::filesystem::path& path, const FormFactors& file);
 
 /// Reads Matrix Market as write_mtx() writes it.
 /// Row balance is in none of the files that know F alone: environment and blocked are 0.
@@ -117,6 +92,51 @@ void write_h5(const std::filesystem::path& path, const FactorFile& file, const s
 [[nodiscard]] FormFactorMatrix read_elmer(const std::filesystem::path& path, ElmerFormat format);
 /// Reads a view factor file of View3D: factors, areas and enclosure, nothing else.
 /// @throws ParseError or InputError with file, place and value; also for factors that include reflection
-[[nodiscard]] FactorFile read_view3d(const std::filesystem::path& path, View3dFormat format);
+[[nodiscard]] FormFactors read_view3d(const std::filesystem::path& path, View3dFormat format);
+
+/// What a file of form factors holds: of each, all of those before.
+enum class FactorContent {
+    factors, ///< F alone
+    areas,   ///< areas as well
+    all,     ///< group names, row balance and what made the rows as well
+};
+
+/// What write_factors() knows beside the form factors.
+struct FactorContext {
+    std::span<const double> emissivity = {}; ///< of every patch; empty where it is not known
+};
+
+/// A format of files that hold form factors without the patches' geometry.
+struct FactorFormat {
+    std::string_view extension; ///< ".hff"
+    FactorContent needs;        ///< what it cannot be written without
+    std::string_view holds;     ///< what that is, for messages
+    std::string_view lost;      ///< what of a `.hff` it does not hold
+    /// Writes it.
+    void (*write)(const std::filesystem::path&, const FormFactors&, const FactorContext&, Diagnostics&);
+};
+
+/// Extensions of all formats that write_factors() writes.
+[[nodiscard]] std::vector<std::string_view> factor_extensions();
+/// The format of a path with one of these extensions; "-" is `.csv` on standard output.
+/// @throws InvalidArgument for another extension
+[[nodiscard]] const FactorFormat& factor_format(const std::filesystem::path& path);
+/// Writes form factors in the format of the path's extension.
+/// @throws InvalidArgument for an extension that is not written and what the format cannot hold; IoError
+void write_factors(const std::filesystem::path& path, const FormFactors& factors,
+                   const FactorContext& context, Diagnostics& diagnostics);
+/// Reads a file of form factors by its extension.
+/// @throws InvalidArgument for an extension that is not read; InputError
+[[nodiscard]] FormFactors read_factors(const std::filesystem::path& path);
+/// What a file of that extension holds, if it is read: all of it a `.hff`, areas View3D's, F alone the
+/// others.
+[[nodiscard]] std::optional<FactorContent> factor_content(const std::filesystem::path& path);
+
+/// F summed over groups as CSV: group,area,<every group>,environment,blocked, a line for each leaving group.
+/// @param path    of the file
+/// @param names   of the groups
+/// @param groups  what is written
+void write_group_factors_csv(const std::filesystem::path& path, std::span<const std::string> names,
+                             const GroupFactors& groups);
 
 } // namespace hemi::io

@@ -3,6 +3,7 @@
 #include "hemi/matrix/error_estimate.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
+#include "hemi/solver/solution.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -11,26 +12,13 @@
 
 namespace hemi::io {
 
-/// A stored solution: what a `.hres` file holds. Per-patch arrays hold channel c of patch i at
-/// [i·channels + c]; the patches are PatchMesh(scene, subdivision). In the file, and after reading, every
-/// surface has the grid that was solved as its own, and the subdivision asks for nothing: the patches do
-/// not depend on how surfaces would be cut today.
+/// A stored solution: what a `.hres` file holds. The patches are PatchMesh(scene, subdivision). In the file,
+/// and after reading, every surface has the grid that was solved as its own, and the subdivision asks for
+/// nothing: the patches do not depend on how surfaces would be cut today.
 struct ResultFile {
-    Scene scene;                     ///< geometry, materials, camera, channels: all but file names
-    Subdivision subdivision;         ///< how surfaces were cut, for write_hres()
-    std::vector<double> radiosity;   ///< B, N·channels
-    std::vector<double> irradiance;  ///< H = F B + e B_env, N·channels
-    std::vector<double> row_sum;     ///< N, sum_j F(i, j)
-    std::vector<double> environment; ///< N, e_i
-    std::vector<double> blocked;     ///< N, b_i
-    std::string solver;              ///< as solver_name()
-    std::uint32_t sweeps = 0;        ///< or iterations
-    double residual = 0.0;           ///< relative, as RadiositySolution::residual
-    std::string renderer;            ///< what computed the rows
-    std::string chosen_for;          ///< why the settings are what they are, where the program chose them
-    /// What the factors and the radiosity are off by, with arrays of N and of N·channels.
-    std::optional<FactorErrorEstimate> factor_error;
-    std::optional<RadiosityErrorEstimate> radiosity_error; ///< only with factor_error
+    Scene scene;             ///< geometry, materials, camera, channels: all but file names
+    Subdivision subdivision; ///< how surfaces were cut, for write_hres()
+    Solution solution;       ///< all but the exitance, which the scene's materials have: patch_values()
 };
 
 /// Writes `.hres`.

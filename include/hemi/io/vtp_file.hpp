@@ -1,5 +1,7 @@
 #pragma once
 
+#include "hemi/io/result_file.hpp"
+#include "hemi/matrix/form_factors.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <filesystem>
@@ -21,5 +23,15 @@ struct CellArray {
 /// names), `area` and `arrays`. 64-bit numbers, raw behind the XML.
 /// @throws InvalidArgument for arrays of another length, values that are not finite; IoError
 void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::span<const CellArray> arrays);
+
+/// What a stored solution knows of its patches: row balance, radiosity, irradiance, exitance, reflectance,
+/// and estimated errors where there are any.
+/// @param mesh  the result's patches
+[[nodiscard]] std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh& mesh);
+/// What form factors know of single patches: row balance, and the estimated error of rows where there is one.
+[[nodiscard]] std::vector<CellArray> factor_arrays(const FormFactors& factors);
+/// Row i of F, zeros included, as the array "F_i".
+/// @throws InvalidArgument for a row that is not there or was not computed
+[[nodiscard]] CellArray row_array(const FormFactorMatrix& factors, std::uint32_t row);
 
 } // namespace hemi::io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/core/names.hpp"
 #include "hemi/matrix/balance.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 
@@ -18,6 +19,14 @@ enum class Repair {
     /// change sum (x - x0)²/w that does it, w being the variance of x0; no x below 0, none above its
     /// unoccluded value where something hides part of it.
     closure,
+};
+
+/// Words of Repair.
+template <>
+struct Names<Repair> {
+    /// Every value with its word.
+    static constexpr NamedValue<Repair> table[] = {
+        {Repair::none, "none"}, {Repair::reciprocity, "reciprocity"}, {Repair::closure, "closure"}};
 };
 
 /// How far rows are repaired.

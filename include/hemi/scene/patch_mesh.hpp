@@ -102,4 +102,11 @@ private:
     Bounds bounds_;
 };
 
+/// A property of materials, spread over the patches: N·channels, channel c of patch i at [i·channels + c].
+/// @param mesh       N patches
+/// @param materials  those of the scene, by the index that the mesh knows; all of as many channels
+/// @param property   &Material::reflectance or &Material::exitance
+[[nodiscard]] std::vector<double> patch_values(const PatchMesh& mesh, std::span<const Material> materials,
+                                               std::vector<double> Material::*property);
+
 } // namespace hemi

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/core/enclosure.hpp"
 #include "hemi/core/geometry.hpp"
 
 #include <array>
@@ -49,13 +50,6 @@ struct Camera {
     Vec3 up{0.0, 0.0, 1.0};     ///< direction that is upwards in the picture, of any length
     double fov = 40.0;          ///< vertical field of view, degrees
     bool orthographic = false;  ///< else perspective
-};
-
-/// Whether all that leaves a patch arrives at another.
-enum class Enclosure {
-    automatic, ///< as the rows show
-    closed,    ///< yes; what a row misses is a leak
-    open,      ///< no; what a row misses is the environment's share
 };
 
 /// A scene as its file tells it: plain data, in the file's order and units.

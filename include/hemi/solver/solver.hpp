@@ -2,6 +2,7 @@
 
 #include "hemi/core/progress.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
+#include "hemi/solver/solution.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -29,62 +30,32 @@ struct RadiosityProblem {
     std::span<const double> areas = {};        ///< A, N; needed by conjugate gradients
 };
 
-/// How the radiosity equation is solved.
-enum class SolverMethod {
-    gauss_seidel, ///< sweeps that use new values at once
-    jacobi,       ///< sweeps that use the values of the sweep before
-    /// On the symmetric system of the exchange areas A_i F(i, j), read from one triangle; needs reciprocal
-    /// rows. Its iterations hardly depend on the reflectance.
-    conjugate_gradient,
-    /// Conjugate gradients where reflectance times row sum goes above 0.9 and the rows are reciprocal to the
-    /// rounding of floats, else Gauss–Seidel.
-    automatic,
-};
-
-/// "gauss-seidel", "jacobi", "cg" or "auto".
-[[nodiscard]] std::string_view solver_name(SolverMethod method);
-
-/// Shown after every sweep: its number, the estimate of the residual, and a function that gives the radiosity
-/// as it is then, N·channels, valid during the call.
-using SweepWatcher = std::function<void(std::uint32_t sweep, double residual,
+/// Called after every sweep with its number, an estimate of the residual, and a function that gives the
+/// radiosity as it is then, N·channels, valid during the call. Returning false cancels.
+using SweepWatcher = std::function<bool(std::uint32_t sweep, double residual,
                                         const std::function<std::vector<double>()>& radiosity)>;
 
 /// How far and from where a problem is solved.
 struct SolverSettings {
     SolverMethod method = SolverMethod::automatic; ///< the solver
-    double tolerance = 1e-6;                       ///< on the relative residual, see RadiositySolution
+    double tolerance = 1e-6;                       ///< on the relative residual, see Solution
     std::uint32_t max_sweeps = 100000;             ///< or iterations
     /// Where sweeps begin, N·channels: the solution of a problem that was much the same. Empty: the sources.
     /// Conjugate gradients do not look at it.
     std::span<const double> start = {};
-    SweepWatcher watch = {}; ///< for those who want to see it converge; may be empty, may throw Cancelled
+    SweepWatcher watch = {}; ///< called after every sweep; may be empty
 };
 
-/// What solve_radiosity() found.
-struct RadiositySolution {
-    std::vector<double> radiosity;                    ///< B, N·channels
-    SolverMethod method = SolverMethod::gauss_seidel; ///< the one that was used, never automatic
-    std::string why;                                  ///< a sentence: why this one
-    std::uint32_t sweeps = 0;                         ///< sweeps over the rows, or iterations
-    double residual = 0.0;  ///< worst channel's ||E' - (I - rho F) B||_2 / ||E'||_2, E' = E + rho e B_env
-    double dominance = 0.0; ///< max over i and channels of rho_i·sum_j F(i, j); below 1 the sweeps converge
-};
-
-/// Called after every sweep with its number and an estimate of the residual; false cancels.
-using SweepCallback = std::function<bool(std::uint32_t sweep, double residual)>;
-
-/// Solves the radiosity equation; sums in double, in fixed order: the same bits on any number of threads.
-/// Rows that are not known are allowed where the reflectance is zero in every channel: there B = E.
-/// Memory: a few fields of N·channels; conjugate gradients up to 20.
-/// Source of the symmetric form: conjugate gradients for I - R^1/2 A^1/2 F A^-1/2 R^1/2, T. Kurc, C. Aykanat,
-/// B. Özgüç, "A parallel scaled conjugate-gradient algorithm for the solution phase of gathering radiosity",
-/// 1997.
+/// Solves the radiosity equation. Of the solution the radiosity and how it was found are set, nothing else;
+/// sums in double, in fixed order: the same bits on any number of threads. Rows that are not known are
+/// allowed where the reflectance is zero in every channel: there B = E. Memory: a few fields of N·channels;
+/// conjugate gradients up to 20. Source of the symmetric form: conjugate gradients for I - R^1/2 A^1/2 F
+/// A^-1/2 R^1/2, T. Kurc, C. Aykanat, B. Özgüç, "A parallel scaled conjugate-gradient algorithm for the
+/// solution phase of gathering radiosity", 1997.
 /// @throws InvalidArgument for sizes that do not match, reflectance outside [0, 1), negative or non-finite
 ///   exitance, an unknown row with reflectance, conjugate gradients without areas or on rows that are not
-///   reciprocal; NotConverged when the tolerance is not met.
-[[nodiscard]] RadiositySolution solve_radiosity(const RadiosityProblem& problem,
-                                                const SolverSettings& settings = {},
-                                                const SweepCallback& callback = {});
+///   reciprocal; NotConverged when the tolerance is not met; Cancelled when the watcher returns false.
+[[nodiscard]] Solution solve_radiosity(const RadiosityProblem& problem, const SolverSettings& settings = {});
 
 /// Irradiance H = F B + e B_env of every patch with a known row (0 elsewhere), N·channels; B = E + rho H.
 [[nodiscard]] std::vector<double> irradiance(const RadiosityProblem& problem,

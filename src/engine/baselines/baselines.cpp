@@ -289,28 +289,30 @@ double visible_share(const RayTracer& tracer, const PatchMesh& mesh, std::uint32
 
 std::unique_ptr<RowProvider> make_baseline(const PatchMesh& mesh, const BaselineSettings& settings) {
     if (mesh.size() > max_baseline_patches) {
-        throw InvalidArgument(fmt::format("{} patches; the methods other than hemicube take each pair or "
-                                          "many rays by itself and are for at "
-                                          "most {}: choose larger patches, or hemicubes",
-                                          mesh.size(), max_baseline_patches));
+        throw InvalidArgument(fmt::format("{} patches; baseline methods are slow and take at most {}: choose "
+                                          "larger patches, or hemicubes",
+                                          mesh.size(), max_baseline_patches),
+                              {"patch-size"});
     }
     switch (settings.method) {
-    case BaselineMethod::direct:
+    case Method::direct:
         return std::make_unique<DirectRows>(mesh);
-    case BaselineMethod::contour:
+    case Method::contour:
         return std::make_unique<ContourRows>(mesh);
-    case BaselineMethod::montecarlo:
+    case Method::montecarlo:
         if (settings.rays < 1 || settings.rays > 0x80000000u) {
             throw InvalidArgument(fmt::format("{} rays a patch; must be 1 to 2^31", settings.rays));
         }
         return std::make_unique<MonteCarloRows>(mesh, settings);
-    case BaselineMethod::hemisphere:
+    case Method::hemisphere:
         if (settings.resolution < 1 || settings.resolution > 16384) {
             throw InvalidArgument(fmt::format("disc resolution {}; must be 1 to 16384", settings.resolution));
         }
         return std::make_unique<HemisphereRows>(mesh, settings);
+    case Method::hemicube:
+        break;
     }
-    throw InvalidArgument("unknown yardstick");
+    throw InvalidArgument("hemicube is no baseline method; make_hemicube_engine() makes it");
 }
 
 std::vector<double> point_factors(const PatchMesh& mesh, const Vec3& point, const Vec3& normal,

@@ -1,5 +1,7 @@
 #include "engine/hemicube/draw_list.hpp"
 
+#include "hemi/engine/engine.hpp"
+
 #include "core/welder.hpp"
 #include "engine/hemicube/lattice.hpp"
 #include "engine/hemicube/outline.hpp"

@@ -54,8 +54,4 @@ struct DrawList {
 /// @throws InvalidArgument if a surface is cut more than 65,535 ways along an edge.
 [[nodiscard]] DrawList make_draw_list(const PatchMesh& mesh, bool merge_lattices);
 
-/// Polygons that are drawn, without what makes their outlines watertight, which takes longer.
-/// @throws InvalidArgument as make_draw_list.
-[[nodiscard]] std::size_t count_draw_polygons(const PatchMesh& mesh, bool merge_lattices);
-
 } // namespace hemi

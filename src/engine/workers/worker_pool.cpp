@@ -180,8 +180,9 @@ private:
         pid_ = -1;
         if (reaped && WIFSIGNALED(status)) {
             throw Error(fmt::format("a worker process was killed by signal {} ({}); its rows are missing, so "
-                                    "nothing was finished. Fewer --jobs need less memory",
-                                    WTERMSIG(status), strsignal(WTERMSIG(status))));
+                                    "nothing was finished. Fewer worker processes need less memory",
+                                    WTERMSIG(status), strsignal(WTERMSIG(status))),
+                        {"jobs"});
         }
         throw Error(
             fmt::format("a worker process ended early with status {}; its rows are missing, so nothing "
@@ -251,8 +252,9 @@ private:
             if (ready.software == 0) {
                 if (engine_.jobs > 1) {
                     throw InvalidArgument(
-                        fmt::format("{} jobs on {}: a GPU is served by one process; leave --jobs out",
-                                    engine_.jobs, renderer_));
+                        fmt::format("{} worker processes on {}: a GPU is served by one; ask for none",
+                                    engine_.jobs, renderer_),
+                        {"jobs"});
                 }
                 jobs = 1;
             }

@@ -126,10 +126,11 @@ void CheckpointFile::start(const CheckpointKey& key, std::uint32_t size,
     if (stored) {
         for (const auto& [name, value] : key) {
             if ((*stored)[name] != value) {
-                throw InputError(
-                    fmt::format("{}: holds rows of another run: {} {}, here {}; leave --resume out "
-                                "to begin anew",
-                                path_.string(), name, (*stored)[name], value));
+                throw InputError(fmt::format("{}: this checkpoint holds rows of another run: {} {}, here {}; "
+                                             "do not resume from it, and it is "
+                                             "replaced",
+                                             path_.string(), name, (*stored)[name], value),
+                                 {"resume"});
             }
         }
         FormFactorMatrix rows(size);

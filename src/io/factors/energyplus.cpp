@@ -72,13 +72,13 @@ void warn_of_open_rows(const GroupFactors& groups, const std::vector<std::string
 
 } // namespace
 
-void write_energyplus(const std::filesystem::path& path, const FactorFile& file, Diagnostics& diagnostics) {
-    require_all_known(file.factors, "an EnergyPlus file");
+void write_energyplus(const std::filesystem::path& path, const FormFactors& file, Diagnostics& diagnostics) {
+    require_all_known(file.matrix, "an EnergyPlus file");
     const std::string zone = to_utf8(path.stem().string());
     check_name(zone, "zone");
     check_groups(file.groups);
-    const GroupFactors groups = group_factors(file.factors, file.areas, file.group_of,
-                                              static_cast<std::uint32_t>(file.groups.size()));
+    const GroupFactors groups =
+        group_factors(file.matrix, file.areas, file.group_of, static_cast<std::uint32_t>(file.groups.size()));
     warn_of_open_rows(groups, file.groups, diagnostics);
     const std::vector<std::uint32_t> used = groups_with_patches(groups);
     TextOutput output(path);

@@ -83,8 +83,8 @@ private:
 
 class H5Writer {
 public:
-    H5Writer(const std::filesystem::path& path, const FactorFile& file, const std::string& repair)
-        : path_(path), file_(file), repair_(repair) {}
+    H5Writer(const std::filesystem::path& path, const FormFactors& file)
+        : path_(path), file_(file), repair_(to_word(file.repair ? file.repair->repair : Repair::none)) {}
 
     void write() {
         OutputFile output(path_);
@@ -124,19 +124,19 @@ private:
         if (file_.group_of.empty()) {
             return; // rows from a file that knew no more
         }
-        text(at, "preset", file_.preset);
-        text(at, "method", file_.method);
-        text(at, "renderer", file_.renderer);
-        text(at, "enclosure", file_.enclosure);
+        text(at, "preset", file_.provenance.preset ? std::string(to_word(*file_.provenance.preset)) : "none");
+        text(at, "method", std::string(to_word(file_.provenance.method)));
+        text(at, "renderer", file_.provenance.renderer);
+        text(at, "enclosure", std::string(to_word(file_.enclosure)));
         text(at, "geometry_hash", fmt::format("{:016x}", file_.geometry_hash));
-        number(at, "resolution", file_.resolution);
-        number(at, "eye_points", file_.eye_points);
-        number(at, "seed", file_.seed);
+        number(at, "resolution", file_.provenance.resolution);
+        number(at, "eye_points", file_.provenance.eye_points);
+        number(at, "seed", file_.provenance.seed);
     }
 
     void write_rows(hid_t at) {
         const Handle group = make_group(at, "factors");
-        const FormFactorMatrix& factors = file_.factors;
+        const FormFactorMatrix& factors = file_.matrix;
         text(group.id(), "format", "csr");
         const std::array<hsize_t, 1> two{2};
         const Handle space(H5Screate_simple(1, two.data(), nullptr), H5Sclose);
@@ -183,7 +183,7 @@ private:
             return;
         }
         const Handle group = make_group(at, "patches");
-        const FormFactorMatrix& factors = file_.factors;
+        const FormFactorMatrix& factors = file_.matrix;
         std::vector<double> sums;
         std::vector<double> environment;
         std::vector<double> blocked;
@@ -217,8 +217,8 @@ private:
     template <class Number>
     void blocks(hid_t at, const char* name, hid_t type, const char* units,
                 std::vector<Number> RowBlock::*values) {
-        write_array<Number>(at, name, type, units, file_.factors.entries(), [&](const auto& sink) {
-            for (const RowBlock& block : file_.factors.blocks()) {
+        write_array<Number>(at, name, type, units, file_.matrix.entries(), [&](const auto& sink) {
+            for (const RowBlock& block : file_.matrix.blocks()) {
                 sink(std::span<const Number>(block.*values));
             }
         });
@@ -331,14 +331,14 @@ private:
     }
 
     const std::filesystem::path& path_;
-    const FactorFile& file_;
-    const std::string& repair_;
+    const FormFactors& file_;
+    std::string repair_;
 };
 
 } // namespace
 
-void write_h5(const std::filesystem::path& path, const FactorFile& file, const std::string& repair) {
-    const std::size_t size = file.factors.size();
+void write_h5(const std::filesystem::path& path, const FormFactors& file) {
+    const std::size_t size = file.matrix.size();
     const auto fits = [size](std::size_t length) { return length == 0 || length == size; };
     if (!fits(file.areas.size()) || !fits(file.group_of.size()) ||
         (file.error && file.error->rows.size() != size)) {
@@ -346,7 +346,7 @@ void write_h5(const std::filesystem::path& path, const FactorFile& file, const s
                                           file.group_of.size(), size));
     }
     const QuietErrors quiet;
-    H5Writer(path, file, repair).write();
+    H5Writer(path, file).write();
 }
 
 } // namespace hemi::io

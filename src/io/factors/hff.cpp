@@ -29,21 +29,27 @@ std::vector<std::uint32_t> known_blocks(const FormFactorMatrix& factors) {
     return first_rows;
 }
 
-Json header(const FactorFile& file) {
-    Json head{{"size", file.factors.size()},
+constexpr std::string_view no_preset = "none"; // of baseline methods
+
+std::string_view preset_word(const Provenance& provenance) {
+    return provenance.preset ? to_word(*provenance.preset) : no_preset;
+}
+
+Json header(const FormFactors& file) {
+    Json head{{"size", file.matrix.size()},
               {"block_rows", FormFactorMatrix::block_rows},
               {"groups", file.groups},
               {"geometry", fmt::format("{:016x}", file.geometry_hash)},
-              {"preset", file.preset},
-              {"method", file.method},
-              {"resolution", file.resolution},
-              {"eye_points", file.eye_points},
-              {"shadow_rays", file.shadow_rays},
-              {"seed", file.seed},
-              {"renderer", file.renderer},
-              {"enclosure", file.enclosure},
+              {"preset", preset_word(file.provenance)},
+              {"method", to_word(file.provenance.method)},
+              {"resolution", file.provenance.resolution},
+              {"eye_points", file.provenance.eye_points},
+              {"shadow_rays", file.provenance.shadow_rays},
+              {"seed", file.provenance.seed},
+              {"renderer", file.provenance.renderer},
+              {"enclosure", to_word(file.enclosure)},
               {"reference_blocks", known_blocks(file.reference)},
-              {"chosen_for", file.chosen_for}};
+              {"chosen_for", file.provenance.chosen_for}};
     if (file.error) {
         const FactorErrorEstimate& error = *file.error;
         head["error"] = {{"sampled", error.sampled},
@@ -55,8 +61,8 @@ Json header(const FactorFile& file) {
     return head;
 }
 
-void check(const FactorFile& file) {
-    const std::size_t size = file.factors.size();
+void check(const FormFactors& file) {
+    const std::size_t size = file.matrix.size();
     if (file.areas.size() != size || file.group_of.size() != size) {
         throw InvalidArgument(fmt::format("{} areas and {} groups for {} patches; must be one for each",
                                           file.areas.size(), file.group_of.size(), size));
@@ -71,6 +77,15 @@ void check(const FactorFile& file) {
                                           file.reference.size(), file.error ? file.error->rows.size() : 0,
                                           size));
     }
+}
+
+template <class Enum>
+Enum read_word(const JsonNode& node) {
+    const std::optional<Enum> value = from_word<Enum>(node.any_text());
+    if (!value) {
+        node.expect(fmt::format("one of {}", fmt::join(words<Enum>(), ", ")));
+    }
+    return *value;
 }
 
 std::uint32_t integer32(const JsonNode& node) {
@@ -107,7 +122,7 @@ FactorErrorEstimate read_error(const JsonNode& node) {
 
 /// Everything but the rows. The matrix is made only after the file proved long enough for that many.
 /// @return first rows of the blocks of the reference
-std::vector<std::uint32_t> read_header(ChunkReader& reader, FactorFile& file) {
+std::vector<std::uint32_t> read_header(ChunkReader& reader, FormFactors& file) {
     const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
     const JsonNode head(document, reader.file());
     if (integer32(head.member("block_rows")) != FormFactorMatrix::block_rows) {
@@ -116,18 +131,22 @@ std::vector<std::uint32_t> read_header(ChunkReader& reader, FactorFile& file) {
     const std::uint32_t size = integer32(head.member("size"));
     file.groups = head.member("groups").texts();
     file.geometry_hash = read_hash(head.member("geometry"));
-    file.preset = head.member("preset").any_text();
-    file.method = head.member("method").any_text();
-    file.resolution = integer32(head.member("resolution"));
-    file.eye_points = integer32(head.member("eye_points"));
-    file.shadow_rays = integer32(head.member("shadow_rays"));
-    file.seed = head.member("seed").integer(std::numeric_limits<std::uint64_t>::max());
-    file.renderer = head.member("renderer").any_text();
-    file.enclosure = head.member("enclosure").any_text();
-    if (file.enclosure != "auto" && file.enclosure != "closed" && file.enclosure != "open") {
-        head.member("enclosure").expect("\"auto\", \"closed\" or \"open\"");
+    if (head.member("preset").any_text() == no_preset) {
+        file.provenance.preset.reset();
+    } else {
+        file.provenance.preset = read_word<Preset>(head.member("preset"));
     }
-    file.chosen_for = head.member("chosen_for").any_text();
+    file.provenance.method = read_word<Method>(head.member("method"));
+    file.provenance.resolution = integer32(head.member("resolution"));
+    file.provenance.eye_points = integer32(head.member("eye_points"));
+    file.provenance.shadow_rays = integer32(head.member("shadow_rays"));
+    file.provenance.seed = head.member("seed").integer(std::numeric_limits<std::uint64_t>::max());
+    file.provenance.renderer = head.member("renderer").any_text();
+    file.enclosure = read_word<Enclosure>(head.member("enclosure"));
+    // Files do not say the rule: it was the preset's.
+    file.provenance.exchange_rule =
+        file.provenance.preset == Preset::exact ? ExchangeRule::exact : ExchangeRule::standard;
+    file.provenance.chosen_for = head.member("chosen_for").any_text();
     if (head.has("error")) {
         file.error = read_error(head.member("error"));
     }
@@ -150,14 +169,14 @@ std::vector<std::uint32_t> read_header(ChunkReader& reader, FactorFile& file) {
             areas.fail(fmt::format("an area of {}; must be finite and not negative", area));
         }
     }
-    file.factors = FormFactorMatrix(size);
+    file.matrix = FormFactorMatrix(size);
     file.reference = FormFactorMatrix(reference_blocks.empty() ? 0 : size);
     return reference_blocks;
 }
 
-void read_groups(ChunkReader& reader, FactorFile& file) {
+void read_groups(ChunkReader& reader, FormFactors& file) {
     Payload groups = reader.chunk("GRUP");
-    file.group_of = groups.take_array<std::uint32_t>(file.factors.size());
+    file.group_of = groups.take_array<std::uint32_t>(file.matrix.size());
     groups.expect_end();
     for (const std::uint32_t group : file.group_of) {
         if (group >= file.groups.size()) {
@@ -166,15 +185,15 @@ void read_groups(ChunkReader& reader, FactorFile& file) {
     }
 }
 
-void read_contacts(ChunkReader& reader, FactorFile& file) {
-    Payload contacts = reader.chunk("CONT");
-    const auto count = contacts.take<std::uint32_t>();
-    file.contacts = contacts.take_array<std::uint32_t>(count);
-    contacts.expect_end();
-    for (std::size_t k = 0; k < file.contacts.size(); ++k) {
-        if (file.contacts[k] >= file.factors.size() || (k > 0 && file.contacts[k] <= file.contacts[k - 1])) {
-            contacts.fail(fmt::format("patch {} in contact; patches must ascend and be below {}",
-                                      file.contacts[k], file.factors.size()));
+void read_touching(ChunkReader& reader, FormFactors& file) {
+    Payload touching = reader.chunk("CONT");
+    const auto count = touching.take<std::uint32_t>();
+    file.touching = touching.take_array<std::uint32_t>(count);
+    touching.expect_end();
+    for (std::size_t k = 0; k < file.touching.size(); ++k) {
+        if (file.touching[k] >= file.matrix.size() || (k > 0 && file.touching[k] <= file.touching[k - 1])) {
+            touching.fail(fmt::format("touching patch {}; patches must ascend and be below {}",
+                                      file.touching[k], file.matrix.size()));
         }
     }
 }
@@ -193,9 +212,9 @@ void read_block(ChunkReader& reader, std::string_view tag, FormFactorMatrix& fac
     }
 }
 
-void read_row_errors(ChunkReader& reader, FactorFile& file) {
+void read_row_errors(ChunkReader& reader, FormFactors& file) {
     Payload payload = reader.chunk("RERR");
-    file.error->rows = payload.take_array<double>(file.factors.size());
+    file.error->rows = payload.take_array<double>(file.matrix.size());
     payload.expect_end();
     for (const double error : file.error->rows) {
         if (!(error >= 0.0) || !std::isfinite(error)) {
@@ -206,15 +225,15 @@ void read_row_errors(ChunkReader& reader, FactorFile& file) {
 
 } // namespace
 
-void write_hff(const std::filesystem::path& path, const FactorFile& file) {
+void write_hff(const std::filesystem::path& path, const FormFactors& file) {
     check(file);
     ChunkWriter writer(path, hff_format);
     writer.chunk("HEAD", {bytes_of(json_text(header(file)))});
     writer.chunk("AREA", {bytes_of(file.areas)});
     writer.chunk("GRUP", {bytes_of(file.group_of)});
-    const auto contacts = static_cast<std::uint32_t>(file.contacts.size());
-    writer.chunk("CONT", {bytes_of(contacts), bytes_of(file.contacts)});
-    for (const RowBlock& block : file.factors.blocks()) {
+    const auto touching = static_cast<std::uint32_t>(file.touching.size());
+    writer.chunk("CONT", {bytes_of(touching), bytes_of(file.touching)});
+    for (const RowBlock& block : file.matrix.blocks()) {
         write_row_block(writer.sink(), "ROWS", block);
     }
     for (const std::uint32_t first_row : known_blocks(file.reference)) {
@@ -227,15 +246,15 @@ void write_hff(const std::filesystem::path& path, const FactorFile& file) {
     writer.finish();
 }
 
-FactorFile read_hff(const std::filesystem::path& path) {
+FormFactors read_hff(const std::filesystem::path& path) {
     ChunkReader reader(path, hff_format);
-    FactorFile file;
+    FormFactors file;
     const auto reference_blocks = read_header(reader, file);
     read_groups(reader, file);
-    read_contacts(reader, file);
-    for (std::uint32_t row = 0; row < file.factors.size();) {
-        read_block(reader, "ROWS", file.factors, row);
-        row += std::min(FormFactorMatrix::block_rows, file.factors.size() - row);
+    read_touching(reader, file);
+    for (std::uint32_t row = 0; row < file.matrix.size();) {
+        read_block(reader, "ROWS", file.matrix, row);
+        row += std::min(FormFactorMatrix::block_rows, file.matrix.size() - row);
     }
     for (const std::uint32_t first_row : reference_blocks) {
         read_block(reader, "REFR", file.reference, first_row);

@@ -17,10 +17,10 @@ constexpr double largest_emissivity = 0.999;
 
 /// "program version format enclosure script-F N", filled up to 30 characters, which is how View3D's readers
 /// take it.
-std::string header(const FactorFile& file, View3dFormat format) {
+std::string header(const FormFactors& file, View3dFormat format) {
     return fmt::format("{:<30}",
                        fmt::format("hemi {} {} {} 0 {}", HEMI_VERSION, format == View3dFormat::text ? 0 : 1,
-                                   file.enclosure == "closed" ? 1 : 0, file.factors.size()));
+                                   file.enclosure == Enclosure::closed ? 1 : 0, file.matrix.size()));
 }
 
 double emissivity_of(std::span<const double> emissivity, std::size_t patch) {
@@ -28,17 +28,17 @@ double emissivity_of(std::span<const double> emissivity, std::size_t patch) {
                               : std::clamp(emissivity[patch], least_emissivity, largest_emissivity);
 }
 
-void write_text(const std::filesystem::path& path, const FactorFile& file,
+void write_text(const std::filesystem::path& path, const FormFactors& file,
                 std::span<const double> emissivity) {
     TextOutput output(path);
     output.print(FMT_COMPILE("{}\n"), header(file, View3dFormat::text));
-    const std::uint32_t size = file.factors.size();
+    const std::uint32_t size = file.matrix.size();
     for (std::uint32_t i = 0; i < size; ++i) {
         output.print(FMT_COMPILE("{}{:.9g}"), i == 0 ? "" : " ", file.areas[i]);
     }
     output.print(FMT_COMPILE("\n"));
     for (std::uint32_t i = 0; i < size; ++i) {
-        const RowView row = file.factors.row(i);
+        const RowView row = file.matrix.row(i);
         std::size_t k = 0;
         for (std::uint32_t j = 0; j < size; ++j) {
             const bool stored = k < row.columns.size() && row.columns[k] == j;
@@ -54,11 +54,11 @@ void write_text(const std::filesystem::path& path, const FactorFile& file,
     output.commit();
 }
 
-void write_binary(const std::filesystem::path& path, const FactorFile& file,
+void write_binary(const std::filesystem::path& path, const FormFactors& file,
                   std::span<const double> emissivity) {
     OutputFile output(path);
     output.write(header(file, View3dFormat::binary) + "\r\n");
-    const std::uint32_t size = file.factors.size();
+    const std::uint32_t size = file.matrix.size();
     std::vector<float> line(size);
     const auto write_line = [&] { output.write(line.data(), line.size() * sizeof(float)); };
     for (std::uint32_t i = 0; i < size; ++i) {
@@ -70,7 +70,7 @@ void write_binary(const std::filesystem::path& path, const FactorFile& file,
         }
     }
     write_line();
-    write_dense_rows(output, file.factors);
+    write_dense_rows(output, file.matrix);
     for (std::uint32_t i = 0; i < size; ++i) {
         line[i] = static_cast<float>(emissivity_of(emissivity, i));
     }
@@ -80,10 +80,10 @@ void write_binary(const std::filesystem::path& path, const FactorFile& file,
 
 } // namespace
 
-void write_view3d(const std::filesystem::path& path, const FactorFile& file, View3dFormat format,
+void write_view3d(const std::filesystem::path& path, const FormFactors& file, View3dFormat format,
                   std::span<const double> emissivity) {
-    require_all_known(file.factors, "a View3D file");
-    const std::size_t size = file.factors.size();
+    require_all_known(file.matrix, "a View3D file");
+    const std::size_t size = file.matrix.size();
     if (file.areas.size() != size || (!emissivity.empty() && emissivity.size() != size)) {
         throw InvalidArgument(fmt::format("{} areas and {} emissivities for {} rows", file.areas.size(),
                                           emissivity.size(), size));

@@ -125,7 +125,7 @@ Head read_head(std::string_view line, std::string_view bytes, bool text, const s
 
 } // namespace
 
-FactorFile read_view3d(const std::filesystem::path& path, View3dFormat format) {
+FormFactors read_view3d(const std::filesystem::path& path, View3dFormat format) {
     const std::string file = path.string();
     const std::string bytes = read_file(path);
     const bool text = format == View3dFormat::text;
@@ -139,8 +139,8 @@ FactorFile read_view3d(const std::filesystem::path& path, View3dFormat format) {
     const Head head = read_head(line, bytes, text, file);
     Numbers numbers(bytes, text ? std::string_view() : std::string_view(bytes).substr(head_bytes), text,
                     file);
-    FactorFile result;
-    result.enclosure = head.closed ? "closed" : "open";
+    FormFactors result;
+    result.enclosure = head.closed ? Enclosure::closed : Enclosure::open;
     for (std::uint32_t i = 0; i < head.size; ++i) {
         result.areas.push_back(numbers.next("area"));
         if (result.areas.back() == 0.0) {
@@ -161,7 +161,7 @@ FactorFile read_view3d(const std::filesystem::path& path, View3dFormat format) {
         (void)numbers.next("emissivity");
     }
     numbers.end();
-    result.factors = rows.take();
+    result.matrix = rows.take();
     return result;
 }
 

@@ -128,18 +128,4 @@ std::string to_utf8(std::string_view text) {
     return result;
 }
 
-std::string lower_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return extension;
-}
-
-std::filesystem::path whole_path(const std::filesystem::path& path) {
-    std::error_code problem;
-    const std::filesystem::path absolute = std::filesystem::absolute(path, problem); // else what is not there
-    return problem ? std::filesystem::path()                                         // would stay relative
-                   : std::filesystem::weakly_canonical(absolute, problem);
-}
-
 } // namespace hemi::io

@@ -59,11 +59,4 @@ template <class Integer>
 /// and can be written as JSON.
 [[nodiscard]] std::string to_utf8(std::string_view text);
 
-/// Extension of a file's name with its dot, in lower case.
-[[nodiscard]] std::string lower_extension(const std::filesystem::path& path);
-
-/// `path` from the root and without links, `.` and `..`, whether it is there or not, so that equal ones name
-/// the same file; empty if that cannot be found out.
-[[nodiscard]] std::filesystem::path whole_path(const std::filesystem::path& path);
-
 } // namespace hemi::io

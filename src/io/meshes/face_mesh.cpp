@@ -1,4 +1,5 @@
 #include "io/meshes/face_mesh.hpp"
+#include "hemi/io/paths.hpp"
 
 #include "hemi/core/error.hpp"
 #include "io/formats/text_scan.hpp"
@@ -21,7 +22,7 @@ constexpr Reader readers[] = {
     {".obj", read_obj_mesh}, {".msh", read_msh_mesh}, {".ply", read_ply_mesh}, {".stl", read_stl_mesh}};
 
 const Reader* reader_of(const std::filesystem::path& path) {
-    const std::string extension = lower_extension(path);
+    const std::string extension = extension_of(path);
     const auto* found = std::find_if(std::begin(readers), std::end(readers),
                                      [&](const Reader& reader) { return reader.extension == extension; });
     return found == std::end(readers) ? nullptr : found;

@@ -49,16 +49,16 @@ Json header(const ResultFile& result, const PatchMesh& mesh) {
               {"environment", scene.environment},
               {"surfaces", mesh.surfaces().size()},
               {"patches", mesh.size()},
-              {"solver", result.solver},
-              {"sweeps", result.sweeps},
-              {"residual", result.residual},
-              {"renderer", result.renderer},
-              {"chosen_for", result.chosen_for}};
-    if (result.factor_error && result.radiosity_error) {
-        const FactorErrorEstimate& error = *result.factor_error;
+              {"solver", to_word(result.solution.method)},
+              {"sweeps", result.solution.sweeps},
+              {"residual", result.solution.residual},
+              {"renderer", result.solution.renderer},
+              {"chosen_for", result.solution.chosen_for}};
+    if (result.solution.factor_error && result.solution.error) {
+        const FactorErrorEstimate& error = *result.solution.factor_error;
         head["error"] = {{"sampled", error.sampled}, {"rms", error.rms},
                          {"max", error.max},         {"row_rms", error.row_rms},
-                         {"row_max", error.row_max}, {"radiosity_rms", result.radiosity_error->rms}};
+                         {"row_max", error.row_max}, {"radiosity_rms", result.solution.error->rms}};
     }
     if (scene.camera) {
         const Camera& camera = *scene.camera;
@@ -133,21 +133,26 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     if (head.has("camera")) {
         scene.camera = read_camera(head.member("camera"));
     }
-    result.solver = head.member("solver").any_text();
-    result.sweeps = static_cast<std::uint32_t>(head.member("sweeps").integer(most));
-    result.residual = head.member("residual").number();
-    result.renderer = head.member("renderer").any_text();
-    result.chosen_for = head.member("chosen_for").any_text();
+    result.solution.channels = static_cast<std::uint32_t>(scene.channels.size());
+    const std::optional<SolverMethod> method = from_word<SolverMethod>(head.member("solver").any_text());
+    if (!method) {
+        head.member("solver").expect(fmt::format("one of {}", fmt::join(words<SolverMethod>(), ", ")));
+    }
+    result.solution.method = *method;
+    result.solution.sweeps = static_cast<std::uint32_t>(head.member("sweeps").integer(most));
+    result.solution.residual = head.member("residual").number();
+    result.solution.renderer = head.member("renderer").any_text();
+    result.solution.chosen_for = head.member("chosen_for").any_text();
     if (head.has("error")) {
         const JsonNode error = head.member("error");
-        result.factor_error =
+        result.solution.factor_error =
             FactorErrorEstimate{static_cast<std::uint32_t>(error.member("sampled").integer(most)),
                                 error.member("rms").number(),
                                 error.member("max").number(),
                                 error.member("row_rms").number(),
                                 error.member("row_max").number(),
                                 {}};
-        result.radiosity_error = RadiosityErrorEstimate{error.member("radiosity_rms").number(), {}};
+        result.solution.error = RadiosityErrorEstimate{error.member("radiosity_rms").number(), {}};
     }
     return {head.member("surfaces").integer(most), head.member("patches").integer(most)};
 }
@@ -203,29 +208,29 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     const PatchMesh mesh(result.scene, result.subdivision);
     const std::size_t patches = mesh.size();
     const std::size_t values = patches * result.scene.channels.size();
-    check_array(result.radiosity, values, "radiosity");
-    check_array(result.irradiance, values, "irradiance");
-    check_array(result.row_sum, patches, "row sum");
-    check_array(result.environment, patches, "environment share");
-    check_array(result.blocked, patches, "blocked share");
-    check_array({result.residual}, 1, "residual");
-    const bool estimated = result.factor_error && result.radiosity_error;
+    check_array(result.solution.radiosity, values, "radiosity");
+    check_array(result.solution.irradiance, values, "irradiance");
+    check_array(result.solution.row_sum, patches, "row sum");
+    check_array(result.solution.environment_share, patches, "environment share");
+    check_array(result.solution.back_face_share, patches, "blocked share");
+    check_array({result.solution.residual}, 1, "residual");
+    const bool estimated = result.solution.factor_error && result.solution.error;
     if (estimated) {
-        check_array(result.factor_error->rows, patches, "error of a row");
-        check_array(result.radiosity_error->patches, values, "error of the radiosity");
+        check_array(result.solution.factor_error->rows, patches, "error of a row");
+        check_array(result.solution.error->patches, values, "error of the radiosity");
     }
 
     ChunkWriter writer(path, hres_format);
     writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh)))});
     writer.chunk("SURF", {bytes_of(stored_surfaces(mesh))});
-    writer.chunk("RADI", {bytes_of(result.radiosity)});
-    writer.chunk("IRRA", {bytes_of(result.irradiance)});
-    writer.chunk("RSUM", {bytes_of(result.row_sum)});
-    writer.chunk("ENVI", {bytes_of(result.environment)});
-    writer.chunk("BLOC", {bytes_of(result.blocked)});
+    writer.chunk("RADI", {bytes_of(result.solution.radiosity)});
+    writer.chunk("IRRA", {bytes_of(result.solution.irradiance)});
+    writer.chunk("RSUM", {bytes_of(result.solution.row_sum)});
+    writer.chunk("ENVI", {bytes_of(result.solution.environment_share)});
+    writer.chunk("BLOC", {bytes_of(result.solution.back_face_share)});
     if (estimated) {
-        writer.chunk("RERR", {bytes_of(result.factor_error->rows)});
-        writer.chunk("BERR", {bytes_of(result.radiosity_error->patches)});
+        writer.chunk("RERR", {bytes_of(result.solution.factor_error->rows)});
+        writer.chunk("BERR", {bytes_of(result.solution.error->patches)});
     }
     writer.finish();
 }
@@ -242,14 +247,14 @@ ResultFile read_hres(const std::filesystem::path& path) {
         reader.fail(error.what());
     }
     const std::uint64_t values = sizes.patches * result.scene.channels.size();
-    result.radiosity = read_array(reader, "RADI", values);
-    result.irradiance = read_array(reader, "IRRA", values);
-    result.row_sum = read_array(reader, "RSUM", sizes.patches);
-    result.environment = read_array(reader, "ENVI", sizes.patches);
-    result.blocked = read_array(reader, "BLOC", sizes.patches);
-    if (result.factor_error) {
-        result.factor_error->rows = read_array(reader, "RERR", sizes.patches);
-        result.radiosity_error->patches = read_array(reader, "BERR", values);
+    result.solution.radiosity = read_array(reader, "RADI", values);
+    result.solution.irradiance = read_array(reader, "IRRA", values);
+    result.solution.row_sum = read_array(reader, "RSUM", sizes.patches);
+    result.solution.environment_share = read_array(reader, "ENVI", sizes.patches);
+    result.solution.back_face_share = read_array(reader, "BLOC", sizes.patches);
+    if (result.solution.factor_error) {
+        result.solution.factor_error->rows = read_array(reader, "RERR", sizes.patches);
+        result.solution.error->patches = read_array(reader, "BERR", values);
     }
     reader.finish();
     return result;

@@ -1,6 +1,6 @@
 #include "io/scenes/json_materials.hpp"
 
-#include "core/nearest_word.hpp"
+#include "hemi/core/nearest_word.hpp"
 #include "io/formats/text_scan.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
-#include "core/nearest_word.hpp"
+#include "hemi/core/nearest_word.hpp"
 #include "hemi/io/output_file.hpp"
+#include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "io/formats/json_node.hpp"
 #include "io/formats/text_scan.hpp"
@@ -182,7 +183,7 @@ private:
                 loaded.mesh = read_face_mesh(file, options_.skip_degenerate, diagnostics_);
                 loaded.materials.resize(loaded.mesh.materials.size());
             }
-            if (!surface.has("material") && !loaded.looked_up && lower_extension(file) == ".obj") {
+            if (!surface.has("material") && !loaded.looked_up && extension_of(file) == ".obj") {
                 loaded.materials = find_obj_materials(loaded.mesh, own, folder_, diagnostics_);
                 loaded.looked_up = true;
             }

@@ -1,4 +1,5 @@
 #include "io/scenes/scene_folder.hpp"
+#include "hemi/io/paths.hpp"
 
 #include "io/formats/text_scan.hpp"
 
@@ -19,7 +20,8 @@ bool SceneFolder::allows(const fs::path& path) const {
 }
 
 std::string SceneFolder::refusal(const std::string& name) {
-    return in_quotes(name) + "; must be in the scene's folder or below it (--allow-outside opens others)";
+    return in_quotes(name) +
+           "; must be in the scene's folder or below it, unless files outside it are allowed (allow-outside)";
 }
 
 } // namespace hemi::io

@@ -1,4 +1,5 @@
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/io/paths.hpp"
 
 #include "hemi/core/error.hpp"
 #include "io/formats/text_scan.hpp"
@@ -23,7 +24,7 @@ constexpr Reader readers[] = {{".json", read_json_scene}, {".obj", read_obj_scen
                               {".ply", read_ply_scene},   {".stl", read_stl_scene}};
 
 const Reader* reader_of(const std::filesystem::path& path) {
-    const std::string extension = lower_extension(path);
+    const std::string extension = extension_of(path);
     const auto* found = std::find_if(std::begin(readers), std::end(readers),
                                      [&](const Reader& reader) { return reader.extension == extension; });
     return found == std::end(readers) ? nullptr : found;
@@ -50,7 +51,7 @@ Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& op
     if (reader == nullptr) {
         throw InputError(fmt::format("{}: {}; scenes are read from {} files", path.string(),
                                      path.has_extension()
-                                         ? fmt::format("unknown extension \"{}\"", lower_extension(path))
+                                         ? fmt::format("unknown extension \"{}\"", extension_of(path))
                                          : std::string("no extension"),
                                      scene_extensions()));
     }

@@ -1,7 +1,7 @@
 #include "io/scenes/two_sided.hpp"
 
-#include "core/nearest_word.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/nearest_word.hpp"
 #include "io/formats/text_scan.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-#include "core/nearest_word.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/nearest_word.hpp"
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "io/formats/text_scan.hpp"

@@ -1,0 +1,138 @@
+#pragma once
+
+#include "hemi/core/error.hpp"
+#include "hemi/pipeline/form_factors.hpp"
+#include "hemi/pipeline/radiosity.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace hemi {
+
+/// A way to find the rows of a scene, to be tried against others.
+struct Candidate {
+    FactorSettings settings; ///< how
+    std::string
+        family; ///< "plain", "visibility-weighted", "Monte Carlo" …: those that differ in settings only
+    std::string variant; ///< "4x64": sample points and resolution; "4096 rays"
+
+    /// Family and variant.
+    [[nodiscard]] std::string label() const { return family + (variant.empty() ? "" : " " + variant); }
+    /// The preset, or the method, and what was set over it, for a sentence.
+    [[nodiscard]] std::string description() const;
+};
+/// Hemicubes by a preset, with what is set over it.
+/// @param base     device, jobs, seed, memory and repair
+/// @param patches  size of the scene
+[[nodiscard]] Candidate hemicube_candidate(const FactorSettings& base, Preset preset, std::uint32_t patches,
+                                           std::optional<std::uint32_t> eye_points = {},
+                                           std::optional<std::uint32_t> resolution = {},
+                                           std::optional<std::uint32_t> shadow_rays = {});
+/// A baseline method.
+/// @param rays  of montecarlo
+[[nodiscard]] Candidate baseline_candidate(const FactorSettings& base, Method method, std::uint32_t rays = 0);
+
+/// Rows by which candidates are judged.
+struct Reference {
+    std::vector<std::uint32_t> patches; ///< whose rows they are, ascending
+    FormFactorMatrix rows{0};           ///< N rows, these known
+    HemicubeSettings settings;          ///< of their visibility
+    std::string renderer;               ///< what computed them
+    double seconds = 0.0;               ///< that took
+};
+/// Reference rows of as many of `patches`, spread over all, as fit into about `seconds`: 8 to 32; with more
+/// sample points than any preset has.
+[[nodiscard]] Reference find_reference(const PatchMesh& mesh, std::span<const std::uint32_t> patches,
+                                       const FactorSettings& base, double seconds);
+
+/// How a candidate did.
+struct Measurement {
+    double seconds = 0.0;  ///< for all rows: taken, or those of the reference's rows times what is missing
+    bool all_rows = false; ///< else those of the reference alone
+    FactorErrorEstimate error;       ///< of the rows
+    std::optional<double> radiosity; ///< relative rms error, where there is a radiosity to judge by
+};
+/// Tries a candidate on the reference's rows. Errors are upper ones where factors are visibility-weighted:
+/// pairs are seen from one end only, and rows are not closed.
+/// @param count      number of rows that `seconds` are to be for
+/// @param radiosity  N·channels of about what it is; may be empty
+[[nodiscard]] Measurement try_on_sample(const Scene& scene, const PatchMesh& mesh, const Candidate& candidate,
+                                        const Reference& reference, std::size_t count,
+                                        std::span<const double> radiosity);
+/// Computes all rows of a candidate, prepares them, and judges them.
+/// @param rows  gets the form factors; may be null
+[[nodiscard]] Measurement try_on_all(const Scene& scene, const PatchMesh& mesh, const Candidate& candidate,
+                                     const Reference& reference, std::span<const double> radiosity,
+                                     FormFactors* rows = nullptr);
+/// Bytes that all rows of a candidate need at least: its table of pairs. 0 where there is none.
+[[nodiscard]] std::uint64_t pair_table_bytes(const Candidate& candidate, std::uint32_t patches,
+                                             std::size_t rows);
+
+/// No settings within the limits reach an error target. what() says how far the best ones come.
+class TargetMissed : public Error {
+public:
+    using Error::Error;
+};
+
+/// What a search for settings found.
+struct TargetResult {
+    FormFactors raw;             ///< as they are stored
+    FormFactors factors;         ///< prepared
+    Solution solution;           ///< of solve_to_target()
+    double search_seconds = 0.0; ///< spent on choosing settings
+    double factor_seconds = 0.0; ///< spent on form factors
+};
+/// The cheapest settings whose rows err by no more than `target` (2-norm of a row, rms over rows), by the
+/// estimate: each is judged by a few rows before all are computed.
+/// @param base  device, jobs, seed, memory and repair
+/// @throws TargetMissed; as compute_form_factors
+[[nodiscard]] TargetResult factors_to_target(const Scene& scene, const PatchMesh& mesh,
+                                             const FactorSettings& base, double target,
+                                             Observer& observer = no_observer());
+/// The cheapest settings by which the reflected radiosity errs by no more than `target`, relative and rms, by
+/// the estimate. The patches' size is not part of it.
+/// @param patches          whose rows are needed
+/// @param with_irradiance  see solve_radiosity()
+/// @throws TargetMissed; InvalidArgument if nothing reflects; as compute_form_factors and solve_radiosity
+[[nodiscard]] TargetResult solve_to_target(const Scene& scene, const PatchMesh& mesh,
+                                           std::span<const std::uint32_t> patches, const FactorSettings& base,
+                                           const SolverSettings& solver, double target,
+                                           Observer& observer = no_observer(), bool with_irradiance = true);
+
+/// Speed against accuracy of many candidates on one scene.
+struct Trade {
+    /// One candidate.
+    struct Entry {
+        Candidate candidate;                    ///< what was tried
+        std::optional<Measurement> measurement; ///< how it did
+        std::string omitted;                    ///< why there is no measurement
+        bool front = false;                     ///< nothing is both faster and better
+
+        /// Seconds for all rows.
+        [[nodiscard]] double seconds() const { return measurement->seconds; }
+        /// Error of a row (2-norm, rms over rows), at least what float factors can show.
+        [[nodiscard]] double error() const;
+    };
+    std::vector<Entry> entries; ///< in the order in which they were tried: cheap ones first
+    Reference reference;        ///< what they were judged by
+
+    /// Measured entries, quickest first.
+    [[nodiscard]] std::vector<const Entry*> by_time() const;
+    /// Least product of time and error on the front, as far as smaller errors are of use; null: none was
+    /// measured.
+    [[nodiscard]] const Entry* best() const;
+    /// The slowest entry of the front that is much faster than the best one; null: none.
+    [[nodiscard]] const Entry* faster() const;
+    /// The quickest entry of the front that is much better than the best one; null: none.
+    [[nodiscard]] const Entry* more_accurate() const;
+};
+/// Tries candidates until `budget` seconds are spent: each on a sample first, then on all rows if half of
+/// what time is left will do.
+/// @throws as compute_form_factors
+[[nodiscard]] Trade measure_trade(const Scene& scene, const PatchMesh& mesh, const FactorSettings& base,
+                                  double budget, Observer& observer = no_observer());
+
+} // namespace hemi

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "hemi/engine/engine.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace hemi {
+
+namespace io {
+class CheckpointFile;
+}
+
+/// Rows that outlast a run which is interrupted or killed: finished blocks of raw hemicube rows, kept in
+/// OUTPUT.rows beside the file of form factors that a run is to write, until that is complete. Analytic
+/// factors and error estimates are computed again.
+class RowCheckpoint {
+public:
+    /// @param output  the file of form factors that is to be written
+    /// @param resume  use the rows that an earlier run left; else they are removed
+    /// @throws IoError with `resume` if what is there cannot be used
+    RowCheckpoint(const std::filesystem::path& output, bool resume);
+    ~RowCheckpoint();
+    RowCheckpoint(const RowCheckpoint&) = delete;
+    RowCheckpoint& operator=(const RowCheckpoint&) = delete;
+
+    /// The file that rows are kept in.
+    [[nodiscard]] const std::filesystem::path& path() const;
+    /// Rows that are in it.
+    [[nodiscard]] std::uint64_t rows() const;
+    /// Rows that an earlier run had computed and this one used.
+    [[nodiscard]] std::uint64_t reused() const noexcept { return reused_; }
+    /// The output is complete: removes the file.
+    void discard() noexcept;
+
+private:
+    friend class ObservedRows;
+    std::unique_ptr<io::CheckpointFile> file_;
+    std::uint64_t reused_ = 0;
+};
+
+} // namespace hemi

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "hemi/core/names.hpp"
+#include "hemi/engine/engine.hpp"
+#include "hemi/matrix/form_factor_matrix.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace hemi {
+
+/// What long work is at.
+enum class Phase {
+    visibility,     ///< hemicubes for visibilities; units are rows
+    pairs,          ///< both directions of every pair are combined; units are rows
+    form_factors,   ///< factors of all pairs, or plain rows; units are rows
+    radiosity,      ///< sweeps; `done` is an estimate in per cent
+    error_estimate, ///< better rows of a sample
+    preview,        ///< a coarse solution; units are rows
+};
+
+/// Words of Phase, for people.
+template <>
+struct Names<Phase> {
+    /// Every value with its word.
+    static constexpr NamedValue<Phase> table[] = {{Phase::visibility, "visibility"},
+                                                  {Phase::pairs, "pairs"},
+                                                  {Phase::form_factors, "form factors"},
+                                                  {Phase::radiosity, "radiosity"},
+                                                  {Phase::error_estimate, "estimate of errors"},
+                                                  {Phase::preview, "coarse preview"}};
+};
+
+/// What long work tells, and asks, while it goes on. All calls come from the thread that started the work;
+/// every function does nothing unless it is overridden.
+class Observer {
+public:
+    virtual ~Observer() = default;
+
+    /// `done` of `total` units of a phase are finished. Phases come one after the other.
+    /// @return false to stop the work, which then throws Cancelled
+    virtual bool progress(Phase phase, std::size_t done, std::size_t total);
+    /// A row has come from the engine, in any order, before rows are combined: form factors, or, where
+    /// `quantity` says so, visibilities. The view is valid during the call.
+    virtual void row(std::uint32_t patch, const RowView& row, RowQuantity quantity);
+    /// Something that a person should know and that does not stop the work.
+    /// @param setting  name of a setting that would help, such as "max-memory"; empty: none
+    virtual void warning(std::string_view message, std::string_view setting);
+    /// Something that a person may like to know, such as rows that need not be computed again.
+    virtual void note(std::string_view message);
+    /// What interests who looks closely, such as costs that were foreseen.
+    virtual void detail(std::string_view message);
+};
+
+/// An observer that does nothing.
+[[nodiscard]] Observer& no_observer();
+
+} // namespace hemi

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "hemi/display/picture.hpp"
+#include "hemi/solver/solution.hpp"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hemi {
+
+/// A camera inside the scene, where it is a room: at the place that sees farthest. Nothing where no place
+/// that is tried is closed in all round.
+[[nodiscard]] std::optional<Camera> interior_camera(const PatchMesh& mesh);
+
+/// The scene's own camera, else one inside a room, else one that frames the bounds.
+[[nodiscard]] Camera scene_camera(const Scene& scene, const PatchMesh& mesh);
+
+/// Exitance of the environment in the channels that are shown: what lies behind all surfaces.
+[[nodiscard]] std::array<float, 3> shown_environment(const Scene& scene,
+                                                     const std::array<std::uint32_t, 3>& show);
+
+/// How a solution is drawn.
+struct DrawSettings {
+    PictureSettings picture;        ///< size, shading …; its exposure counts unless it is automatic
+    bool automatic_exposure = true; ///< chosen by automatic_exposure()
+    std::optional<Camera> camera;   ///< empty: scene_camera()
+    /// Channels shown as red, green, blue; empty: the only one, or all three.
+    std::optional<std::array<std::uint32_t, 3>> show;
+    std::string device = "auto"; ///< auto, egl, egl:N, osmesa
+};
+
+/// A picture and the exposure that it was drawn with.
+struct DrawnPicture {
+    Picture picture;       ///< pixels
+    double exposure = 1.0; ///< that was used
+};
+/// Draws a solution offscreen.
+/// @param scene     channels, environment, camera
+/// @param mesh      its patches
+/// @param solution  radiosity, exitance and back-face shares are used
+/// @param settings  how
+/// @throws InvalidArgument if there are two or more than three channels and none are chosen; as
+/// draw_picture()
+[[nodiscard]] DrawnPicture draw_solution(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
+                                         const DrawSettings& settings = {});
+
+/// Writes a picture: `.png` as sRGB, `.hdr` as the radiosity itself. "-" is a PNG on standard output.
+/// @throws InvalidArgument for another extension; IoError
+void write_picture(const std::filesystem::path& path, const Picture& picture);
+
+} // namespace hemi

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "hemi/matrix/form_factors.hpp"
+#include "hemi/pipeline/observer.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/solver/solver.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace hemi {
+
+/// Patches whose rows the radiosity depends on, ascending: those that reflect in some channel.
+[[nodiscard]] std::vector<std::uint32_t> reflecting_patches(const Scene& scene, const PatchMesh& mesh);
+
+/// The radiosity of a scene, with the estimated error that its form factors bring. Channels that are all the
+/// same problem are solved once.
+/// @param scene            materials and environment
+/// @param mesh             its patches
+/// @param factors          prepared, see prepare_form_factors()
+/// @param settings         solver, tolerance
+/// @param observer         is told of progress and may cancel; is warned where nothing radiates
+/// @param with_irradiance  finds the irradiance too
+/// @throws InputError if the row of a reflecting patch is not known; NotConverged; Cancelled
+[[nodiscard]] Solution solve_radiosity(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
+                                       const SolverSettings& settings = {},
+                                       Observer& observer = no_observer(), bool with_irradiance = true);
+
+} // namespace hemi

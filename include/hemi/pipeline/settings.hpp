@@ -1,0 +1,62 @@
+#pragma once
+
+#include "hemi/engine/baselines.hpp"
+#include "hemi/engine/engine.hpp"
+#include "hemi/engine/visibility_weighted.hpp"
+#include "hemi/matrix/provenance.hpp"
+#include "hemi/matrix/repair.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace hemi {
+
+/// How form factors are wanted. An empty optional is the preset's own, or the method's own.
+struct FactorSettings {
+    Preset preset = Preset::standard;         ///< of hemicubes
+    Method method = Method::hemicube;         ///< hemicubes, or a baseline method
+    std::optional<std::uint32_t> resolution;  ///< texels along a hemicube edge; cells of `hemisphere`
+    std::optional<std::uint32_t> eye_points;  ///< sample points for every patch: 1, 4, 9 … 64
+    std::optional<std::uint32_t> shadow_rays; ///< for every partly hidden pair
+    std::optional<std::uint32_t> rays;        ///< of `montecarlo`, a patch
+    std::optional<std::uint64_t> seed;        ///< of the hemicubes' rotations and of rays
+    bool merge_lattices = true;               ///< draw coplanar lattices of patches as one polygon
+    /// What is enforced on F; empty: reciprocity and closure where factors have visibility, else nothing.
+    std::optional<Repair> repair;
+    bool estimate_error = true;              ///< computes better rows of a sample, about a tenth of the work
+    std::optional<std::uint64_t> max_memory; ///< bytes; empty: 80 % of what is free
+    /// Device and workers. An empty worker_program stands for find_worker_program() here.
+    EngineSettings engine;
+};
+
+/// What changes rows, as it follows from the settings and the size of a scene.
+struct RowPlan {
+    HemicubeSettings hemicube; ///< of hemicubes
+    /// Unoccluded factors times visibility; empty: texels alone (`plain`).
+    std::optional<VisibilityWeightedSettings> weighted;
+};
+/// What a preset and what was set over it make of a scene of `patches` patches. Where patches are few and
+/// large, sample points matter most; where they are many and small, texels do: presets share a number of
+/// hemicubes out among the patches.
+[[nodiscard]] RowPlan plan_rows(const FactorSettings& settings, std::uint32_t patches);
+/// The same for a baseline method.
+/// @throws InvalidArgument if the method is hemicube
+[[nodiscard]] BaselineSettings plan_baseline(const FactorSettings& settings);
+
+/// What the rows will come from, but for the renderer.
+[[nodiscard]] Provenance provenance_of(const FactorSettings& settings, std::uint32_t patches);
+
+/// Bytes that form factors may take: max_memory, else 80 % of the memory that the system says is available.
+[[nodiscard]] std::uint64_t memory_limit(const FactorSettings& settings);
+
+/// The engine that computes the rows of these settings.
+/// @param mesh  must outlive it
+/// @throws as make_hemicube_engine() and make_baseline()
+[[nodiscard]] std::unique_ptr<RowProvider> make_row_provider(const PatchMesh& mesh,
+                                                             const FactorSettings& settings);
+/// A hemicube engine on the settings' device with their workers.
+/// @param mesh  must outlive it
+[[nodiscard]] std::unique_ptr<RowProvider>
+make_engine(const PatchMesh& mesh, const HemicubeSettings& hemicube, const FactorSettings& settings);
+
+} // namespace hemi

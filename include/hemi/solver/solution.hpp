@@ -1,0 +1,62 @@
+#pragma once
+
+#include "hemi/core/names.hpp"
+#include "hemi/matrix/error_estimate.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hemi {
+
+/// How the radiosity equation is solved.
+enum class SolverMethod {
+    gauss_seidel, ///< sweeps that use new values at once
+    jacobi,       ///< sweeps that use the values of the sweep before
+    /// On the symmetric system of the exchange areas A_i F(i, j), read from one triangle; needs reciprocal
+    /// rows. Its iterations hardly depend on the reflectance.
+    conjugate_gradient,
+    /// Conjugate gradients where reflectance times row sum goes above 0.9 and the rows are reciprocal to the
+    /// rounding of floats, else Gauss–Seidel.
+    automatic,
+};
+
+/// Words of SolverMethod.
+template <>
+struct Names<SolverMethod> {
+    /// Every value with its word.
+    static constexpr NamedValue<SolverMethod> table[] = {{SolverMethod::automatic, "auto"},
+                                                         {SolverMethod::gauss_seidel, "gauss-seidel"},
+                                                         {SolverMethod::jacobi, "jacobi"},
+                                                         {SolverMethod::conjugate_gradient, "cg"}};
+};
+
+/// The radiosity of every patch of a scene, and what is known of it. Arrays of N·channels hold channel c of
+/// patch i at [i·channels + c]; W/m² (or lm/m²).
+struct Solution {
+    std::uint32_t channels = 1;     ///< wavelengths, bands or colours
+    std::vector<double> radiosity;  ///< B, N·channels
+    std::vector<double> exitance;   ///< E, what patches radiate by themselves, N·channels
+    std::vector<double> irradiance; ///< H = F B + e B_env, N·channels; empty where it was not asked for
+
+    std::vector<double> row_sum;           ///< sum_j F(i, j), N; 0 where the row was not computed
+    std::vector<double> environment_share; ///< e_i, N; likewise
+    std::vector<double> back_face_share;   ///< b_i, N; likewise
+
+    SolverMethod method = SolverMethod::gauss_seidel; ///< the one that was used, never automatic
+    std::string reason;                               ///< a sentence: why this method
+    std::uint32_t channels_solved = 1; ///< 1 where all channels are equal, and one was solved for all
+    std::uint32_t sweeps = 0;          ///< sweeps over the rows, or iterations
+    double residual = 0.0;  ///< worst channel's ||E' - (I - rho F) B||_2 / ||E'||_2, E' = E + rho e B_env
+    double dominance = 0.0; ///< max over i and channels of rho_i·sum_j F(i, j); below 1 the sweeps converge
+
+    double seconds = 0.0; ///< spent on solving; not stored
+
+    std::string renderer;   ///< what computed the rows of F
+    std::string chosen_for; ///< why the settings are what they are, where hemi chose them; else empty
+    std::optional<FactorErrorEstimate> factor_error; ///< of the form factors
+    std::optional<RadiosityErrorEstimate> error;     ///< of the radiosity, from the form factors alone
+};
+
+} // namespace hemi

@@ -1,0 +1,670 @@
+#include "cli/arguments/arguments.hpp"
+
+#include "cli/arguments/completion.hpp"
+#include "cli/arguments/usage_errors.hpp"
+#include "cli/arguments/version.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/engine/engine.hpp"
+#include "hemi/io/scene_reader.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <memory>
+
+namespace hemi::cli {
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr const char* help_help = "print this help";
+constexpr const char* version_help = "print version, revision, compiler and OpenGL";
+
+constexpr std::uint64_t any_whole = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t any_index = std::numeric_limits<std::uint32_t>::max() - 1;
+
+/// Options of one command. Values are read by our own functions, so that all messages have one form.
+class Options {
+public:
+    Options(CLI::App& app, std::string group) : app_(app), group_(std::move(group)) {}
+
+    void flag(const std::string& name, bool& target, const std::string& help, bool value = true) {
+        app_.add_flag_callback(
+                name, [&target, value] { target = value; }, help)
+            ->option_text(" ")
+            ->group(group_);
+    }
+
+    CLI::Option* value(const std::string& name, const std::string& form, const std::string& help,
+                       const std::function<void(const std::string&)>& read) {
+        return app_.add_option_function<std::string>(name, read, help)->option_text(form)->group(group_);
+    }
+
+    /// One of the words of an enumeration. @param read  takes the enumerator
+    template <class Enum>
+    CLI::Option* choice(const std::string& name, const std::string& form, const std::string& help,
+                        const std::function<void(Enum)>& read) {
+        return value(name, form, help,
+                     [name, read](const std::string& text) { read(parse_choice<Enum>(name, text)); })
+            ->type_name(fmt::format("{}", fmt::join(words<Enum>(), "|")));
+    }
+    template <class Enum, class Target>
+    CLI::Option* choice(const std::string& name, const std::string& form, const std::string& help,
+                        Target& target) {
+        return choice<Enum>(name, form, help, [&target](Enum value) { target = value; });
+    }
+
+    CLI::Option* path(const std::string& name, const std::string& form,
+                      std::optional<std::filesystem::path>& target, const std::string& help) {
+        return value(name, form, help,
+                     [name, &target](const std::string& text) {
+                         if (text.empty()) {
+                             throw InvalidArgument(name + " '': a file name is missing");
+                         }
+                         target = text;
+                     })
+            ->type_name(file_type);
+    }
+
+private:
+    CLI::App& app_;
+    std::string group_;
+};
+
+std::uint32_t to_index(std::string_view option, const std::string& text, std::uint64_t lower,
+                       std::uint64_t upper = any_index) {
+    return static_cast<std::uint32_t>(parse_whole(option, text, lower, upper));
+}
+
+void add_positional(CLI::App& app, const std::string& name, std::filesystem::path& target,
+                    const std::string& help) {
+    app.add_option_function<std::string>(
+           name, [&target](const std::string& text) { target = text; }, help)
+        ->required()
+        ->option_text(" ")
+        ->type_name(file_type);
+}
+
+void add_common(CLI::App& app, CommonOptions& common, bool json = true) {
+    app.set_version_flag("--version", version_text(), version_help)->group("General");
+    Options options(app, "General");
+    if (json) {
+        options.flag("--json", common.json, "one JSON object on stdout instead of text");
+    }
+    options.flag("-q,--quiet", common.quiet, "errors only: no progress, warnings or summary");
+    options.flag("-v,--verbose", common.verbose, "say more");
+    options.choice<ColourChoice>("--color", "WHEN", "auto, always or never (NO_COLOR is honoured)",
+                                 common.colour);
+}
+
+/// @param stored  extensions of stored files that do as well
+void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SCENE",
+               const std::string& stored = "") {
+    add_positional(app, name, scene.path,
+                   stored.empty()
+                       ? fmt::format("scene: {}", io::scene_extensions())
+                       : fmt::format("scene ({}) or stored file ({})", io::scene_extensions(), stored));
+    Options options(app, "Scene");
+    auto* size = options.value("--patch-size", "S", "patch edges no longer than S scene units",
+                               [&scene](const std::string& text) {
+                                   scene.subdivision.patch_size = parse_positive("--patch-size", text);
+                               });
+    options
+        .value("--patches-per-face", "N", "about N patches a face (k x k, smallest k*k >= N)",
+               [&scene](const std::string& text) {
+                   scene.subdivision.patches_per_face = to_index("--patches-per-face", text, 1, 100'000'000);
+               })
+        ->excludes(size);
+    options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
+    options.flag("--allow-outside", scene.allow_outside,
+                 "open files outside the scene's folder that the scene names");
+    app.add_option("--two-sided", scene.two_sided,
+                   "faces of GROUP radiate on both sides (not for .json); repeatable")
+        ->allow_extra_args(false)
+        ->option_text("GROUP")
+        ->group("Scene");
+}
+
+void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows, bool checks = true) {
+    Options options(app, "Scene");
+    options.choice<Enclosure>("--enclosure", "KIND", "auto, closed or open; overrides the scene",
+                              scene.enclosure);
+    if (!checks) {
+        return;
+    }
+    options.value(
+        "--max-row-error", "T", "largest share of a row that may leak or meet back faces (1e-4)",
+        [&rows](const std::string& text) { rows.max_row_error = parse_positive("--max-row-error", text); });
+}
+
+void add_device(CLI::App& app, std::string& device) {
+    Options(app, "Computing")
+        .value("--device", "NAME", "auto, egl, egl:N or osmesa; see `hemi devices`",
+               [&device](const std::string& text) {
+                   const bool numbered = text.starts_with("egl:");
+                   if (numbered) {
+                       (void)parse_whole("--device egl:", text.substr(4), 0, 1000);
+                   } else {
+                       (void)parse_choice("--device", text, Words{"auto", "egl", "egl:N", "osmesa"});
+                       if (text == "egl:N") {
+                           throw InvalidArgument("--device egl:N: N stands for a number, such as egl:0");
+                       }
+                   }
+                   device = text;
+               })
+        ->type_name("auto|egl|osmesa");
+}
+
+/// How hemicubes are drawn, whatever their settings.
+void add_drawing(CLI::App& app, RowOptions& rows) {
+    Options options(app, "Form factors");
+    options.value(
+        "--seed", "N", "seed of the rotation of every hemicube (0)",
+        [&rows](const std::string& text) { rows.factors.seed = parse_whole("--seed", text, 0, any_whole); });
+    options.flag("--no-merge", rows.factors.merge_lattices,
+                 "draw every patch separately, even in coplanar lattices", false);
+    add_device(app, rows.factors.engine.device);
+    Options(app, "Computing")
+        .value("--jobs", "N", "worker processes on software OpenGL (one per core)",
+               [&rows](const std::string& text) {
+                   rows.factors.engine.jobs = to_index("--jobs", text, 1, 1024);
+               });
+}
+
+void add_rows(CLI::App& app, RowOptions& rows) {
+    Options options(app, "Form factors");
+    options.choice<Preset>("--preset", "NAME",
+                           "fast, default or exact: unoccluded factors times visibility; plain: the textbook "
+                           "hemicube",
+                           rows.factors.preset);
+    options.choice<Method>("--method", "NAME",
+                           "hemicube (the default); baseline methods, all slow: direct and contour (both "
+                           "unoccluded), montecarlo, hemisphere",
+                           rows.factors.method);
+    options.value(
+        "--rays", "N", "montecarlo: rays a patch, best a power of two (16384)",
+        [&rows](const std::string& text) { rows.factors.rays = to_index("--rays", text, 1, 1u << 31); });
+    options.value("--eye-points", "K", "sample points per patch: 1, 4, 9 ... 64 (as the preset says)",
+                  [&rows](const std::string& text) {
+                      rows.factors.eye_points = to_index("--eye-points", text, 1);
+                      check_eye_points(*rows.factors.eye_points);
+                  });
+    options.value("--resolution", "R",
+                  "texels along a full hemicube edge: even, 2 to 4096 (as the preset says; plain: 128)",
+                  [&rows](const std::string& text) {
+                      rows.factors.resolution = to_index("--resolution", text, 2, 4096);
+                      if (*rows.factors.resolution % 2 != 0) {
+                          throw InvalidArgument(fmt::format("--resolution {}: must be even, for example {}",
+                                                            text, *rows.factors.resolution + 1));
+                      }
+                  });
+    options.value("--shadow-rays", "N",
+                  "rays between patches that partly see each other, 0 to 4096 (as the preset says)",
+                  [&rows](const std::string& text) {
+                      rows.factors.shadow_rays = to_index("--shadow-rays", text, 0, 4096);
+                  });
+    add_drawing(app, rows);
+}
+
+void add_repair(CLI::App& app, std::optional<Repair>& repair) {
+    Options(app, "Form factors")
+        .choice<Repair>(
+            "--repair", "KIND",
+            "constraints enforced on F: none, reciprocity, or closure (reciprocity and row sums; the "
+            "default unless rows are plain)",
+            repair);
+}
+
+/// Estimates of errors, and settings chosen by them. After add_rows.
+void add_estimate(CLI::App& app, RowOptions& rows) {
+    Options options(app, "Form factors");
+    options.flag("--no-estimate", rows.factors.estimate_error,
+                 "skip the error estimate, which takes a tenth of the time", false);
+    auto* target = options.value(
+        "--error-target", "T", "choose the cheapest settings whose estimated error is at most T",
+        [&rows](const std::string& text) { rows.error_target = parse_positive("--error-target", text); });
+    for (const char* name : {"--preset", "--method", "--eye-points", "--resolution", "--shadow-rays",
+                             "--rays", "--no-estimate"}) {
+        target->excludes(app.get_option(name));
+    }
+}
+
+/// @param output  the file of form factors beside which rows are kept
+void add_resume(CLI::App& app, RowOptions& rows, CLI::Option* output) {
+    Options(app, "Output")
+        .flag("--resume", rows.resume,
+              fmt::format("with {}: resume from the rows that an interrupted run left in FILE.rows",
+                          output->get_name()));
+    app.get_option("--resume")->needs(output)->excludes(app.get_option("--error-target"));
+}
+
+void add_max_memory(CLI::App& app, RowOptions& rows) {
+    Options(app, "Computing")
+        .value("--max-memory", "SIZE",
+               "refuse to need more than that, such as 512M or 2G (80 % of what is free)",
+               [&rows](const std::string& text) {
+                   rows.factors.max_memory = parse_memory("--max-memory", text);
+               });
+}
+
+void add_environment(CLI::App& app, SceneOptions& scene) {
+    Options options(app, "Scene");
+    options.value("--environment", "E[,E...]",
+                  "exitance of the environment, one for all channels or one for each; overrides the scene",
+                  [&scene](const std::string& text) {
+                      scene.environment.clear();
+                      for (const std::string& value : parse_list(text)) {
+                          scene.environment.push_back(parse_number("--environment", value));
+                      }
+                  });
+}
+
+void add_solver(CLI::App& app, SolverSettings& solver) {
+    Options options(app, "Solver");
+    options.choice<SolverMethod>("--solver", "NAME",
+                                 "auto, gauss-seidel, jacobi or cg (auto: cg for high reflectance and "
+                                 "reciprocal rows)",
+                                 solver.method);
+    options.value("--tolerance", "T", "relative residual to reach (1e-6)",
+                  [&solver](const std::string& text) {
+                      solver.tolerance = parse_positive("--tolerance", text);
+                      if (solver.tolerance >= 1.0) {
+                          throw InvalidArgument(fmt::format("--tolerance {}: must be below 1", text));
+                      }
+                  });
+}
+
+/// Channels, shading and exposure of a solution that is shown.
+std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture) {
+    Options options(app, "Picture");
+    std::vector<CLI::Option*> added;
+    added.push_back(options.value("--show", "A,B,C", "channels shown as red, green, blue; or one, as grey",
+                                  [&picture](const std::string& text) { picture.show = parse_list(text); }));
+    options.flag("--flat", picture.flat, "one colour a patch instead of smooth shading");
+    added.push_back(app.get_option("--flat"));
+    added.push_back(options.value("--exposure", "X", "factor on radiosity, or auto (the default)",
+                                  [&picture](const std::string& text) {
+                                      picture.exposure.reset();
+                                      if (text != "auto") {
+                                          picture.exposure = parse_positive("--exposure", text);
+                                      }
+                                  }));
+    return added;
+}
+
+/// @param output  the option without which these make no sense; may be none.
+void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
+    std::vector<CLI::Option*> added = add_shown(app, picture);
+    Options options(app, "Picture");
+    added.push_back(options.value(
+        "--size", "WxH", fmt::format("size in pixels ({}x{})", picture.size[0], picture.size[1]),
+        [&picture](const std::string& text) { picture.size = parse_picture_size("--size", text); }));
+    added.push_back(options.value(
+        "--camera", "EYE:TARGET[:UP][:FOV]", "camera, such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
+        [&picture](const std::string& text) { picture.camera = parse_camera("--camera", text); }));
+    added.push_back(options.choice<ToneMapping>("--tone-mapping", "NAME", "filmic (the default) or linear",
+                                                [&picture](ToneMapping value) {
+                                                    picture.tone_mapping = value;
+                                                    picture.tone_mapping_given = true;
+                                                }));
+    options.flag("--orthographic", picture.orthographic, "parallel rays, at the scale of the target's depth");
+    options.flag("--outlines", picture.outlines, "draw outlines of patches");
+    options.flag("--backs", picture.backs, "show the backs of one-sided surfaces, striped");
+    for (const char* name : {"--orthographic", "--outlines", "--backs"}) {
+        added.push_back(app.get_option(name));
+    }
+    added.push_back(options.value(
+        "--samples", "N", "supersamples along each edge of a pixel, 1 to 8 (4)",
+        [&picture](const std::string& text) { picture.samples = to_index("--samples", text, 1, 8); }));
+    for (CLI::Option* option : added) {
+        if (output != nullptr) {
+            option->needs(output);
+        }
+    }
+}
+
+void add_solve(CLI::App& app, SolveArguments& a) {
+    add_scene(app, a.scene);
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_repair(app, a.rows.factors.repair);
+    add_estimate(app, a.rows);
+    add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
+    add_solver(app, a.solver);
+    Options output(app, "Output");
+    auto* picture = output.path("-o,--output", "PICTURE", a.picture.output,
+                                "picture: .png or .hdr; - for .png on stdout");
+    auto* factors = output.path("--factors", "FILE.hff", a.factors,
+                                "use these form factors if the file exists, else write them there");
+    add_resume(app, a.rows, factors);
+    output.path("--result", "FILE.hres", a.result, "the whole solution, for `hemi render` and `hemi view`");
+    output.path("--radiosity", "FILE.csv", a.radiosity, "exitance, irradiance and radiosity of every patch");
+    output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
+    add_picture(app, a.picture, picture);
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi solve scenes/cornell-box.json -o cornell-box.png\n"
+               "  hemi solve room.obj --patch-size 0.1 --factors room.hff --result room.hres");
+}
+
+void add_factors(CLI::App& app, FactorsArguments& a) {
+    add_scene(app, a.scene, "SCENE|FILE", ".hff");
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_repair(app, a.rows.factors.repair);
+    add_estimate(app, a.rows);
+    add_max_memory(app, a.rows);
+    Options output(app, "Output");
+    auto* file = output.path(
+        "-o,--output", "FILE", a.output,
+        "form factors: .hff .mtx .csv .npz .npy .h5, View3D's .txt .vf, Elmer's .dat .bin, EnergyPlus' .idf, "
+        "ParaView's .vtp; - for .csv on stdout");
+    add_resume(app, a.rows, file);
+    output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
+    auto* row = output.value("--row", "I", "print one row, largest first, with names",
+                             [&a](const std::string& text) { a.row = to_index("--row", text, 0); });
+    output.flag("--by-group", a.by_group, "sum over named groups: a table, or with -o FILE.csv the file");
+    row->excludes(file);
+    row->excludes(app.get_option("--by-group"));
+    row->excludes(app.get_option("--error-target"));
+    auto* point = output.value(
+        "--from-point", "X,Y,Z,NX,NY,NZ",
+        "factors from a surface element at a point with a normal to every patch, analytic, largest first",
+        [&a](const std::string& text) {
+            const std::vector<std::string> numbers = parse_list(text);
+            if (numbers.size() != 6) {
+                throw InvalidArgument(fmt::format("--from-point {}: {} numbers; it must be 6, such as "
+                                                  "0,0,0,0,0,1",
+                                                  text, numbers.size()));
+            }
+            std::array<double, 6>& at = a.from_point.emplace();
+            for (std::size_t k = 0; k < 6; ++k) {
+                at[k] = parse_number("--from-point", numbers[k]);
+            }
+        });
+    point->excludes(file);
+    point->excludes(row);
+    point->excludes(app.get_option("--by-group"));
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi factors scenes/cube.json --by-group\n"
+               "  hemi factors room.obj -o room.npz --patches room.csv");
+}
+
+void add_check(CLI::App& app, CheckArguments& a) {
+    add_scene(app, a.scene, "SCENE|FILE", ".hff");
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_repair(app, a.rows.factors.repair);
+    add_max_memory(app, a.rows);
+    add_common(app, a.common);
+    app.footer(
+        "Checks row balance, bounds, reciprocity, leaks, buried and never visible patches, reversed "
+        "normals.\n"
+        "Exit 5 if, beyond --max-row-error, a row of a closed scene leaks, a patch that is not buried meets\n"
+        "back faces, or a row does not balance. With `auto`, a scene in which fewer than 5 % of the patches\n"
+        "leak, or which loses less than 0.1 % in all, counts as nearly closed: that is a warning;\n"
+        "--enclosure closed makes it an error. Buried and never-visible patches are reported but are not\n"
+        "errors.\n\n"
+        "Examples:\n"
+        "  hemi check scenes/l-room.json --enclosure closed\n"
+        "  hemi check room.hff --max-row-error 1e-3 --json");
+}
+
+void add_trade(CLI::App& app, TradeArguments& a) {
+    add_scene(app, a.scene);
+    add_enclosure(app, a.scene, a.rows, false);
+    add_drawing(app, a.rows);
+    add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
+    Options(app, "Output")
+        .path("-o,--output", "PLOT.svg", a.output, "error against seconds as a drawing; - for stdout");
+    Options(app, "Computing")
+        .value("--budget", "TIME", "about how long it may take in all, such as 30s or 5m (60s)",
+               [&a](const std::string& text) { a.budget = parse_duration("--budget", text); });
+    add_common(app, a.common);
+    app.footer(
+        "Tries methods, presets, sample points and resolutions on this scene, and compares them with the\n"
+        "best rows that the budget affords. The last measurement may exceed the budget.\n\n"
+        "Examples:\n"
+        "  hemi trade scenes/cube.json -o cube.svg\n"
+        "  hemi trade room.obj --patch-size 0.1 --budget 5m --json");
+}
+
+void add_render(CLI::App& app, RenderArguments& a) {
+    add_positional(app, "RESULT", a.input, "stored solution: .hres");
+    Options output(app, "Output");
+    output.path("-o,--output", "PICTURE", a.picture.output,
+                "picture: .png or .hdr (RESULT's name with .png, here); - for .png on stdout");
+    add_picture(app, a.picture, nullptr);
+    add_device(app, a.device);
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi render room.hres -o room.png --size 1600x900 --exposure 0.8\n"
+               "  hemi render room.hres -o flat.png --flat --camera 0,-3,1:0,0,1");
+}
+
+#ifdef HEMI_WITH_VIEWER
+void add_view(CLI::App& app, ViewArguments& a) {
+    add_scene(app, a.scene, "SCENE|RESULT", ".hres");
+    add_rows(app, a.rows);
+    add_repair(app, a.rows.factors.repair);
+    add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
+    add_solver(app, a.solver);
+    a.picture.size = {1280, 720};
+    add_picture(app, a.picture, nullptr);
+    Options window(app, "Window");
+    window.choice<viewer::Controls>("--controls", "NAME",
+                                    "standard (the default) or blender: what the mouse does", a.controls);
+    window
+        .value("--script", "FILE",
+               "drags, keys, screenshots and more from a file, for demonstrations and tests",
+               [&a](const std::string& text) { a.script = text; })
+        ->type_name(file_type);
+    add_common(app, a.common, false);
+    app.footer("Examples:\n"
+               "  hemi view scenes/cornell-box.json\n"
+               "  hemi view room.hres --flat");
+}
+
+#endif
+
+void add_bake(CLI::App& app, BakeArguments& a) {
+    add_scene(app, a.scene, "SCENE|RESULT", ".hres");
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_repair(app, a.rows.factors.repair);
+    add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
+    add_solver(app, a.solver);
+    Options(app, "Output")
+        .path("-o,--output", "OUT", a.picture.output,
+              "mesh with vertex colours: .glb or .ply; - for .glb on stdout")
+        ->required();
+    (void)add_shown(app, a.picture);
+    add_common(app, a.common);
+    app.footer(
+        "Colours are exposure times radiosity, at most 1: linear in a .glb (COLOR_0), sRGB in a .ply. The\n"
+        "radiosity itself is _RADIOSITY, or radiosity_red and so on. Axes are those of the scene.\n\n"
+        "Examples:\n"
+        "  hemi bake scenes/cornell-box.json -o cornell-box.glb\n"
+        "  hemi bake room.hres -o room.glb --exposure 0.5 --flat");
+}
+
+void add_convert(CLI::App& app, ConvertArguments& a) {
+    add_positional(
+        app, "IN", a.input,
+        "form factors: .hff .mtx .csv .npz, View3D's .txt .vf, Elmer's .dat .bin; a solution: .hres");
+    add_positional(
+        app, "OUT", a.output,
+        "form factors: .mtx .csv .npz .npy .h5 .dat .bin; from .hff also .hff .txt .vf and EnergyPlus' "
+        ".idf; - for .csv on stdout; of a solution: .vtp, or .csv with the radiosity of every patch");
+    add_repair(app, a.repair);
+    Options paraview(app, "ParaView");
+    auto* factors =
+        paraview.path("--factors", "FILE.hff", a.factors, "for .vtp: form factors with the rows of --row");
+    auto* row = app.add_option_function<Words>(
+                       "--row",
+                       [&a](const Words& all) {
+                           for (const std::string& text : all) {
+                               a.rows.push_back(to_index("--row", text, 0));
+                               if (std::count(a.rows.begin(), a.rows.end(), a.rows.back()) > 1) {
+                                   throw InvalidArgument(fmt::format("--row {}: is given twice", text));
+                               }
+                           }
+                       },
+                       "for .vtp: show F(I, j) at every patch j; repeatable")
+                    ->allow_extra_args(false)
+                    ->option_text("I")
+                    ->group("ParaView");
+    row->needs(factors);
+    factors->needs(row);
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi convert room.hff room.npz\n"
+               "  hemi convert room.hres room.vtp --factors room.hff --row 12 --row 40");
+}
+
+void add_info(CLI::App& app, InfoArguments& a) {
+    add_scene(app, a.scene, "SCENE|FILE", ".hff, .hres, .mtx, .csv, .npz, .txt, .vf, .dat, .bin");
+    add_rows(app, a.rows);
+    Options(app, "Output").flag("--measure", a.measure, "compute up to 64 rows for the estimate");
+    for (const char* name : {"--device", "--seed", "--no-merge"}) {
+        app.get_option(name)->needs(app.get_option("--measure"));
+    }
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi info scenes/office.json --measure\n"
+               "  hemi info room.hff --json");
+}
+
+void add_devices(CLI::App& app, DevicesArguments& a) {
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi devices\n"
+               "  hemi devices --json");
+}
+
+/// Help without the double blank lines between groups, and with a blank between names of an option.
+std::string help_text(const CLI::App& app, const std::string& previous = "") {
+    std::string text = app.help(previous);
+    for (std::size_t gap = text.find("\n\n\n"); gap != std::string::npos; gap = text.find("\n\n\n")) {
+        text.erase(gap, 1);
+    }
+    for (std::size_t comma = text.find(",--"); comma != std::string::npos; comma = text.find(",--")) {
+        text.insert(comma + 1, " ");
+        if (const std::size_t gap = text.find("  ", comma + 2); gap < text.find('\n', comma)) {
+            text.erase(gap, 1);
+        }
+    }
+    return text;
+}
+
+/// The command that was named, with what it was given.
+template <class A>
+void add_command(CLI::App& app, const std::string& name, const std::string& help, void (*add)(CLI::App&, A&),
+                 std::optional<Arguments>& chosen) {
+    CLI::App* command = app.add_subcommand(name, help)->group("Commands");
+    command->set_help_flag("-h,--help", help_help)->group("General");
+    const auto values = std::make_shared<A>();
+    add(*command, *values);
+    command->final_callback([command, values, &chosen] {
+        for (const CLI::Option* option : command->get_options()) {
+            if (option->count() > 0 && !option->get_lnames().empty()) {
+                const std::string& spelling =
+                    values->common.given.emplace_back("--" + option->get_lnames().front());
+                const bool flag = option->get_expected_max() == 0;
+                values->common.words.emplace_back(spelling,
+                                                  flag ? std::vector<std::string>() : option->results());
+            }
+        }
+        if constexpr (requires { values->rows.factors.method; }) {
+            check_method(values->rows, values->common.given);
+        }
+        chosen = *values;
+    });
+}
+
+} // namespace
+
+std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* argv) {
+    CLI::App app("hemi: form factors by OpenGL hemicubes, radiosity, pictures", "hemi");
+    app.set_help_flag("-h,--help", help_help);
+    app.set_version_flag("--version", version_text(), version_help);
+    app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+    app.get_formatter()->label("Positionals", "Arguments");
+    app.footer("Every command has its own --help. Exit status: 0 ok, 1 failure, 2 usage, 3 bad input,\n"
+               "4 no usable OpenGL device, 5 a check is out of tolerance, 130 interrupted.\n\n"
+               "Examples:\n"
+               "  hemi solve scenes/cornell-box.json -o cornell-box.png\n"
+               "  hemi factors scenes/cube.json --by-group");
+    app.require_subcommand(1);
+    std::optional<Arguments> chosen;
+    add_command(app, "solve", "Form factors, radiosity and a picture of a scene", add_solve, chosen);
+    add_command(app, "factors", "Form factors only", add_factors, chosen);
+    add_command(app, "check", "Which rows are wrong, and why", add_check, chosen);
+    add_command(app, "trade", "Speed against accuracy, measured on a scene", add_trade, chosen);
+    add_command(app, "render", "Picture of a stored solution", add_render, chosen);
+#ifdef HEMI_WITH_VIEWER
+    add_command(app, "view", "Window with an orbiting camera", add_view, chosen);
+#endif
+    add_command(app, "bake", "Mesh with the solution as vertex colours", add_bake, chosen);
+    add_command(app, "convert", "Form factors from one file format to another", add_convert, chosen);
+    add_command(app, "info", "What a file holds and what it would cost", add_info, chosen);
+    add_command(app, "devices", "OpenGL devices that can be used", add_devices, chosen);
+
+    if (argc > 1 && std::string_view(argv[1]) == "help") {
+        const std::vector<const char*> asked = argc > 2 ? std::vector<const char*>{argv[0], argv[2], "--help"}
+                                                        : std::vector<const char*>{argv[0], "--help"};
+        return parse_arguments(static_cast<int>(asked.size()), asked.data());
+    }
+    if (argc > 1 && std::string_view(argv[1]) == "completion") {
+        if (argc != 3 || std::string_view(argv[2]) != "bash") {
+            throw InvalidArgument("`hemi completion bash` prints a script for bash; no other shell has one");
+        }
+        return Answer{bash_completion(app)};
+    }
+    if (argc > 1 && argv[1][0] != '-') {
+        const auto named =
+            app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; });
+        if (named.empty()) {
+            refuse_command(app, argv[1]);
+        }
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        const auto commands = app.get_subcommands();
+        return Answer{commands.empty() ? help_text(app) : help_text(*commands.front(), "hemi")};
+    } catch (const CLI::CallForVersion& version) {
+        return Answer{version.what()};
+    } catch (const CLI::ParseError& error) {
+        const auto commands = app.get_subcommands();
+        if (commands.empty()) {
+            const Words rest = app.remaining();
+            if (rest.empty()) {
+                throw InvalidArgument("a command is missing (see `hemi --help`)");
+            }
+            throw InvalidArgument(
+                fmt::format("unexpected '{}' before the command (see `hemi --help`)", rest.front()));
+        }
+        const Words rest = app.remaining(true);
+        if (!rest.empty()) {
+            const auto option = std::find_if(rest.begin(), rest.end(),
+                                             [](const std::string& w) { return w.starts_with("-"); });
+            refuse_word(app, *commands.front(), option != rest.end() ? *option : rest.front());
+        }
+        throw InvalidArgument(
+            fmt::format("{} (see `hemi {} --help`)", error.what(), commands.front()->get_name()));
+    }
+    return *chosen;
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,165 @@
+#pragma once
+
+#include "cli/arguments/option_values.hpp"
+#include "cli/terminal.hpp"
+#include "hemi/display/picture.hpp"
+#include "hemi/matrix/repair.hpp"
+#include "hemi/pipeline/settings.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/scene/scene.hpp"
+#include "hemi/solver/solver.hpp"
+#include "viewer/controls.hpp"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+/// What the command line says, as plain values: one struct for every group of options and every command.
+/// An empty optional is an option that was not given.
+namespace hemi::cli {
+
+struct CommonOptions {
+    bool quiet = false;
+    bool verbose = false;
+    ColourChoice colour = ColourChoice::automatic;
+    bool json = false;
+    std::vector<std::string> given; ///< names of all options on the command line, "--resolution"
+    /// The same with their values, none for flags.
+    std::vector<std::pair<std::string, std::vector<std::string>>> words;
+};
+
+struct SceneOptions {
+    std::filesystem::path path; ///< the scene, or the stored file where a command takes either
+    Subdivision subdivision;
+    std::optional<Enclosure> enclosure;
+    std::vector<double>
+        environment; ///< `--environment`: one value for all channels or one for each; empty: the scene's
+    std::vector<std::string> two_sided;
+    bool skip_degenerate = false;
+    bool allow_outside = false;
+};
+
+struct RowOptions {
+    FactorSettings factors;
+    double max_row_error = 1e-4;
+    std::optional<double> error_target; ///< the program chooses the settings
+    bool resume = false;                ///< use the rows that an interrupted run left
+};
+
+struct PictureOptions {
+    std::optional<std::filesystem::path> output;
+    std::array<std::uint32_t, 2> size{800, 800};
+    std::optional<double> exposure; ///< none: automatic
+    ToneMapping tone_mapping = ToneMapping::filmic;
+    bool tone_mapping_given = false;
+    bool flat = false;
+    bool outlines = false;
+    bool backs = false;
+    bool orthographic = false;
+    std::uint32_t samples = 4;
+    std::vector<std::string> show; ///< channel names; empty: all of one or three channels
+    std::optional<CameraOption> camera;
+};
+
+struct SolveArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    SolverSettings solver;
+    PictureOptions picture;
+    std::optional<std::filesystem::path> factors;
+    std::optional<std::filesystem::path> result;
+    std::optional<std::filesystem::path> radiosity;
+    std::optional<std::filesystem::path> patches;
+};
+
+struct FactorsArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    std::optional<std::filesystem::path> output;
+    std::optional<std::filesystem::path> patches;
+    std::optional<std::uint32_t> row;
+    std::optional<std::array<double, 6>> from_point; ///< position and normal
+    bool by_group = false;
+};
+
+struct CheckArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+};
+
+struct TradeArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    std::optional<std::filesystem::path> output;
+    double budget = 60.0; ///< seconds
+};
+
+struct RenderArguments {
+    CommonOptions common;
+    std::filesystem::path input;
+    PictureOptions picture;
+    std::string device = "auto";
+};
+
+struct ViewArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    SolverSettings solver;
+    PictureOptions picture; ///< to start with; its output is not used
+    std::string script;     ///< file that drives the window; empty: a person does
+    viewer::Controls controls = viewer::Controls::standard;
+};
+
+struct BakeArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    SolverSettings solver;
+    PictureOptions picture; ///< output, channels, exposure, flat
+};
+
+struct ConvertArguments {
+    CommonOptions common;
+    std::filesystem::path input;
+    std::filesystem::path output;
+    std::optional<Repair> repair;                 ///< empty: what suits the rows
+    std::optional<std::filesystem::path> factors; ///< for .vtp: where the rows are
+    std::vector<std::uint32_t> rows;              ///< for .vtp: rows of F as cell data
+};
+
+struct InfoArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    bool measure = false;
+};
+
+struct DevicesArguments {
+    CommonOptions common;
+};
+
+using Arguments =
+    std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments, RenderArguments,
+                 ViewArguments, BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+
+/// Text that was asked for instead of work: help or the version.
+struct Answer {
+    std::string text;
+};
+
+/// Reads the command line.
+/// @throws InvalidArgument for anything that is not understood, with the nearest right word where there is
+/// one.
+[[nodiscard]] std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* argv);
+
+} // namespace hemi::cli

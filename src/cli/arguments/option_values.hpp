@@ -1,0 +1,54 @@
+#pragma once
+
+#include "hemi/core/geometry.hpp"
+#include "hemi/core/names.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Values of options: text to numbers, with messages that name the option, the value and what would be right.
+/// All throw InvalidArgument.
+namespace hemi::cli {
+
+/// A finite number.
+[[nodiscard]] double parse_number(std::string_view option, const std::string& text);
+/// A finite number above zero.
+[[nodiscard]] double parse_positive(std::string_view option, const std::string& text);
+/// A whole number from `lower` to `upper`.
+[[nodiscard]] std::uint64_t parse_whole(std::string_view option, const std::string& text, std::uint64_t lower,
+                                        std::uint64_t upper);
+/// A time in seconds: a number, with s, m (or min) or h behind it, or bare. Above 0.
+[[nodiscard]] double parse_duration(std::string_view option, const std::string& text);
+/// Memory: a number and K, M, G or T (powers of 1024, as KiB …), KB, MB … (powers of 1000), or bytes.
+[[nodiscard]] std::uint64_t parse_memory(std::string_view option, const std::string& text);
+/// WIDTHxHEIGHT in pixels, each 1 to 16384.
+[[nodiscard]] std::array<std::uint32_t, 2> parse_picture_size(std::string_view option,
+                                                              const std::string& text);
+/// Comma-separated words.
+[[nodiscard]] std::vector<std::string> parse_list(const std::string& text);
+
+/// What `--camera` says; what it leaves out comes from the scene.
+struct CameraOption {
+    Vec3 eye{0.0};
+    Vec3 target{0.0};
+    std::optional<Vec3> up;
+    std::optional<double> fov;
+};
+/// EYE:TARGET[:UP][:FOV] — three numbers with commas for a point or direction, one number for the angle.
+[[nodiscard]] CameraOption parse_camera(std::string_view option, const std::string& text);
+
+/// Index of `text` in `known`; any other word is refused with the nearest known one.
+[[nodiscard]] std::size_t parse_choice(std::string_view option, const std::string& text,
+                                       std::span<const std::string> known);
+/// The enumerator whose word is `text`; any other word is refused with the nearest known one.
+template <class Enum>
+[[nodiscard]] Enum parse_choice(std::string_view option, const std::string& text) {
+    return Names<Enum>::table[parse_choice(option, text, words<Enum>())].value;
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,14 @@
+#include "cli/arguments/version.hpp"
+
+#include "gl/context.hpp"
+
+#include <fmt/format.h>
+
+namespace hemi::cli {
+
+std::string version_text() {
+    return fmt::format("hemi {}\nrevision  {}\ncompiler  {}\nOpenGL    4.5 core, loader {}, {}\n",
+                       HEMI_VERSION, source_revision, HEMI_COMPILER, gl::loader_version(), HEMI_DISPLAYS);
+}
+
+} // namespace hemi::cli

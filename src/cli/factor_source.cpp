@@ -1,0 +1,52 @@
+#include "cli/factor_source.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hemi::cli {
+
+namespace {
+
+template <class A, class B>
+void check_setting(const CommonOptions& common, const std::filesystem::path& path, const std::string& option,
+                   const A& given, const B& stored) {
+    if (std::find(common.given.begin(), common.given.end(), option) != common.given.end() &&
+        given != stored) {
+        throw InvalidArgument(fmt::format("{0} {1} conflicts with --factors {2}, whose rows were made with "
+                                          "{0} {3}; leave {0} out, or name another file",
+                                          option, given, path.string(), stored));
+    }
+}
+
+std::string preset_word(const std::optional<Preset>& preset) {
+    return preset ? std::string(to_word(*preset)) : "none";
+}
+
+} // namespace
+
+FormFactors reuse_rows(const std::filesystem::path& path, const LoadedScene& loaded,
+                       const FactorSettings& settings, const CommonOptions& common) {
+    FormFactors factors = read_form_factors(path, loaded.scene, loaded.mesh);
+    const Provenance& made = factors.provenance;
+    check_setting(common, path, "--resolution", settings.resolution.value_or(0), made.resolution);
+    check_setting(common, path, "--seed", settings.seed.value_or(0), made.seed);
+    check_setting(common, path, "--preset", preset_word(settings.preset), preset_word(made.preset));
+    check_setting(common, path, "--method", to_word(settings.method), to_word(made.method));
+    check_setting(common, path, "--eye-points", settings.eye_points.value_or(0), made.eye_points);
+    check_setting(common, path, "--shadow-rays", settings.shadow_rays.value_or(0), made.shadow_rays);
+    return factors;
+}
+
+void report_checkpoint(const RowCheckpoint* checkpoint, const Terminal& terminal) {
+    if (checkpoint != nullptr && checkpoint->rows() > 0) {
+        terminal.note(
+            fmt::format("{} of the checkpoint {} are complete; the same command with --resume goes on "
+                        "from there",
+                        plural(checkpoint->rows(), "row", "rows"), checkpoint->path().string()));
+    }
+}
+
+} // namespace hemi::cli

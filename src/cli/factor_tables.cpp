@@ -1,0 +1,148 @@
+#include "cli/factor_tables.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/engine/baselines.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hemi::cli {
+
+namespace {
+
+/// Factors to patches, largest first: what one row and one point have in common.
+struct FactorList {
+    std::vector<std::uint32_t> patches;
+    std::vector<double> factors;
+
+    void sort() {
+        std::vector<std::size_t> order(patches.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(),
+                         [this](std::size_t a, std::size_t b) { return factors[a] > factors[b]; });
+        FactorList sorted;
+        for (const std::size_t k : order) {
+            sorted.patches.push_back(patches[k]);
+            sorted.factors.push_back(factors[k]);
+        }
+        *this = std::move(sorted);
+    }
+
+    [[nodiscard]] std::string table(const PatchNames& names) const {
+        Table table({"group", "patch", "F"});
+        for (std::size_t k = 0; k < patches.size(); ++k) {
+            table.add(
+                {names.group(patches[k]), std::to_string(patches[k]), fmt::format("{:.9f}", factors[k])});
+        }
+        return table.text();
+    }
+
+    /// @param single  whether the factors are 32-bit numbers, written as such
+    [[nodiscard]] Json json(const PatchNames& names, bool single) const {
+        Json entries = Json::array();
+        for (std::size_t k = 0; k < patches.size(); ++k) {
+            entries.push_back({{"patch", patches[k]},
+                               {"group", names.group(patches[k])},
+                               {"factor", single ? Json(static_cast<float>(factors[k])) : Json(factors[k])}});
+        }
+        return entries;
+    }
+};
+
+} // namespace
+
+void show_row(const FormFactors& factors, std::uint32_t index, const PatchNames& names, bool json) {
+    const RowView row = factors.matrix.row(index);
+    FactorList list{{row.columns.begin(), row.columns.end()}, {row.values.begin(), row.values.end()}};
+    list.sort();
+    if (json) {
+        print_json({{"schema", "hemi/factors/1"},
+                    {"renderer", factors.provenance.renderer},
+                    {"patches", factors.matrix.size()},
+                    {"row", index},
+                    {"group", names.group(index)},
+                    {"entries", list.json(names, true)},
+                    {"sum", row.sum()},
+                    {"environment", row.environment},
+                    {"blocked", row.blocked}});
+        return;
+    }
+    print(fmt::format(
+              "row {}: what leaves {}\nsum {:.9f}, environment share {:.9f}, back-face share {:.9f}\n\n",
+              index, names.describe(index), row.sum(), row.environment, row.blocked) +
+          list.table(names));
+}
+
+void show_point(const PatchMesh& mesh, const std::array<double, 6>& at, const PatchNames& names, bool json) {
+    const Vec3 point(at[0], at[1], at[2]);
+    const Vec3 normal(at[3], at[4], at[5]);
+    const double length = glm::length(normal);
+    if (!(length > 0.0) || !std::isfinite(length)) {
+        throw InvalidArgument("--from-point: the normal must have a length");
+    }
+    const std::vector<double> factors = point_factors(mesh, point, normal / length, true);
+    FactorList list;
+    for (std::uint32_t patch = 0; patch < factors.size(); ++patch) {
+        if (factors[patch] > 0.0) {
+            list.patches.push_back(patch);
+            list.factors.push_back(factors[patch]);
+        }
+    }
+    list.sort();
+    const double sum = std::accumulate(list.factors.begin(), list.factors.end(), 0.0);
+    if (json) {
+        print_json({{"schema", "hemi/factors/1"},
+                    {"patches", factors.size()},
+                    {"point", {point.x, point.y, point.z}},
+                    {"normal", {normal.x / length, normal.y / length, normal.z / length}},
+                    {"entries", list.json(names, false)},
+                    {"sum", sum}});
+        return;
+    }
+    print(fmt::format("what leaves a surface element at {} {} {}\nsum {:.9f}\n\n", number_text(point.x),
+                      number_text(point.y), number_text(point.z), sum) +
+          list.table(names));
+}
+
+std::string groups_table(const std::vector<std::string>& names, const GroupFactors& groups) {
+    constexpr std::uint32_t max_columns = 10;
+    if (groups.groups > max_columns) {
+        Table table({"from", "to", "F"}, 2);
+        for (std::uint32_t g = 0; g < groups.groups; ++g) {
+            for (std::uint32_t h = 0; h < groups.groups; ++h) {
+                const double factor = groups.factors[std::size_t{g} * groups.groups + h];
+                if (factor > 0.0) {
+                    table.add({names[g], names[h], fmt::format("{:.6f}", factor)});
+                }
+            }
+            if (groups.environment[g] > 0.0) {
+                table.add({names[g], "(environment)", fmt::format("{:.6f}", groups.environment[g])});
+            }
+            if (groups.blocked[g] > 0.0) {
+                table.add({names[g], "(back faces)", fmt::format("{:.6f}", groups.blocked[g])});
+            }
+        }
+        return table.text();
+    }
+    std::vector<std::string> header{"F from / to"};
+    header.insert(header.end(), names.begin(), names.end());
+    header.insert(header.end(), {"(environment)", "(back faces)", "area"});
+    Table table(header);
+    for (std::uint32_t g = 0; g < groups.groups; ++g) {
+        std::vector<std::string> line{names[g]};
+        for (std::uint32_t h = 0; h < groups.groups; ++h) {
+            line.push_back(fmt::format("{:.6f}", groups.factors[std::size_t{g} * groups.groups + h]));
+        }
+        line.push_back(fmt::format("{:.6f}", groups.environment[g]));
+        line.push_back(fmt::format("{:.6f}", groups.blocked[g]));
+        line.push_back(number_text(groups.areas[g]));
+        table.add(line);
+    }
+    return table.text();
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,94 @@
+#include "cli/loaded_scene.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
+#include "hemi/core/nearest_word.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/io/paths.hpp"
+#include "hemi/io/scene_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hemi::cli {
+
+namespace {
+
+void check_two_sided_groups(const Scene& scene, const SceneOptions& options) {
+    if (options.two_sided.empty()) {
+        return;
+    }
+    if (io::extension_of(options.path) == ".json") {
+        throw InvalidArgument("--two-sided is not for JSON scenes, which say \"two_sided\": true");
+    }
+    for (const std::string& name : options.two_sided) {
+        if (std::find(scene.groups.begin(), scene.groups.end(), name) == scene.groups.end()) {
+            throw InvalidArgument(fmt::format("--two-sided {}: {} has no such group{}", name,
+                                              options.path.string(), did_you_mean(name, scene.groups)));
+        }
+    }
+}
+
+void replace_environment(Scene& scene, const std::vector<double>& environment) {
+    const std::size_t channels = scene.channels.size();
+    if (environment.size() != 1 && environment.size() != channels) {
+        throw InvalidArgument(fmt::format("--environment: {} values; the scene has {}, so give 1 or {}",
+                                          environment.size(), plural(channels, "channel", "channels"),
+                                          channels));
+    }
+    for (const double value : environment) {
+        if (!(value >= 0.0)) {
+            throw InvalidArgument(fmt::format("--environment {}; must not be negative", value));
+        }
+    }
+    scene.environment = environment;
+    scene.environment.resize(channels, environment[0]);
+}
+
+PatchMesh make_mesh(const Scene& scene, const SceneOptions& options) {
+    try {
+        return PatchMesh(scene, options.subdivision);
+    } catch (const InvalidArgument& error) {
+        if (options.subdivision == Subdivision{}) { // the scene's own wish
+            throw InputError(fmt::format("{}: {}", options.path.string(), error.what()));
+        }
+        throw;
+    }
+}
+
+} // namespace
+
+LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
+    const Stopwatch watch;
+    Diagnostics diagnostics;
+    Scene scene = io::read_scene(
+        options.path, {options.two_sided, options.skip_degenerate, options.allow_outside}, diagnostics);
+    terminal.warn(diagnostics);
+    check_two_sided_groups(scene, options);
+    scene.enclosure = options.enclosure.value_or(scene.enclosure);
+    if (!options.environment.empty()) {
+        replace_environment(scene, options.environment);
+    }
+    PatchMesh mesh = make_mesh(scene, options);
+    std::vector<std::uint32_t> group_of(mesh.size());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        group_of[i] = mesh.group(i);
+    }
+    stop_if_interrupted();
+    return {std::move(scene), std::move(mesh), std::move(group_of), watch.seconds()};
+}
+
+void refuse_all_but(const CommonOptions& common, std::span<const std::string> allowed,
+                    const std::filesystem::path& file) {
+    static const std::vector<std::string> always{"--json", "--quiet", "--verbose", "--color"};
+    for (const std::string& option : common.given) {
+        if (std::find(allowed.begin(), allowed.end(), option) == allowed.end() &&
+            std::find(always.begin(), always.end(), option) == always.end()) {
+            throw InvalidArgument(
+                fmt::format("{} does not apply to {}, which is not a scene", option, file.string()));
+        }
+    }
+}
+
+} // namespace hemi::cli

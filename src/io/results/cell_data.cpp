@@ -1,0 +1,74 @@
+#include "hemi/core/error.hpp"
+#include "hemi/io/vtp_file.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace hemi::io {
+
+namespace {
+
+std::vector<CellArray> balance_arrays(std::vector<double> row_sum, std::vector<double> environment,
+                                      std::vector<double> back_faces) {
+    return {{"row_sum", std::move(row_sum), {}},
+            {"environment", std::move(environment), {}},
+            {"blocked", std::move(back_faces), {}}};
+}
+
+} // namespace
+
+std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh& mesh) {
+    const Solution& solution = result.solution;
+    std::vector<CellArray> arrays =
+        balance_arrays(solution.row_sum, solution.environment_share, solution.back_face_share);
+    const std::vector<std::string>& channels = result.scene.channels;
+    const std::vector<std::string> names = channels.size() > 1 ? channels : std::vector<std::string>();
+    arrays.push_back({"radiosity", solution.radiosity, names});
+    arrays.push_back({"irradiance", solution.irradiance, names});
+    arrays.push_back({"exitance", patch_values(mesh, result.scene.materials, &Material::exitance), names});
+    arrays.push_back(
+        {"reflectance", patch_values(mesh, result.scene.materials, &Material::reflectance), names});
+    if (solution.factor_error) {
+        arrays.push_back({"row_error", solution.factor_error->rows, {}});
+    }
+    if (solution.error) {
+        arrays.push_back({"radiosity_error", solution.error->patches, names});
+    }
+    return arrays;
+}
+
+std::vector<CellArray> factor_arrays(const FormFactors& factors) {
+    std::vector<double> row_sum;
+    std::vector<double> environment;
+    std::vector<double> back_faces;
+    for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
+        const RowView row = factors.matrix.row(i);
+        row_sum.push_back(row.sum());
+        environment.push_back(row.environment);
+        back_faces.push_back(row.blocked);
+    }
+    std::vector<CellArray> arrays =
+        balance_arrays(std::move(row_sum), std::move(environment), std::move(back_faces));
+    if (factors.error) {
+        arrays.push_back({"row_error", factors.error->rows, {}});
+    }
+    return arrays;
+}
+
+CellArray row_array(const FormFactorMatrix& factors, std::uint32_t row) {
+    if (row >= factors.size() || !factors.known(row)) {
+        throw InvalidArgument(row >= factors.size() ? fmt::format("row {}: there are {} rows, counted from 0",
+                                                                  row, factors.size())
+                                                    : fmt::format("row {} was not computed", row),
+                              {"row"});
+    }
+    CellArray array{fmt::format("F_{}", row), std::vector<double>(factors.size(), 0.0), {}};
+    const RowView view = factors.row(row);
+    for (std::size_t k = 0; k < view.columns.size(); ++k) {
+        array.values[view.columns[k]] = static_cast<double>(view.values[k]);
+    }
+    return array;
+}
+
+} // namespace hemi::io

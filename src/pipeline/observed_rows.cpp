@@ -1,0 +1,74 @@
+#include "pipeline/observed_rows.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace hemi {
+
+ObservedRows::ObservedRows(RowProvider& provider, RowQuantity quantity, Observer& observer,
+                           RowCheckpoint* checkpoint, io::CheckpointKey key)
+    : provider_(provider), quantity_(quantity), observer_(observer), checkpoint_(checkpoint),
+      key_(std::move(key)) {}
+
+void ObservedRows::rows(std::span<const std::uint32_t> patches, const RowSink& sink) {
+    const RowSink shown = [&](std::uint32_t patch, const RowView& row) {
+        observer_.row(patch, row, quantity_);
+        sink(patch, row);
+    };
+    if (checkpoint_ == nullptr) {
+        provider_.rows(patches, shown);
+        return;
+    }
+    const std::vector<std::uint32_t> missing = resume(patches, shown);
+    if (!missing.empty()) {
+        provider_.rows(missing, [&](std::uint32_t patch, const RowView& row) {
+            keep(patch, row, missing);
+            shown(patch, row);
+        });
+    }
+}
+
+std::vector<std::uint32_t> ObservedRows::resume(std::span<const std::uint32_t> patches, const RowSink& sink) {
+    std::vector<bool> there(size(), false);
+    key_["renderer"] = renderer(); // others give other bits
+    checkpoint_->file_->start(key_, size(), [&](std::uint32_t patch, const RowView& row) {
+        there[patch] = true;
+        ++checkpoint_->reused_;
+        sink(patch, row);
+    });
+    if (checkpoint_->reused_ > 0) {
+        observer_.note(fmt::format("{} of {} taken from the checkpoint {}", count_text(checkpoint_->reused_),
+                                   plural(size(), "row", "rows"), checkpoint_->path().string()));
+    }
+    std::vector<std::uint32_t> missing;
+    std::copy_if(patches.begin(), patches.end(), std::back_inserter(missing),
+                 [&there](std::uint32_t patch) { return !there[patch]; });
+    return missing;
+}
+
+void ObservedRows::keep(std::uint32_t patch, const RowView& row, std::span<const std::uint32_t> patches) {
+    const std::uint32_t first = patch - patch % FormFactorMatrix::block_rows;
+    const std::uint32_t count = std::min(FormFactorMatrix::block_rows, size() - first);
+    OpenBlock& block =
+        open_.try_emplace(first, first, count, rows_of_block(patches, first), expected_entries_)
+            .first->second;
+    block.add(patch, row);
+    if (!block.complete()) {
+        return;
+    }
+    const RowBlock finished = block.finish();
+    expected_entries_ = finished.columns.size() + finished.columns.size() / 16;
+    open_.erase(first);
+    try {
+        checkpoint_->file_->append(finished);
+    } catch (const IoError& error) {
+        observer_.warning(fmt::format("{}; this run cannot be resumed", error.what()), {});
+    }
+}
+
+} // namespace hemi
