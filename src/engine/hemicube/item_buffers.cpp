@@ -79,7 +79,7 @@ void ItemBuffers::prepare_target(Target& target, std::uint32_t index) const {
         glNamedBufferStorage(target.pixels.get(), GLsizeiptr{4} * width * height, nullptr,
                              GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
     }
-    gl::label(GL_TEXTURE, target.ids.get(), fmt::format("item ids {}", index));
+    gl::label(GL_TEXTURE, target.ids.get(), fmt::format("draw ids {}", index));
     gl::label(GL_TEXTURE, target.depth.get(), fmt::format("item depth {}", index));
     gl::label(GL_FRAMEBUFFER, target.framebuffer.get(), fmt::format("item atlas {}", index));
 }

@@ -10,7 +10,7 @@
 
 namespace hemi {
 
-/// Draws batches of hemicubes into an atlas of item ids and reads them back.
+/// Draws batches of hemicubes into an atlas of draw ids (see draw_list.hpp) and reads them back.
 ///
 /// The atlas is one column, `resolution` wide: every hemicube is a contiguous block of 3·resolution rows (top
 /// face, then four sides of resolution / 2 rows). Ids are 32-bit integers, depth is reversed and infinite in
