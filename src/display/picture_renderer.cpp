@@ -2,6 +2,7 @@
 
 #include "display/picture_uniforms.hpp"
 #include "gl/context.hpp"
+#include "gl/reversed_depth.hpp"
 #include "gl/shaders.hpp"
 
 #include "hemi/core/error.hpp"
@@ -278,10 +279,7 @@ void PictureRenderer::draw_samples(const Camera& camera, const PictureSettings& 
 
 void PictureRenderer::draw_mesh(const gl::Program& program, const Camera& camera,
                                 const PictureSettings& settings, const Tile& tile) {
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glEnable(GL_CULL_FACE);
+    const gl::ReversedDepth state(GL_CCW);
     glUseProgram(program.get());
     const Vec3 eye = camera.eye - origin_;
     const std::array<float, 16> matrix = projection(camera, settings, tile.x, tile.y, tile.width, tile.height,
@@ -293,19 +291,10 @@ void PictureRenderer::draw_mesh(const gl::Program& program, const Camera& camera
     glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
     if (settings.backs) {
         // A hair farther away, so that a two-sided surface shows the patch on that side.
-        glCullFace(GL_FRONT);
-        glEnable(GL_POLYGON_OFFSET_FILL);
-        glPolygonOffset(-1.0F, -16.0F);
+        state.cull_fronts();
+        state.offset(-1.0F, -16.0F);
         glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
-        glDisable(GL_POLYGON_OFFSET_FILL);
-        glPolygonOffset(0.0F, 0.0F);
-        glCullFace(GL_BACK);
     }
-
-    glDisable(GL_CULL_FACE);
-    glDepthFunc(GL_LESS);
-    glDisable(GL_DEPTH_TEST);
-    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
 void PictureRenderer::resolve(const PictureSettings& settings, const Tile& tile, GLuint target,
