@@ -1,9 +1,10 @@
 #version 450 core
-// Item id of the cell that the fragment lies in, on a general planar quadrilateral with bilinear cells.
+// Draw id of the cell that the fragment lies in, on a general planar quadrilateral with bilinear cells.
+// Draw ids and cells: defined in src/engine/hemicube/draw_list.hpp.
 
-layout(location = 0) in vec2 grid_at;       // in the frame of corners 0, 1 and 3
-layout(location = 1) flat in uvec3 item_at; // first id, grid, unused
-layout(location = 2) flat in vec2 twist_at; // corner 2 in that frame, less (1, 1)
+layout(location = 0) in vec2 grid_at;        // in the frame of corners 0, 1 and 3
+layout(location = 1) flat in uvec3 cells_at; // first id, grid, unused
+layout(location = 2) flat in vec2 twist_at;  // corner 2 in that frame, less (1, 1)
 
 layout(location = 0) out uint id;
 
@@ -13,7 +14,7 @@ void main() {
     float root = sqrt(max(k * k + 4.0 * twist_at.x * grid_at.y, 0.0));
     float v = 2.0 * grid_at.y / (k + root);
     float u = grid_at.x / (1.0 + v * twist_at.x);
-    uvec2 grid = uvec2(item_at.y & 0xFFFFu, item_at.y >> 16);
+    uvec2 grid = uvec2(cells_at.y & 0xFFFFu, cells_at.y >> 16);
     uvec2 cell = min(uvec2(clamp(vec2(u, v) * vec2(grid), vec2(0.0), vec2(grid))), grid - 1u);
-    id = item_at.x + cell.y * grid.x + cell.x;
+    id = cells_at.x + cell.y * grid.x + cell.x;
 }

@@ -1,13 +1,13 @@
 #version 450 core
 // Linear radiosity; alpha tells a surface from the background, and a back from a front.
-in vec3 smooth_radiosity;
-flat in vec3 flat_radiosity;
-in vec3 outline;
+layout(location = 0) in vec3 smooth_radiosity;
+layout(location = 1) flat in vec3 flat_radiosity;
+layout(location = 2) in vec3 outline;
 
-uniform bool flat_shading;
-uniform float outline_width; // samples; 0: no outlines
-uniform float stripe_width;  // of backs, samples
-uniform vec2 first_sample;   // of this part of the picture
+layout(location = 2) uniform bool flat_shading;   // locations after those of picture.vert
+layout(location = 3) uniform float outline_width; // samples; 0: no outlines
+layout(location = 4) uniform float stripe_width;  // of backs, samples
+layout(location = 5) uniform vec2 first_sample;   // of this part of the picture
 
 layout(location = 0) out vec4 radiosity;
 

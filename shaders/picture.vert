@@ -6,13 +6,13 @@ layout(location = 2) in vec3 patch_radiosity;
 layout(location = 3) in vec3 outline_distance; // in triangle heights, from the edges that are a patch's own
 layout(location = 4) in uint item;             // patch and 1
 
-uniform vec3 eye;                 // relative to the scene's centre
-uniform mat4 clip_from_direction; // infinite reversed-Z: clip.z is the near distance, clip.w the depth
+layout(location = 0) uniform vec3 eye;                 // relative to the scene's centre
+layout(location = 1) uniform mat4 clip_from_direction; // infinite reversed-Z: clip.z is the near distance, clip.w the depth
 
-out vec3 smooth_radiosity;
-flat out vec3 flat_radiosity;
-out vec3 outline;
-flat out uint patch_item;
+layout(location = 0) out vec3 smooth_radiosity;
+layout(location = 1) flat out vec3 flat_radiosity;
+layout(location = 2) out vec3 outline;
+layout(location = 3) flat out uint patch_item;
 
 void main() {
     gl_Position = clip_from_direction * vec4(position - eye, 1.0);

@@ -1,14 +1,14 @@
 #version 450 core
 // The samples of a pixel become its colour: each is tone-mapped before the mean is taken, so that the edge of
 // a bright lamp is as smooth as any other.
-uniform sampler2D samples;
-uniform int samples_per_edge;
-uniform ivec2 target_origin; // pixel of the target that holds the first samples
-uniform float exposure;
-uniform bool filmic;
-uniform vec3 environment;     // radiosity of what lies behind all surfaces
-uniform bool has_environment; // or nothing does, shown in a grey that stands for no light
-uniform float nothing;        // display linear
+layout(location = 0, binding = 0) uniform sampler2D samples;
+layout(location = 1) uniform int samples_per_edge;
+layout(location = 2) uniform ivec2 target_origin; // pixel of the target that holds the first samples
+layout(location = 3) uniform float exposure;
+layout(location = 4) uniform bool filmic;
+layout(location = 5) uniform vec3 environment;     // radiosity of what lies behind all surfaces
+layout(location = 6) uniform bool has_environment; // or nothing does, shown in a grey that stands for no light
+layout(location = 7) uniform float nothing;        // display linear
 
 layout(location = 0) out vec4 srgb;
 layout(location = 1) out vec4 linear_radiosity;

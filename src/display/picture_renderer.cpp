@@ -1,6 +1,8 @@
 #include "display/picture_renderer.hpp"
 
+#include "display/picture_uniforms.hpp"
 #include "gl/context.hpp"
+#include "gl/reversed_depth.hpp"
 #include "gl/shaders.hpp"
 
 #include "hemi/core/error.hpp"
@@ -170,10 +172,6 @@ void require_complete(const gl::Framebuffer& framebuffer, const char* name) {
     }
 }
 
-GLint uniform(const gl::Program& program, const char* name) {
-    return glGetUniformLocation(program.get(), name);
-}
-
 } // namespace
 
 PictureRenderer::PictureRenderer()
@@ -270,45 +268,33 @@ void PictureRenderer::draw_samples(const Camera& camera, const PictureSettings& 
     glClearNamedFramebufferfv(sample_target_.get(), GL_DEPTH, 0, &far_depth);
 
     glUseProgram(picture_program_.get());
-    glUniform1i(uniform(picture_program_, "flat_shading"), settings.shading == Shading::flat ? 1 : 0);
-    glUniform1f(uniform(picture_program_, "outline_width"),
+    glUniform1i(picture_uniforms::flat_shading, settings.shading == Shading::flat ? 1 : 0);
+    glUniform1f(picture_uniforms::outline_width,
                 settings.outlines ? outline_pixels * static_cast<float>(samples) : 0.0F);
-    glUniform1f(uniform(picture_program_, "stripe_width"), stripe_pixels * static_cast<float>(samples));
-    glUniform2f(uniform(picture_program_, "first_sample"), static_cast<float>(tile.x * samples),
+    glUniform1f(picture_uniforms::stripe_width, stripe_pixels * static_cast<float>(samples));
+    glUniform2f(picture_uniforms::first_sample, static_cast<float>(tile.x * samples),
                 static_cast<float>(tile.y * samples));
     draw_mesh(picture_program_, camera, settings, tile);
 }
 
 void PictureRenderer::draw_mesh(const gl::Program& program, const Camera& camera,
                                 const PictureSettings& settings, const Tile& tile) {
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glEnable(GL_CULL_FACE);
+    const gl::ReversedDepth state(GL_CCW);
     glUseProgram(program.get());
     const Vec3 eye = camera.eye - origin_;
     const std::array<float, 16> matrix = projection(camera, settings, tile.x, tile.y, tile.width, tile.height,
                                                     near_share * diagonal_, glm::length(eye) + diagonal_);
-    glUniformMatrix4fv(uniform(program, "clip_from_direction"), 1, GL_FALSE, matrix.data());
-    glUniform3f(uniform(program, "eye"), static_cast<float>(eye.x), static_cast<float>(eye.y),
+    glUniformMatrix4fv(picture_uniforms::clip_from_direction, 1, GL_FALSE, matrix.data());
+    glUniform3f(picture_uniforms::eye, static_cast<float>(eye.x), static_cast<float>(eye.y),
                 static_cast<float>(eye.z));
     glBindVertexArray(vertex_array_.get());
     glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
     if (settings.backs) {
         // A hair farther away, so that a two-sided surface shows the patch on that side.
-        glCullFace(GL_FRONT);
-        glEnable(GL_POLYGON_OFFSET_FILL);
-        glPolygonOffset(-1.0F, -16.0F);
+        state.cull_fronts();
+        state.offset(-1.0F, -16.0F);
         glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
-        glDisable(GL_POLYGON_OFFSET_FILL);
-        glPolygonOffset(0.0F, 0.0F);
-        glCullFace(GL_BACK);
     }
-
-    glDisable(GL_CULL_FACE);
-    glDepthFunc(GL_LESS);
-    glDisable(GL_DEPTH_TEST);
-    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
 void PictureRenderer::resolve(const PictureSettings& settings, const Tile& tile, GLuint target,
@@ -318,19 +304,18 @@ void PictureRenderer::resolve(const PictureSettings& settings, const Tile& tile,
                static_cast<GLsizei>(tile.height));
     glDisable(GL_DITHER);
     glUseProgram(resolve_program_.get());
-    glBindTextureUnit(0, colour_->texture.get());
-    glUniform1i(uniform(resolve_program_, "samples"), 0);
-    glUniform1i(uniform(resolve_program_, "samples_per_edge"), static_cast<GLint>(settings.samples));
-    glUniform2i(uniform(resolve_program_, "target_origin"), static_cast<GLint>(x), static_cast<GLint>(y));
-    glUniform1f(uniform(resolve_program_, "exposure"), static_cast<float>(settings.exposure));
-    glUniform1i(uniform(resolve_program_, "filmic"), settings.tone_mapping == ToneMapping::filmic ? 1 : 0);
-    glUniform3f(uniform(resolve_program_, "environment"), environment_[0], environment_[1], environment_[2]);
-    glUniform1i(uniform(resolve_program_, "has_environment"), environment_ == std::array<float, 3>{} ? 0 : 1);
-    glUniform1f(uniform(resolve_program_, "nothing"), nothing_level);
+    glBindTextureUnit(resolve_uniforms::samples_unit, colour_->texture.get());
+    glUniform1i(resolve_uniforms::samples_per_edge, static_cast<GLint>(settings.samples));
+    glUniform2i(resolve_uniforms::target_origin, static_cast<GLint>(x), static_cast<GLint>(y));
+    glUniform1f(resolve_uniforms::exposure, static_cast<float>(settings.exposure));
+    glUniform1i(resolve_uniforms::filmic, settings.tone_mapping == ToneMapping::filmic ? 1 : 0);
+    glUniform3f(resolve_uniforms::environment, environment_[0], environment_[1], environment_[2]);
+    glUniform1i(resolve_uniforms::has_environment, environment_ == std::array<float, 3>{} ? 0 : 1);
+    glUniform1f(resolve_uniforms::nothing, nothing_level);
     glBindVertexArray(no_vertices_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glEnable(GL_DITHER);
-    glBindTextureUnit(0, 0);
+    glBindTextureUnit(resolve_uniforms::samples_unit, 0);
     glBindVertexArray(0);
     glUseProgram(0);
 }

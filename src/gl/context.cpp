@@ -8,9 +8,11 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace hemi::gl {
 
@@ -50,6 +52,27 @@ const char* error_name(GLenum error) {
 }
 
 const char* loaded_backend = "";
+
+/// Called from within the driver, which is C: it records and throws nothing; running out of memory ends the
+/// program. What the shader compiler says is left out, since make_program() reports that itself.
+void GLAD_API_PTR record_error(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei,
+                               const GLchar* message, const void* recorded) noexcept {
+    const bool is_error = type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH;
+    auto& first = *static_cast<std::string*>(const_cast<void*>(recorded));
+    if (is_error && source != GL_DEBUG_SOURCE_SHADER_COMPILER && first.empty()) {
+        first = message;
+    }
+}
+
+/// What the current context has recorded, which it forgets; empty where it records nothing.
+std::string take_recorded() {
+    void* callback = nullptr;
+    void* recorded = nullptr;
+    glGetPointerv(GL_DEBUG_CALLBACK_FUNCTION, &callback);
+    glGetPointerv(GL_DEBUG_CALLBACK_USER_PARAM, &recorded);
+    const bool ours = callback == reinterpret_cast<void*>(record_error);
+    return ours ? std::exchange(*static_cast<std::string*>(recorded), {}) : std::string();
+}
 
 std::unique_ptr<Context> first_working_egl(std::vector<std::string>& problems, bool hardware_only) {
     const std::size_t count = egl_device_count();
@@ -96,6 +119,20 @@ void Context::describe(std::string name) {
     renderer_ = string_of(GL_RENDERER);
     version_ = string_of(GL_VERSION);
     software_ = is_software(renderer_);
+    if (debug_wanted()) {
+        record_errors();
+    }
+}
+
+void Context::record_errors() {
+    glEnable(GL_DEBUG_OUTPUT);
+    glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+    glDebugMessageCallback(record_error, &recorded_);
+}
+
+bool debug_wanted() {
+    const char* value = std::getenv("HEMI_GL_DEBUG");
+    return value != nullptr && std::string_view(value) != "0";
 }
 
 void check_device_name(const std::string& device) {
@@ -146,8 +183,12 @@ std::vector<std::string> device_names() {
     return names;
 }
 
+bool functions_loaded_for(const char* backend) noexcept {
+    return std::strcmp(loaded_backend, backend) == 0;
+}
+
 void load_functions(const char* backend, void (*(*loader)(const char*))()) {
-    if (std::strcmp(loaded_backend, backend) == 0) {
+    if (functions_loaded_for(backend)) {
         return;
     }
     if (gladLoadGL(loader) == 0) {
@@ -158,9 +199,14 @@ void load_functions(const char* backend, void (*(*loader)(const char*))()) {
 
 void check_errors(const char* where) {
     const GLenum error = glGetError();
-    if (error != GL_NO_ERROR) {
-        throw GlError(fmt::format("{}: OpenGL reports {} (0x{:04x})", where, error_name(error), error));
+    const std::string recorded = take_recorded();
+    if (error == GL_NO_ERROR && recorded.empty()) {
+        return;
     }
+    const std::string code =
+        error == GL_NO_ERROR ? "a problem" : fmt::format("{} (0x{:04x})", error_name(error), error);
+    throw GlError(
+        fmt::format("{}: OpenGL reports {}{}{}", where, code, recorded.empty() ? "" : ": ", recorded));
 }
 
 const char* loader_version() noexcept {

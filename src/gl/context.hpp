@@ -28,15 +28,23 @@ public:
 protected:
     Context() = default;
     /// To be called when the context is current and the functions are loaded: reads the strings and the
-    /// version, and checks that it suffices. @throws NoDevice
+    /// version, checks that it suffices, and records errors from then on where debug_wanted().
+    /// @throws NoDevice
     void describe(std::string name);
 
 private:
+    void record_errors();
+
     std::string name_;
     std::string renderer_;
     std::string version_;
     bool software_ = true;
+    std::string recorded_; ///< what the driver said of the first error since the last check_errors()
 };
+
+/// Whether contexts are made as debug contexts and record what the driver says of errors: the environment
+/// variable HEMI_GL_DEBUG is set, and not to 0. Programs that this one starts inherit it.
+[[nodiscard]] bool debug_wanted();
 
 /// @param device  auto (a GPU if there is one, else OSMesa), egl (the first EGL device that works), egl:N,
 /// osmesa. A named device never falls back to another.
@@ -60,7 +68,8 @@ void load_functions(const char* backend, void (*(*loader)(const char*))());
 /// What made the functions' loader: "glad 2.0.2".
 [[nodiscard]] const char* loader_version() noexcept;
 
-/// Throws GlError naming `where` if the current context has a pending error.
+/// Throws GlError naming `where` if the current context has a pending error, or has recorded one; with the
+/// driver's own message if it has. The context has neither afterwards.
 void check_errors(const char* where);
 
 } // namespace hemi::gl

@@ -7,6 +7,8 @@
 
 namespace hemi::gl {
 
+/// Whether the GL functions were last loaded for that backend (see load_functions()).
+[[nodiscard]] bool functions_loaded_for(const char* backend) noexcept;
 /// EGL devices (EGL_EXT_device_enumeration); 0 where EGL or the extension is missing.
 [[nodiscard]] std::size_t egl_device_count();
 /// Whether a device says that it rasterises on the CPU; told without making a context.

@@ -59,12 +59,14 @@ public:
                         configs > 0,
                     "eglChooseConfig");
         }
-        const std::array<EGLint, 7> context_attributes{EGL_CONTEXT_MAJOR_VERSION,
+        const std::array<EGLint, 9> context_attributes{EGL_CONTEXT_MAJOR_VERSION,
                                                        4,
                                                        EGL_CONTEXT_MINOR_VERSION,
                                                        5,
                                                        EGL_CONTEXT_OPENGL_PROFILE_MASK,
                                                        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                                       debug_wanted() ? EGL_CONTEXT_OPENGL_DEBUG : EGL_NONE,
+                                                       EGL_TRUE,
                                                        EGL_NONE};
         context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, context_attributes.data());
         require(context_ != EGL_NO_CONTEXT, "eglCreateContext (OpenGL 4.5 core)");
@@ -82,6 +84,11 @@ public:
     void make_current() override {
         // The client API is per thread, and another library may have changed it.
         eglBindAPI(EGL_OPENGL_API);
+        if (!functions_loaded_for("egl")) {
+            // Where OSMesa has made its context current, Mesa's EGL still takes its own last one for current,
+            // and would do nothing.
+            eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        }
         if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) {
             throw NoDevice(fmt::format("{}: eglMakeCurrent failed (0x{:04x})", device_name_, eglGetError()));
         }

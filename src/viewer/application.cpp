@@ -40,8 +40,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 } // namespace
 
 Application::Application(ViewerInput input, const ViewerSettings& settings)
-    : settings_(settings),
-      window_(input.title(), input.picture.width, input.picture.height, !settings.script.empty()),
+    : settings_(settings), window_(input.title(), input.picture.width, input.picture.height),
       navigator_(settings.controls, input.mesh, input.camera), opener_(settings.open, Window::wake) {
     choices_.look.shading = input.picture.shading;
     choices_.look.tone_mapping = input.picture.tone_mapping;
@@ -442,7 +441,7 @@ void Application::draw() {
     describe_panels();
     grant_wishes();
     settle();
-    window_.check_debug_messages();
+    gl::check_errors("preparing the window");
     if (picture_changed_) { // by a button: once more
         Window::wake();
     }

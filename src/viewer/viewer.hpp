@@ -62,8 +62,8 @@ struct ViewerSettings {
 ///
 /// Mouse and keys: see guide(). Beside the scene stands a panel where the window is large enough for it.
 /// Screenshots have the pixels that draw_picture() gives for the same camera and size. The file is read again
-/// when it changes, and files that are dropped on the window are opened. Driven by a script, the window has a
-/// debug context, and an error that OpenGL tells of ends it.
+/// when it changes, and files that are dropped on the window are opened. An OpenGL error
+/// ends it.
 /// @throws NoDevice without a display or without OpenGL 4.5 on it; InputError if the script cannot be read or
 ///   understood, naming file and line; GlError; IoError where a script's file cannot be written.
 void run_viewer(ViewerInput input, const ViewerSettings& settings);

@@ -1,6 +1,5 @@
 #include "viewer/window.hpp"
 
-#include "gl/objects.hpp"
 #include "hemi/core/error.hpp"
 
 // GLFW must not bring its own OpenGL header.
@@ -117,21 +116,14 @@ struct Window::Callbacks {
             events(window).push_back(DropEvent{paths[0]});
         }
     }
-    static void APIENTRY message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei, const GLchar* text,
-                                 const void* window) noexcept {
-        if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH) {
-            const auto* told = static_cast<const Window*>(window);
-            told->problem_ = text;
-        }
-    }
 };
 
-Window::Window(const std::string& title, std::uint32_t width, std::uint32_t height, bool debug) {
+Window::Window(const std::string& title, std::uint32_t width, std::uint32_t height) {
     glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_API);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, debug ? GLFW_TRUE : GLFW_FALSE);
+    glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, gl::debug_wanted() ? GLFW_TRUE : GLFW_FALSE);
     // By which desktops know the program; else it would be the first title.
     glfwWindowHintString(GLFW_X11_CLASS_NAME, "hemi");
     glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "hemi");
@@ -158,11 +150,6 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
     Window::make_current();
     describe("window");
     glfwSwapInterval(1);
-    if (debug) {
-        glEnable(GL_DEBUG_OUTPUT);
-        glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-        glDebugMessageCallback(Callbacks::message, this);
-    }
     listen();
 }
 
@@ -211,12 +198,6 @@ void Window::minimise(bool minimised) {
 
 void Window::copy_text(const std::string& text) {
     glfwSetClipboardString(window_.get(), text.c_str());
-}
-
-void Window::check_debug_messages() const {
-    if (!problem_.empty()) {
-        throw GlError("OpenGL says: " + problem_);
-    }
 }
 
 void Window::swap() {

@@ -17,9 +17,8 @@ namespace hemi::viewer {
 class Window final : public gl::Context {
 public:
     /// The window may come out smaller than asked for where the screen is.
-    /// @param debug  listen to what OpenGL tells of errors, see check_debug_messages()
     /// @throws NoDevice without a display or without OpenGL 4.5 on it.
-    Window(const std::string& title, std::uint32_t width, std::uint32_t height, bool debug);
+    Window(const std::string& title, std::uint32_t width, std::uint32_t height);
     ~Window() override;
 
     void make_current() override;
@@ -31,8 +30,6 @@ public:
     void minimise(bool minimised);
     /// Onto the clipboard.
     void copy_text(const std::string& text);
-    /// @throws GlError with the last error that a debug context told of
-    void check_debug_messages() const;
     /// Shows what was drawn.
     void swap();
 
@@ -61,7 +58,6 @@ private:
     Library library_;
     std::unique_ptr<GLFWwindow, Closer> window_;
     std::vector<Event> events_;
-    mutable std::string problem_; ///< told by a debug context
 };
 
 } // namespace hemi::viewer

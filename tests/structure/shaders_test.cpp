@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <regex>
+
 using namespace hemi::structure_test;
 using hemi::test::run_command;
 
@@ -28,4 +30,22 @@ TEST_CASE("shaders: glslangValidator refuses a slip in each file", "[structure]"
         CHECK(outcome.status != 0);
         CHECK(outcome.out.find("undeclared") != std::string::npos);
     }
+}
+
+TEST_CASE("shaders: every input, output and uniform has its location written out", "[structure]") {
+    // A declaration that begins with its qualifiers; one with a location begins with layout.
+    const std::regex unplaced(R"(^(flat |smooth |noperspective |centroid )*(in|out|uniform) )");
+    const std::regex placed(R"(^layout\(location = \d+(, binding = \d+)?\) (flat )?(in|out|uniform) )");
+    std::size_t found = 0;
+    for (const SourceFile& file : source_files({"shaders"})) {
+        for (const std::string& line : lines_of(file.text)) {
+            INFO(file.path << ": " << line);
+            CHECK_FALSE(std::regex_search(line, unplaced));
+            if (line.starts_with("layout")) {
+                CHECK(std::regex_search(line, placed));
+                ++found;
+            }
+        }
+    }
+    CHECK(found > 30);
 }

@@ -64,7 +64,7 @@ std::string random_script(std::uint32_t seed, int events) {
 
 TEST_CASE("Viewer: a thousand random events leave no OpenGL error behind", "[viewer][gl]") {
     const Workplace place;
-    // A script's window has a debug context, and stops at the first error that OpenGL tells of.
+    // The window stops at the first error that OpenGL reports.
     const int status = place.view(random_script(7, 1000) + "windowshot end.png\n", with_panel);
     INFO(place.read("errors.txt"));
     CHECK(status == 0);

@@ -9,7 +9,31 @@
 
 namespace hemi {
 
-/// Item ids in a buffer: 0 where nothing was drawn, 1 for a back face, patches from 2.
+// Items, draw ids and cells: the definition that the hemicube shaders, the item buffers, the accumulators
+// and the workers share.
+//
+// An item is what a texel of a hemicube shows:
+//   0      nothing was drawn there: the environment
+//   1      a back face that has no patches: it occludes, and no patch receives what hits it
+//   2 + i  patch i; the back of a two-sided surface has patches of its own
+//
+// A draw id is what the shaders write, since a fragment knows its cell but not its patch: 32 bits. 0 and 1
+// mean what they mean as items. From 2 on, every side of a polygon that has patches owns a block of
+// consecutive ids, one a cell; DrawList::item_of_id gives the item of each.
+//
+// The cells of a polygon are a grid of grid.u x grid.v: the patches of one surface, or those of coplanar
+// surfaces merged into a lattice. With (u, v) counted in cells from the polygon's first corner, and i and j
+// their whole parts, clamped to the grid:
+//   id = first_id + ((j * grid.u + i) << split) + half
+// split is 1 where every cell is two triangles, cut from (i + 1, j) to (i, j + 1), and half is 1 beyond that
+// cut, where (u - i) + (v - j) > 1; else both are 0. Triangles that are subdivided have the grid of the
+// parallelogram around them; ids outside stand for the nearest patch, since rounding reaches them.
+// (u, v) is interpolated on parallelograms and triangles. On other quadrilaterals what is interpolated is the
+// position in the frame of corners 0, 1 and 3, and hemicube_quad.frag inverts the bilinear map.
+//
+// first_id is front_id for an eye in front of the polygon's plane and back_id behind it. Both sides number
+// their cells alike: a cell of the back lies behind the same cell of the front. A back_id of 1 is one cell.
+
 inline constexpr std::uint32_t item_nothing = 0;
 inline constexpr std::uint32_t item_blocked = 1;
 inline constexpr std::uint32_t item_first_patch = 2;
@@ -46,7 +70,7 @@ struct DrawList {
     std::vector<DrawPolygon> polygons;
     std::vector<OutlineCorner> corners;
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< positions in their polygon's outline
-    std::vector<std::uint32_t> item_of_id; ///< draw id -> item (nothing, blocked, item_first_patch + patch)
+    std::vector<std::uint32_t> item_of_id;               ///< draw id -> item
     std::vector<std::uint32_t> polygon_of_surface;
     double tolerance = 0.0; ///< lengths below are rounding: scene units
 };

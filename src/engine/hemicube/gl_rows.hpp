@@ -42,9 +42,8 @@ public:
     /// Computes rows in the order given and hands each on.
     void rows(std::span<const std::uint32_t> patches, const RowSink& sink);
 
-    /// The item buffer of one eye point of a patch: 3·resolution rows of `resolution` items (nothing,
-    /// blocked, or item_first_patch + patch). For tests and for looking at what a patch sees. Leaves OpenGL's
-    /// default state behind.
+    /// The item buffer of one eye point of a patch: 3·resolution rows of `resolution` items (see
+    /// draw_list.hpp). For tests and for looking at what a patch sees. Leaves OpenGL's default state behind.
     [[nodiscard]] std::vector<std::uint32_t> items(std::uint32_t patch, std::uint32_t eye = 0);
 
 private:

@@ -1,5 +1,6 @@
 #include "engine/hemicube/item_buffers.hpp"
 
+#include "gl/reversed_depth.hpp"
 #include "gl/shaders.hpp"
 #include "hemi/core/error.hpp"
 
@@ -79,7 +80,7 @@ void ItemBuffers::prepare_target(Target& target, std::uint32_t index) const {
         glNamedBufferStorage(target.pixels.get(), GLsizeiptr{4} * width * height, nullptr,
                              GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
     }
-    gl::label(GL_TEXTURE, target.ids.get(), fmt::format("item ids {}", index));
+    gl::label(GL_TEXTURE, target.ids.get(), fmt::format("draw ids {}", index));
     gl::label(GL_TEXTURE, target.depth.get(), fmt::format("item depth {}", index));
     gl::label(GL_FRAMEBUFFER, target.framebuffer.get(), fmt::format("item atlas {}", index));
 }
@@ -94,16 +95,8 @@ void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
 
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
     glViewport(0, 0, width, height);
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
-    glDepthMask(GL_TRUE);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    // Facing is told on the CPU; what turns the wrong way here was flipped by rounding (see ViewBuilder).
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_BACK);
-    glFrontFace(GL_CW);
-    glDisable(GL_SCISSOR_TEST);
+    // Facing is decided on the CPU; what turns the wrong way here was flipped by rounding (see ViewBuilder).
+    const gl::ReversedDepth state(GL_CW);
     const std::array<GLuint, 4> nothing{item_nothing, 0, 0, 0};
     const GLfloat infinity = 0.0f;
     glClearNamedFramebufferuiv(target.framebuffer.get(), GL_COLOR, 0, nothing.data());
@@ -126,7 +119,6 @@ void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
     // that shares its edge, either may come out nearer by its change of depth over that distance. Fronts are
     // set nearer by it and backs farther: the front wins.
     constexpr float last_places = 16.0f;
-    glEnable(GL_POLYGON_OFFSET_FILL);
     std::size_t first = 0;
     for (const Part& part : parts) {
         if (part.vertices.empty()) {
@@ -135,12 +127,11 @@ void ItemBuffers::begin(const DrawStream& stream, std::uint32_t used) {
         const auto count = part.vertices.size();
         glNamedBufferSubData(target.vertices.get(), static_cast<GLintptr>(first * sizeof(DrawVertex)),
                              static_cast<GLsizeiptr>(count * sizeof(DrawVertex)), part.vertices.data());
-        glPolygonOffset(part.behind ? -grain_ : grain_, part.behind ? -last_places : 0.0f);
+        state.offset(part.behind ? -grain_ : grain_, part.behind ? -last_places : 0.0f);
         glUseProgram(part.program.get());
         glDrawArrays(GL_TRIANGLES, static_cast<GLint>(first), static_cast<GLsizei>(count));
         first += count;
     }
-    glDisable(GL_POLYGON_OFFSET_FILL);
     const auto used_rows = static_cast<GLsizei>(3 * resolution_ * used);
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     if (!software_) {
@@ -202,12 +193,6 @@ void ItemBuffers::restore_defaults() noexcept {
     unmap();
     glUseProgram(0);
     glBindVertexArray(0);
-    glDisable(GL_CULL_FACE);
-    glFrontFace(GL_CCW);
-    glDisable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);
-    glPolygonOffset(0.0f, 0.0f);
-    glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 

@@ -10,11 +10,12 @@
 
 namespace hemi {
 
-/// Draws batches of hemicubes into an atlas of item ids and reads them back.
+/// Draws batches of hemicubes into an atlas of draw ids (see draw_list.hpp) and reads them back.
 ///
 /// The atlas is one column, `resolution` wide: every hemicube is a contiguous block of 3·resolution rows (top
 /// face, then four sides of resolution / 2 rows). Ids are 32-bit integers, depth is reversed and infinite in
-/// 32-bit float. Needs its context current on the calling thread.
+/// 32-bit float. Needs its context current on the calling thread, in OpenGL's default state but for what it
+/// binds.
 class ItemBuffers {
 public:
     /// @param slots  hemicubes a batch; reduced to what the driver's largest texture holds.
@@ -31,7 +32,8 @@ public:
     [[nodiscard]] const std::uint32_t* finish();
     /// Forgets the batches under way.
     void discard() noexcept;
-    /// OpenGL's default state, for whoever else draws with the context. Ids of finish() are gone afterwards.
+    /// Nothing bound, as in OpenGL's default state, for others that draw with the context. Ids of finish()
+    /// are gone afterwards.
     void restore_defaults() noexcept;
 
 private:

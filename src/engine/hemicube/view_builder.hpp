@@ -10,7 +10,7 @@
 namespace hemi {
 
 /// Vertex of a triangle in one view (one face of one hemicube of a batch), as the shaders read it: clip
-/// coordinates in the atlas (z is 1, the near distance), and what tells the item id.
+/// coordinates in the atlas (z is 1, the near distance), and what gives the draw id (see draw_list.hpp).
 struct DrawVertex {
     float x, y, w;
     float grid_u, grid_v;

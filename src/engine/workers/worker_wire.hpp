@@ -13,7 +13,7 @@
 namespace hemi {
 
 // What a program and its workers say to each other. Both are the same build on the same machine, so
-// structures travel as they lie in memory.
+// structures travel as they lie in memory. Items and draw ids: see draw_list.hpp.
 //
 // A worker finds three descriptors: a packet socket, the geometry (read-only), and its result buffer. The
 // program sends jobs; the worker answers each with one or more chunks of rows, in order, which lie in one of
