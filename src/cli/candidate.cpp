@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <type_traits>
 
 namespace hemi::cli {
 
@@ -16,7 +17,8 @@ namespace {
 
 /// Seconds that one row takes of many: where the sample went by in a moment, of more rows, so that workers
 /// and batches are as busy as they will be.
-double seconds_a_row(RowProvider& provider, std::size_t sampled, double seconds) {
+template <class Row>
+double seconds_a_row(BasicRowProvider<Row>& provider, std::size_t sampled, double seconds) {
     constexpr double long_enough = 0.4;
     const auto all = all_patches(provider.size());
     const double one = seconds / static_cast<double>(sampled);
@@ -26,40 +28,54 @@ double seconds_a_row(RowProvider& provider, std::size_t sampled, double seconds)
     }
     const auto patches = reference_patches(all, more);
     const Stopwatch watch;
-    provider.rows(patches, [](std::uint32_t, const RowView&) {});
+    provider.rows(patches, [](std::uint32_t, const Row&) {});
     return watch.seconds() / static_cast<double>(patches.size());
+}
+
+/// @param count    of rows that `seconds` are to be for
+/// @param compute  rows and what is made of them
+template <class Row, class Compute>
+FormFactorMatrix timed_rows(BasicRowProvider<Row>& provider, std::span<const std::uint32_t> patches,
+                            std::size_t count, const Compute& compute, double& seconds) {
+    // The first row also pays for contexts and workers, which do not grow with the number of rows.
+    const Stopwatch start_watch;
+    provider.rows(patches.first(1), [](std::uint32_t, const Row&) {});
+    const double start = start_watch.seconds();
+    const Stopwatch watch;
+    double rows_taken = 0.0;
+    FormFactorMatrix rows = compute([&](std::size_t, std::size_t) {
+        rows_taken = watch.seconds();
+        return !interrupted();
+    });
+    const double pairs_taken = std::is_same_v<Row, VisibilityRow> ? watch.seconds() - rows_taken : 0.0;
+    // Each pair is taken once.
+    const double size = provider.size();
+    const auto some = static_cast<double>(patches.size());
+    const auto all = static_cast<double>(count);
+    const double pairs = all * (size - 0.5 * all) / (some * (size - 0.5 * some));
+    seconds = start + all * seconds_a_row(provider, patches.size(), rows_taken) + pairs * pairs_taken;
+    return rows;
 }
 
 /// @param count    of rows that `seconds` are to be for
 FormFactorMatrix rows_of(const LoadedScene& loaded, const Candidate& candidate,
                          std::span<const std::uint32_t> patches, std::size_t count, double& seconds) {
     const RowPlan plan = plan_rows(candidate.options, loaded.mesh.size());
+    if (!candidate.yardstick && plan.hybrid) {
+        const auto visibility = make_visibility(loaded.mesh, plan.hemicube, candidate.options);
+        const auto compute = [&](const Progress& rows_done) {
+            const auto go_on = [](std::size_t, std::size_t) { return !interrupted(); };
+            return compute_visibility_weighted(*visibility, loaded.mesh, patches, *plan.hybrid,
+                                               loaded.scene.enclosure, rows_done, go_on, go_on);
+        };
+        return timed_rows(*visibility, patches, count, compute, seconds);
+    }
     const auto provider = candidate.yardstick ? make_baseline(loaded.mesh, *candidate.yardstick)
                                               : make_engine(loaded.mesh, plan.hemicube, candidate.options);
-    // The first row also pays for contexts and workers, which do not grow with the number of rows.
-    const Stopwatch start_watch;
-    provider->rows(patches.first(1), [](std::uint32_t, const RowView&) {});
-    const double start = start_watch.seconds();
-    const Stopwatch watch;
-    double rows_taken = 0.0;
-    const auto rows_done = [&](std::size_t, std::size_t) {
-        rows_taken = watch.seconds();
-        return !interrupted();
+    const auto compute = [&](const Progress& rows_done) {
+        return compute_matrix(*provider, patches, rows_done);
     };
-    const auto go_on = [](std::size_t, std::size_t) { return !interrupted(); };
-    const bool hybrid = !candidate.yardstick && plan.hybrid;
-    FormFactorMatrix rows = hybrid
-                                ? compute_visibility_weighted(*provider, loaded.mesh, patches, *plan.hybrid,
-                                                              loaded.scene.enclosure, rows_done, go_on, go_on)
-                                : compute_matrix(*provider, patches, rows_done);
-    const double pairs_taken = hybrid ? watch.seconds() - rows_taken : 0.0;
-    // The hybrid takes each pair once.
-    const double size = loaded.mesh.size();
-    const auto some = static_cast<double>(patches.size());
-    const auto all = static_cast<double>(count);
-    const double pairs = all * (size - 0.5 * all) / (some * (size - 0.5 * some));
-    seconds = start + all * seconds_a_row(*provider, patches.size(), rows_taken) + pairs * pairs_taken;
-    return rows;
+    return timed_rows(*provider, patches, count, compute, seconds);
 }
 
 void judge(Measurement& measurement, const LoadedScene& loaded, const FormFactorMatrix& rows,
@@ -156,7 +172,7 @@ Reference find_reference(const LoadedScene& loaded, std::span<const std::uint32_
     reference.settings = reference_settings(plan_rows(best, loaded.mesh.size()).hemicube);
     reference.settings.eye_points = reference.settings.near_eye_points; // as many as there can be
     reference.settings.resolution = std::max(reference.settings.resolution, 128u);
-    const auto engine = make_engine(loaded.mesh, reference.settings, base);
+    const auto engine = make_visibility(loaded.mesh, reference.settings, base);
     const auto first = reference_patches(patches, 1);
     (void)compute_reference(*engine, loaded.mesh, first); // pays for the start
     const Stopwatch one;

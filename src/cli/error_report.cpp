@@ -27,7 +27,7 @@ void add_reference(Rows& rows, const LoadedScene& loaded, const RowOptions& opti
     const Stopwatch watch;
     const HemicubeSettings settings = plan_rows(options, loaded.mesh.size()).hemicube;
     const auto patches = reference_patches(known, reference_count(settings, known.size(), reference_share));
-    const auto engine = make_engine(loaded.mesh, reference_settings(settings), options);
+    const auto engine = make_visibility(loaded.mesh, reference_settings(settings), options);
     rows.file.reference = compute_reference(*engine, loaded.mesh, patches);
     rows.reference_seconds = watch.seconds();
     terminal.detail(fmt::format("error estimate: {} compared with better ones in {}",

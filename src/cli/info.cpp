@@ -89,18 +89,21 @@ Cost rule_of_thumb(const PatchMesh& mesh, const RowOptions& options) {
 
 Cost measure(const PatchMesh& mesh, const RowOptions& options) {
     const RowPlan plan = plan_rows(options, mesh.size());
-    const auto engine = make_engine(mesh, plan.hemicube, options);
-    const auto take = [&engine](const auto& estimate) {
+    const auto take = [](const auto& estimate, const std::string& renderer) {
         Cost cost;
         cost.entries_per_row = estimate.entries_per_row;
         cost.memory = estimate.memory_bytes;
         cost.seconds = estimate.seconds;
-        cost.renderer = engine->renderer();
+        cost.renderer = renderer;
         return cost;
     };
     const auto patches = all_patches(mesh.size());
-    return plan.hybrid ? take(estimate_visibility_weighted(*engine, patches))
-                       : take(estimate_matrix(*engine, patches));
+    if (plan.hybrid) {
+        const auto engine = make_visibility(mesh, plan.hemicube, options);
+        return take(estimate_visibility_weighted(*engine, patches), engine->renderer());
+    }
+    const auto engine = make_engine(mesh, plan.hemicube, options);
+    return take(estimate_matrix(*engine, patches), engine->renderer());
 }
 
 std::string cost_text(const Cost& cost, const PatchMesh& mesh) {

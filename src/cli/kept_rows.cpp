@@ -2,6 +2,7 @@
 
 #include "cli/report.hpp"
 #include "engine/open_block.hpp"
+#include "engine/raw_row.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
@@ -14,22 +15,24 @@
 namespace hemi::cli {
 
 /// Rows of another provider, those that are kept from the journal.
-class KeptRows::Provider : public RowProvider {
+template <class Row>
+class KeptRows::Provider : public BasicRowProvider<Row> {
 public:
-    Provider(KeptRows& kept, RowProvider& provider, io::CheckpointKey key)
+    Provider(KeptRows& kept, BasicRowProvider<Row>& provider, io::CheckpointKey key)
         : kept_(kept), provider_(provider), key_(std::move(key)) {}
 
     [[nodiscard]] std::uint32_t size() const override { return provider_.size(); }
     [[nodiscard]] std::string renderer() const override { return provider_.renderer(); }
 
-    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
+    void rows(std::span<const std::uint32_t> patches,
+              const typename BasicRowProvider<Row>::Sink& sink) override {
         std::vector<bool> there(size(), false);
         io::CheckpointFile& journal = *kept_.journal_;
         key_["renderer"] = renderer(); // others give other bits
-        journal.start(key_, size(), [&](std::uint32_t patch, const RowView& row) {
+        journal.start(key_, size(), [&](std::uint32_t patch, const RawRow& row) {
             there[patch] = true;
             ++kept_.reused_;
-            sink(patch, row);
+            sink(patch, row_from_raw<Row>(row));
         });
         if (kept_.reused_ > 0) {
             kept_.terminal_.note(fmt::format("{} of {} from {}", count_text(kept_.reused_),
@@ -44,16 +47,16 @@ public:
     }
 
 private:
-    void compute(std::span<const std::uint32_t> missing, const RowSink& sink) {
+    void compute(std::span<const std::uint32_t> missing, const typename BasicRowProvider<Row>::Sink& sink) {
         std::map<std::uint32_t, OpenBlock> open;
         std::size_t expected_entries = 0; // of a block: what the last one had, and a little more
-        provider_.rows(missing, [&](std::uint32_t patch, const RowView& row) {
+        provider_.rows(missing, [&](std::uint32_t patch, const Row& row) {
             const std::uint32_t first = patch - patch % FormFactorMatrix::block_rows;
             const std::uint32_t count = std::min(FormFactorMatrix::block_rows, size() - first);
             OpenBlock& block =
                 open.try_emplace(first, first, count, rows_of_block(missing, first), expected_entries)
                     .first->second;
-            block.add(patch, row);
+            block.add(patch, raw_row(row));
             if (block.complete()) {
                 const RowBlock finished = block.finish();
                 expected_entries = finished.columns.size() + finished.columns.size() / 16;
@@ -73,7 +76,7 @@ private:
     }
 
     KeptRows& kept_;
-    RowProvider& provider_;
+    BasicRowProvider<Row>& provider_;
     io::CheckpointKey key_;
 };
 
@@ -84,10 +87,14 @@ KeptRows::KeptRows(const std::optional<std::filesystem::path>& output, bool resu
     }
 }
 
-std::unique_ptr<RowProvider> KeptRows::keep(RowProvider& provider, io::CheckpointKey key) {
+template <class Row>
+std::unique_ptr<BasicRowProvider<Row>> KeptRows::keep(BasicRowProvider<Row>& provider,
+                                                      io::CheckpointKey key) {
     size_ = provider.size();
-    return std::make_unique<Provider>(*this, provider, std::move(key));
+    return std::make_unique<Provider<Row>>(*this, provider, std::move(key));
 }
+template std::unique_ptr<RowProvider> KeptRows::keep(RowProvider&, io::CheckpointKey);
+template std::unique_ptr<VisibilityProvider> KeptRows::keep(VisibilityProvider&, io::CheckpointKey);
 
 void KeptRows::discard() noexcept {
     if (journal_) {

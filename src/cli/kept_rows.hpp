@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/terminal.hpp"
-#include "hemi/engine/row_provider.hpp"
+#include "hemi/engine/visibility_provider.hpp"
 #include "io/factors/checkpoint_file.hpp"
 
 #include <cstdint>
@@ -25,8 +25,11 @@ public:
     [[nodiscard]] bool active() const noexcept { return journal_.has_value(); }
 
     /// A provider of the same rows, which takes those that were kept from there and keeps all others.
+    /// @tparam Row      RowView or VisibilityRow
     /// @param provider  of all rows; must outlive what is returned, as must this
-    [[nodiscard]] std::unique_ptr<RowProvider> keep(RowProvider& provider, io::CheckpointKey key);
+    template <class Row>
+    [[nodiscard]] std::unique_ptr<BasicRowProvider<Row>> keep(BasicRowProvider<Row>& provider,
+                                                              io::CheckpointKey key);
 
     /// Rows that an earlier run had computed.
     [[nodiscard]] std::uint64_t reused() const noexcept { return reused_; }
@@ -37,6 +40,7 @@ public:
     void tell() const;
 
 private:
+    template <class Row>
     class Provider;
 
     const Terminal& terminal_;

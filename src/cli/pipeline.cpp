@@ -19,6 +19,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <type_traits>
 
 namespace hemi::cli {
 
@@ -27,45 +28,27 @@ namespace {
 constexpr std::uint32_t sample_rows = 64;
 constexpr std::size_t sample_above = 256;
 
-/// Passes rows on and stops when the user has interrupted, so that sampling, too, can be stopped.
-class StoppableEngine : public RowProvider {
-public:
-    explicit StoppableEngine(std::unique_ptr<RowProvider> engine) : engine_(std::move(engine)) {}
-
-    [[nodiscard]] std::uint32_t size() const override { return engine_->size(); }
-    [[nodiscard]] std::string renderer() const override { return engine_->renderer(); }
-    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
-        engine_->rows(patches, [&sink](std::uint32_t patch, const RowView& row) {
-            stop_if_interrupted();
-            sink(patch, row);
-        });
-    }
-    [[nodiscard]] std::uint64_t hemicubes() const override { return engine_->hemicubes(); }
-
-private:
-    std::unique_ptr<RowProvider> engine_;
-};
-
 /// Shows rows to a watcher and passes them on.
-class WatchedRows : public RowProvider {
+template <class Row>
+class WatchedRows : public BasicRowProvider<Row> {
 public:
-    WatchedRows(RowProvider& provider, RowQuantity quantity, const RowWatcher& watcher)
-        : provider_(provider), quantity_(quantity), watcher_(watcher) {}
+    WatchedRows(BasicRowProvider<Row>& provider, const RowWatcher& watcher)
+        : provider_(provider), watcher_(watcher) {}
 
     [[nodiscard]] std::uint32_t size() const override { return provider_.size(); }
     [[nodiscard]] std::string renderer() const override { return provider_.renderer(); }
-    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
-        provider_.rows(patches, [&](std::uint32_t patch, const RowView& row) {
+    void rows(std::span<const std::uint32_t> patches,
+              const typename BasicRowProvider<Row>::Sink& sink) override {
+        provider_.rows(patches, [&](std::uint32_t patch, const Row& row) {
             if (watcher_) {
-                watcher_(patch, row, quantity_);
+                watcher_(patch, row);
             }
             sink(patch, row);
         });
     }
 
 private:
-    RowProvider& provider_;
-    RowQuantity quantity_;
+    BasicRowProvider<Row>& provider_;
     const RowWatcher& watcher_;
 };
 
@@ -260,24 +243,36 @@ RowPlan plan_rows(const RowOptions& options, std::uint32_t patches) {
     }
     hemicube.seed = options.seed.value_or(hemicube.seed);
     hemicube.merge_lattices = options.merge;
-    hemicube.quantity = plan.hybrid ? RowQuantity::visibility : RowQuantity::form_factors;
     return plan;
 }
 
-std::unique_ptr<RowProvider> make_engine(const PatchMesh& mesh, const HemicubeSettings& hemicube,
-                                         const RowOptions& options) {
+namespace {
+
+EngineSettings engine_settings(const RowOptions& options) {
     EngineSettings settings;
     settings.device = options.device;
     settings.jobs = options.jobs;
     settings.worker_program = find_worker_program();
-    return std::make_unique<StoppableEngine>(make_hemicube_engine(mesh, hemicube, settings));
+    return settings;
+}
+
+} // namespace
+
+std::unique_ptr<RowProvider> make_engine(const PatchMesh& mesh, const HemicubeSettings& hemicube,
+                                         const RowOptions& options) {
+    return make_hemicube_engine(mesh, hemicube, engine_settings(options));
+}
+
+std::unique_ptr<VisibilityProvider> make_visibility(const PatchMesh& mesh, const HemicubeSettings& hemicube,
+                                                    const RowOptions& options) {
+    return make_visibility_engine(mesh, hemicube, engine_settings(options));
 }
 
 namespace {
 
 /// Whether the hybrid's table of pairs and its matrix fit; says so where they do not.
-bool hybrid_fits(RowProvider& visibility, std::span<const std::uint32_t> patches, const RowOptions& options,
-                 const Terminal& terminal) {
+bool hybrid_fits(VisibilityProvider& visibility, std::span<const std::uint32_t> patches,
+                 const RowOptions& options, const Terminal& terminal) {
     const VisibilityWeightedEstimate estimate =
         estimate_visibility_weighted(visibility, patches, patches.size() > sample_above ? sample_rows : 0);
     if (patches.size() > sample_above) {
@@ -299,11 +294,12 @@ bool hybrid_fits(RowProvider& visibility, std::span<const std::uint32_t> patches
 } // namespace
 
 /// What the raw rows depend on, besides the renderer.
-io::CheckpointKey journal_key(const io::FactorFile& file, const HemicubeSettings& hemicube) {
+io::CheckpointKey journal_key(const io::FactorFile& file, const RowPlan& plan) {
+    const HemicubeSettings& hemicube = plan.hemicube;
     return {{"hemi", HEMI_VERSION},
             {"geometry", fmt::format("{:016x}", file.geometry_hash)},
             {"method", file.method},
-            {"rows of", hemicube.quantity == RowQuantity::visibility ? "visibility" : "form factors"},
+            {"rows of", plan.hybrid ? "visibility" : "form factors"},
             {"resolution", std::to_string(hemicube.resolution)},
             {"seed", std::to_string(hemicube.seed)},
             {"eye points", std::to_string(hemicube.eye_points)},
@@ -312,11 +308,12 @@ io::CheckpointKey journal_key(const io::FactorFile& file, const HemicubeSettings
 }
 
 /// The provider itself, or one that keeps its rows.
+template <class Row>
 struct MaybeKept {
-    std::unique_ptr<RowProvider> keeping;
-    RowProvider& provider;
+    std::unique_ptr<BasicRowProvider<Row>> keeping;
+    BasicRowProvider<Row>& provider;
 
-    MaybeKept(RowProvider& bare, KeptRows* kept, io::CheckpointKey key)
+    MaybeKept(BasicRowProvider<Row>& bare, KeptRows* kept, io::CheckpointKey key)
         : keeping(kept != nullptr && kept->active() ? kept->keep(bare, std::move(key)) : nullptr),
           provider(keeping ? *keeping : bare) {}
 };
@@ -334,7 +331,7 @@ Rows compute_baseline_rows(const LoadedScene& loaded, std::span<const std::uint3
     settings.rays = options.rays.value_or(settings.rays);
     settings.resolution = options.resolution.value_or(settings.resolution);
     settings.seed = options.seed.value_or(settings.seed);
-    StoppableEngine provider(make_baseline(loaded.mesh, settings));
+    const std::unique_ptr<RowProvider> provider = make_baseline(loaded.mesh, settings);
     RowPlan plan;
     plan.hemicube.seed = settings.seed;
     plan.hemicube.resolution = settings.method == BaselineMethod::hemisphere ? settings.resolution : 0;
@@ -345,14 +342,14 @@ Rows compute_baseline_rows(const LoadedScene& loaded, std::span<const std::uint3
     if (settings.method == BaselineMethod::direct || settings.method == BaselineMethod::contour) {
         terminal.note(fmt::format("--method {} finds factors as if nothing lay between", options.method));
     }
-    io::CheckpointKey key = journal_key(rows.file, plan.hemicube);
+    io::CheckpointKey key = journal_key(rows.file, plan);
     key["rays"] = std::to_string(settings.rays);
-    const MaybeKept source(provider, kept, std::move(key));
-    WatchedRows watched(source.provider, plan.hemicube.quantity, watcher);
+    const MaybeKept<RowView> source(*provider, kept, std::move(key));
+    WatchedRows<RowView> watched(source.provider, watcher);
     ProgressBar bar(terminal, "form factors", "rows");
     rows.file.factors = compute_matrix(watched, patches, bar.callback());
     rows.computed = patches.size() - (kept != nullptr ? kept->reused() : 0);
-    rows.file.renderer = provider.renderer();
+    rows.file.renderer = provider->renderer();
     rows.file.contacts = find_touching_faces(rows.file.factors, loaded.mesh);
     stop_if_interrupted();
     return rows;
@@ -372,55 +369,62 @@ Rows compute_rows(const LoadedScene& loaded, std::span<const std::uint32_t> patc
         rows.file.renderer = "none";
         return rows;
     }
-    auto engine = make_engine(loaded.mesh, plan.hemicube, options);
-    if (plan.hybrid && !hybrid_fits(*engine, patches, options, terminal)) {
-        RowOptions plain = options;
-        plain.preset = "plain";
-        return compute_rows(loaded, patches, plain, terminal, kept, watcher);
-    }
-    if (!plan.hybrid && patches.size() > sample_above) {
-        const MatrixEstimate estimate = estimate_matrix(*engine, patches, sample_rows);
-        terminal.detail(fmt::format("{} rows will need about {} and {}", count_text(patches.size()),
-                                    memory_text(estimate.memory_bytes), seconds_text(estimate.seconds)));
-        check_memory(estimate, patches.size(), options);
-    }
-    stop_if_interrupted();
-    rows.file = describe(loaded, options, plan);
-    const MaybeKept source(*engine, kept, journal_key(rows.file, plan.hemicube));
-    const std::uint64_t hemicubes_before = engine->hemicubes(); // of samples
-    WatchedRows watched(source.provider, plan.hemicube.quantity, watcher);
-    const Stopwatch watch;
-    const auto timed = [&](const Progress& progress) -> Progress {
-        return [&rows, &watch, progress](std::size_t done, std::size_t total) {
+    // What both kinds of rows have in common: kept, shown to the watcher, and timed while they are drawn.
+    const auto compute = [&](auto& engine, const auto& factors) {
+        using Row = typename std::remove_cvref_t<decltype(engine)>::RowType;
+        stop_if_interrupted();
+        rows.file = describe(loaded, options, plan);
+        const MaybeKept<Row> source(engine, kept, journal_key(rows.file, plan));
+        const std::uint64_t hemicubes_before = engine.hemicubes(); // of samples
+        WatchedRows<Row> watched(source.provider, watcher);
+        const Stopwatch watch;
+        ProgressBar bar(terminal, plan.hybrid ? "visibility" : "form factors", "rows");
+        const Progress shown = bar.callback();
+        rows.file.factors = factors(watched, [&](std::size_t done, std::size_t total) {
             rows.drawing_seconds = watch.seconds();
-            return progress(done, total);
-        };
+            return shown(done, total);
+        });
+        rows.hemicubes = engine.hemicubes() - hemicubes_before;
+        rows.computed = patches.size() - (kept != nullptr ? kept->reused() : 0);
+        rows.file.renderer = engine.renderer();
+        rows.file.contacts = find_touching_faces(rows.file.factors, loaded.mesh);
+        stop_if_interrupted();
     };
     if (plan.hybrid) {
-        ProgressBar seen(terminal, "visibility", "rows");
-        // These start their clocks when their turn has come.
-        std::optional<ProgressBar> combined;
-        std::optional<ProgressBar> paired;
-        const auto in_turn = [&terminal](std::optional<ProgressBar>& bar, const char* name) {
-            return [&bar, &terminal, name](std::size_t done, std::size_t total) {
-                if (!bar) {
-                    bar.emplace(terminal, name, "rows");
-                }
-                return bar->callback()(done, total);
+        const auto engine = make_visibility(loaded.mesh, plan.hemicube, options);
+        if (!hybrid_fits(*engine, patches, options, terminal)) {
+            RowOptions plain = options;
+            plain.preset = "plain";
+            return compute_rows(loaded, patches, plain, terminal, kept, watcher);
+        }
+        compute(*engine, [&](VisibilityProvider& visibility, const Progress& drawn) {
+            // These start their clocks when their turn has come.
+            std::optional<ProgressBar> combined;
+            std::optional<ProgressBar> paired;
+            const auto in_turn = [&terminal](std::optional<ProgressBar>& bar, const char* name) {
+                return [&bar, &terminal, name](std::size_t done, std::size_t total) {
+                    if (!bar) {
+                        bar.emplace(terminal, name, "rows");
+                    }
+                    return bar->callback()(done, total);
+                };
             };
-        };
-        rows.file.factors = compute_visibility_weighted(
-            watched, loaded.mesh, patches, *plan.hybrid, loaded.scene.enclosure, timed(seen.callback()),
-            in_turn(combined, "pairs"), in_turn(paired, "form factors"));
+            return compute_visibility_weighted(visibility, loaded.mesh, patches, *plan.hybrid,
+                                               loaded.scene.enclosure, drawn, in_turn(combined, "pairs"),
+                                               in_turn(paired, "form factors"));
+        });
     } else {
-        ProgressBar bar(terminal, "form factors", "rows");
-        rows.file.factors = compute_matrix(watched, patches, timed(bar.callback()));
+        const auto engine = make_engine(loaded.mesh, plan.hemicube, options);
+        if (patches.size() > sample_above) {
+            const MatrixEstimate estimate = estimate_matrix(*engine, patches, sample_rows);
+            terminal.detail(fmt::format("{} rows will need about {} and {}", count_text(patches.size()),
+                                        memory_text(estimate.memory_bytes), seconds_text(estimate.seconds)));
+            check_memory(estimate, patches.size(), options);
+        }
+        compute(*engine, [&](RowProvider& provider, const Progress& drawn) {
+            return compute_matrix(provider, patches, drawn);
+        });
     }
-    rows.hemicubes = engine->hemicubes() - hemicubes_before;
-    rows.computed = patches.size() - (kept != nullptr ? kept->reused() : 0);
-    rows.file.renderer = engine->renderer();
-    rows.file.contacts = find_touching_faces(rows.file.factors, loaded.mesh);
-    stop_if_interrupted();
     return rows;
 }
 

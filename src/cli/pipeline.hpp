@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 /// What solve, factors, check, info and view share: a scene, its patches, its rows.
@@ -65,6 +66,9 @@ struct RowPlan {
 /// An engine that stops with Cancelled, at the next row, once the user has interrupted.
 [[nodiscard]] std::unique_ptr<RowProvider>
 make_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const RowOptions& options);
+/// The same for visibility.
+[[nodiscard]] std::unique_ptr<VisibilityProvider>
+make_visibility(const PatchMesh& mesh, const HemicubeSettings& settings, const RowOptions& options);
 
 /// Rows of F with all that belongs to them, and how they came about.
 struct Rows {
@@ -76,9 +80,8 @@ struct Rows {
     bool reused = false;
 };
 
-/// Shown every row as it comes from the engine, before rows are combined: `quantity` says what its values
-/// are.
-using RowWatcher = std::function<void(std::uint32_t patch, const RowView& row, RowQuantity quantity)>;
+/// Shown every row as it comes from the engine, before rows are combined.
+using RowWatcher = std::function<void(std::uint32_t patch, const std::variant<RowView, VisibilityRow>& row)>;
 
 /// Computes the rows of `patches` with a progress bar. Above 256 rows a sample of 64 tells first what the
 /// matrix will need.

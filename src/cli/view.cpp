@@ -23,6 +23,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace hemi::cli {
@@ -210,25 +211,30 @@ private:
                                              const viewer::RowListener& listener) {
         struct State {
             std::vector<double> exitance, reflectance, shown, light;
-            std::optional<Gathering> gathering; ///< made when the first row says what its values are
+            std::optional<Gathering> gathering; ///< made with the first row
         };
         const auto state = std::make_shared<State>();
         state->exitance = patch_exitance(loaded.scene, loaded.mesh);
         state->reflectance = patch_reflectance(loaded.scene, loaded.mesh);
         state->shown = preview.value_or(state->exitance);
         state->light.resize(loaded.scene.channels.size());
-        return [state, &loaded, &listener](std::uint32_t patch, const RowView& row, RowQuantity quantity) {
+        return [state, &loaded, &listener](std::uint32_t patch, const auto& any_row) {
             const std::size_t channels = state->light.size();
             if (!state->gathering) {
-                state->gathering.emplace(loaded.mesh, quantity, static_cast<std::uint32_t>(channels),
+                state->gathering.emplace(loaded.mesh, static_cast<std::uint32_t>(channels),
                                          std::move(state->shown), loaded.scene.environment);
             }
-            state->gathering->gather(patch, row, state->light);
+            const double blocked = std::visit(
+                [&](const auto& row) {
+                    state->gathering->gather(patch, row, state->light);
+                    return row.blocked;
+                },
+                any_row);
             for (std::size_t c = 0; c < channels; ++c) {
                 const std::size_t at = patch * channels + c;
                 state->light[c] = state->exitance[at] + state->reflectance[at] * state->light[c];
             }
-            listener.gathered(patch, state->light, row.blocked);
+            listener.gathered(patch, state->light, blocked);
         };
     }
 

@@ -27,7 +27,7 @@ std::vector<std::uint32_t> every(std::uint32_t step, std::uint32_t count) {
 
 FormFactorMatrix compute(const PatchMesh& mesh, const HemicubeSettings& settings,
                          const std::string& device = "osmesa", std::uint32_t jobs = 2) {
-    return compute_matrix(*make_hemicube_engine(mesh, settings, {device, jobs, HEMI_PROGRAM}));
+    return compute_matrix(*make_hemicube_engine(mesh, settings, {device, jobs, find_worker_program()}));
 }
 
 bool same_bytes(const FormFactorMatrix& a, const FormFactorMatrix& b) {
@@ -86,7 +86,7 @@ void check_against_rays(const PatchMesh& mesh, std::uint32_t resolution, std::ui
     HemicubeSettings settings;
     settings.resolution = resolution;
     const EngineGeometry geometry = make_engine_geometry(mesh, settings);
-    GlRows engine(geometry, settings, "osmesa");
+    GlRows engine(geometry, settings, RowQuantity::form_factors, "osmesa");
     for (const std::uint32_t patch : every(step, mesh.size())) {
         INFO("patch " << patch);
         CHECK(disagreements(mesh, settings, patch, 1.0 / 256.0, engine) == 0);
@@ -121,7 +121,7 @@ TEST_CASE("GlRows: a quadrilateral with a straight corner shows the right cells 
         const PatchMesh mesh(scene);
         const HemicubeSettings settings{.resolution = 64};
         const EngineGeometry geometry = make_engine_geometry(mesh, settings);
-        GlRows engine(geometry, settings, "osmesa");
+        GlRows engine(geometry, settings, RowQuantity::form_factors, "osmesa");
         INFO("start " << start);
         CHECK(disagreements(mesh, settings, 0, 1.0 / 256.0, engine) <=
               2); // the map is singular at that corner
@@ -137,8 +137,8 @@ TEST_CASE("GlRows: a merged lattice shows the same items as its faces", "[engine
     const EngineGeometry merged = make_engine_geometry(mesh, settings);
     const EngineGeometry plain = make_engine_geometry(mesh, unmerged);
     CHECK(merged.list.polygons.size() * 8 < plain.list.polygons.size());
-    GlRows merged_engine(merged, settings, "osmesa");
-    GlRows plain_engine(plain, settings, "osmesa");
+    GlRows merged_engine(merged, settings, RowQuantity::form_factors, "osmesa");
+    GlRows plain_engine(plain, settings, RowQuantity::form_factors, "osmesa");
     for (const std::uint32_t patch : every(37, mesh.size())) {
         const auto a = merged_engine.items(patch);
         const auto b = plain_engine.items(patch);
@@ -381,7 +381,7 @@ TEST_CASE("hemicube engine: a worker that cannot start or dies is an error", "[e
 
 TEST_CASE("hemicube engine: it can be stopped and used again", "[engine][gl]") {
     const PatchMesh mesh(room_with_blocks(6));
-    for (const char* program : {"", HEMI_PROGRAM}) {
+    for (const std::filesystem::path& program : {std::filesystem::path(), find_worker_program()}) {
         const auto engine = make_hemicube_engine(mesh, {.resolution = 64}, {"osmesa", 2, program});
         CHECK_THROWS_AS(compute_matrix(*engine, [](std::size_t done, std::size_t) { return done < 5; }),
                         Cancelled);

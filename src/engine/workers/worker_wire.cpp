@@ -70,8 +70,8 @@ private:
 
 } // namespace
 
-ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings)
-    : with_visibility_(settings.quantity == RowQuantity::visibility) {
+ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings, RowQuantity quantity)
+    : with_visibility_(quantity == RowQuantity::visibility) {
     constexpr std::uint64_t texels_a_chunk = 1u << 19;
     const std::uint64_t texels = std::uint64_t{3} * settings.resolution * settings.resolution;
     const std::uint64_t row_texels = texels * std::max(settings.eye_points, settings.near_eye_points);
@@ -85,11 +85,12 @@ ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings)
     bytes_ = (bytes_ + page - 1) / page * page;
 }
 
-std::string pack(const EngineGeometry& geometry, const HemicubeSettings& settings,
+std::string pack(const EngineGeometry& geometry, const HemicubeSettings& settings, RowQuantity quantity,
                  const std::string& device) {
     std::string bytes;
     append(bytes, magic);
     append(bytes, settings);
+    append(bytes, quantity);
     append(bytes, std::span<const char>(device));
     const DrawList& list = geometry.list;
     append(bytes, std::span<const Vec3>(list.vertices));
@@ -111,6 +112,7 @@ UnpackedGeometry unpack(std::span<const std::byte> bytes) {
     }
     UnpackedGeometry result;
     result.settings = from.value<HemicubeSettings>();
+    result.quantity = from.value<RowQuantity>();
     const auto device = from.array<char>();
     result.device.assign(device.begin(), device.end());
     DrawList& list = result.geometry.list;

@@ -56,7 +56,7 @@ struct RowHead {
 /// Where things lie in a result slot.
 class ResultSlot {
 public:
-    ResultSlot(std::uint32_t patches, const HemicubeSettings& settings);
+    ResultSlot(std::uint32_t patches, const HemicubeSettings& settings, RowQuantity quantity);
 
     /// Most rows in a chunk: few enough that a chunk takes a fraction of a second.
     [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
@@ -85,10 +85,11 @@ private:
 
 /// Geometry and settings as bytes, and back. `device` is what the worker opens.
 [[nodiscard]] std::string pack(const EngineGeometry& geometry, const HemicubeSettings& settings,
-                               const std::string& device);
+                               RowQuantity quantity, const std::string& device);
 struct UnpackedGeometry {
     EngineGeometry geometry;
     HemicubeSettings settings;
+    RowQuantity quantity = RowQuantity::form_factors;
     std::string device;
 };
 /// @throws Error if the bytes are not what pack() made.
