@@ -3,6 +3,8 @@
 #include "support/scenes.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
+#include "hemi/engine/baselines.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/scene/contact.hpp"
 
@@ -10,6 +12,8 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <numeric>
 #include <random>
 
 using namespace hemi;
@@ -387,6 +391,32 @@ TEST_CASE("hemicube engine: it can be stopped and used again", "[engine][gl]") {
                         Cancelled);
         CHECK(same_bytes(compute_matrix(*engine), compute(mesh, {.resolution = 64})));
     }
+}
+
+TEST_CASE("providers: an interrupt stops them at the next row", "[engine][gl]") {
+    const PatchMesh mesh(room_with_blocks(2));
+    static int rows_left = 0;
+    const auto stopped_after = [](auto& provider, int rows) {
+        std::vector<std::uint32_t> patches(provider.size());
+        std::iota(patches.begin(), patches.end(), 0u);
+        int delivered = 0;
+        rows_left = rows;
+        set_interrupt_check([] { return rows_left == 0; });
+        CHECK_THROWS_AS(provider.rows(patches,
+                                      [&](std::uint32_t, const auto&) {
+                                          ++delivered;
+                                          --rows_left;
+                                      }),
+                        Cancelled);
+        set_interrupt_check(nullptr);
+        return delivered;
+    };
+    for (const std::filesystem::path& program : {std::filesystem::path(), find_worker_program()}) {
+        const EngineSettings where{"osmesa", 2, program};
+        CHECK(stopped_after(*make_hemicube_engine(mesh, {.resolution = 32}, where), 3) == 3);
+        CHECK(stopped_after(*make_visibility_engine(mesh, {.resolution = 32}, where), 3) == 3);
+    }
+    CHECK(stopped_after(*make_baseline(mesh, {.method = BaselineMethod::contour}), 3) == 3);
 }
 
 TEST_CASE("hemicube rows: one open patch sees the environment alone", "[engine][gl]") {

@@ -135,6 +135,10 @@ int run_hemicube_worker() {
         Worker().run();
     } catch (const Hangup&) {
         return EXIT_SUCCESS;
+    } catch (const OtherBuild& error) {
+        const std::string packet = refusal_packet(error);
+        (void)::send(worker_socket_fd, packet.data(), packet.size(), MSG_NOSIGNAL);
+        return EXIT_FAILURE;
     } catch (const std::exception& error) {
         FromWorker failed;
         failed.kind = FromWorker::Kind::failed;

@@ -137,16 +137,23 @@ public:
         }
     }
 
-    /// Waits for a message. @throws Error when the worker is gone or failed.
+    /// Waits for a message. @throws Error when the worker is gone, failed or is of another build.
     FromWorker receive() {
-        FromWorker message;
+        std::array<char, sizeof(FromWorker)> packet{};
         ssize_t got = -1;
         do {
-            got = recv(socket_.get(), &message, sizeof message, 0);
+            got = recv(socket_.get(), packet.data(), packet.size(), 0);
         } while (got < 0 && errno == EINTR);
-        if (got != sizeof message) {
+        if (got > 0) {
+            if (const auto reason = refusal_reason({packet.data(), static_cast<std::size_t>(got)})) {
+                throw Error(*reason);
+            }
+        }
+        if (got != static_cast<ssize_t>(packet.size())) {
             ended();
         }
+        FromWorker message;
+        std::memcpy(&message, packet.data(), packet.size());
         if (message.kind == FromWorker::Kind::failed) {
             const std::string text(message.text.data());
             if (message.no_device != 0) {
