@@ -18,8 +18,10 @@ struct VisibilityWeightedEstimate {
 };
 
 /// What compute_visibility_weighted() needs for the rows of `patches`, from up to `samples` of them spread
-/// evenly, which are computed and thrown away.
-/// @param patches  ascending
+/// evenly.
+/// @param visibility  see make_visibility_engine()
+/// @param patches     ascending
+/// @param samples     rows that are computed, and thrown away
 [[nodiscard]] VisibilityWeightedEstimate estimate_visibility_weighted(VisibilityProvider& visibility,
                                                                       std::span<const std::uint32_t> patches,
                                                                       std::uint32_t samples = 64);

@@ -9,10 +9,14 @@ namespace hemi {
 
 namespace {
 
+// Fewer rows say too little of the variance of all, see error_estimate.cpp; more are not worth their time.
 constexpr std::uint32_t min_rows = 12;
 constexpr std::uint32_t max_rows = 32;
+// The most that a patch can have, and the next lower square, whose points are none of those.
 constexpr std::uint32_t max_eye_points = 64;
 constexpr std::uint32_t other_eye_points = 49;
+// What a hemicube takes besides its texels, in the time of texels.
+constexpr double texels_of_overhead = 3e4;
 
 } // namespace
 
@@ -42,7 +46,7 @@ HemicubeSettings reference_settings(const HemicubeSettings& settings) {
 std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows, double share) {
     const auto cost = [](const HemicubeSettings& of) {
         const double texels = 3.0 * of.resolution * of.resolution;
-        return of.eye_points * (texels + 3e4); // that many take as long as all the rest
+        return of.eye_points * (texels + texels_of_overhead);
     };
     const double affordable =
         share * static_cast<double>(rows) * cost(settings) / cost(reference_settings(settings));
