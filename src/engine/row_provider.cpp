@@ -1,12 +1,12 @@
 #include "hemi/engine/row_provider.hpp"
 
 #include "engine/open_block.hpp"
+#include "engine/row_sample.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -78,31 +78,13 @@ FormFactorMatrix compute_matrix(RowProvider& provider, const Progress& progress)
 MatrixEstimate estimate_matrix(RowProvider& provider, std::span<const std::uint32_t> patches,
                                std::uint32_t samples) {
     check_patches(patches, provider.size());
-    std::vector<std::uint32_t> sampled;
-    const std::uint64_t count = std::min<std::uint64_t>(samples, patches.size());
-    for (std::uint64_t k = 0; k < count; ++k) {
-        sampled.push_back(patches[(2 * k + 1) * patches.size() / (2 * count)]);
-    }
-
-    MatrixEstimate estimate;
-    if (!sampled.empty()) {
-        // The first row also pays for contexts and workers, which do not grow with the number of rows.
-        provider.rows(std::span(sampled).first(1), [](std::uint32_t, const RowView&) {});
-
-        std::uint64_t entries = 0;
-        const auto start = std::chrono::steady_clock::now();
-        provider.rows(sampled, [&](std::uint32_t, const RowView& row) { entries += row.columns.size(); });
-        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-
-        const double sampled_rows = static_cast<double>(sampled.size());
-        estimate.entries_per_row = static_cast<double>(entries) / sampled_rows;
-        estimate.seconds = elapsed.count() / sampled_rows * static_cast<double>(patches.size());
-    }
-    const double bytes = estimate.entries_per_row * static_cast<double>(patches.size()) *
-                             (sizeof(std::uint32_t) + sizeof(float)) +
+    const RowSample sample =
+        sample_rows(provider, patches, samples, [](const RowView& row) { return row.columns.size(); });
+    const auto rows = static_cast<double>(patches.size());
+    const double bytes = sample.entries_per_row * rows * (sizeof(std::uint32_t) + sizeof(float)) +
                          static_cast<double>(FormFactorMatrix(provider.size()).memory_bytes());
-    estimate.memory_bytes = static_cast<std::uint64_t>(1.2 * bytes);
-    return estimate;
+    return {sample.entries_per_row, static_cast<std::uint64_t>(memory_margin * bytes),
+            sample.seconds_per_row * rows};
 }
 
 } // namespace hemi

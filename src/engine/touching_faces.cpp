@@ -9,10 +9,10 @@
 namespace hemi {
 
 std::vector<std::uint32_t> find_touching_faces(const FormFactorMatrix& factors, const PatchMesh& mesh) {
-    constexpr double all = 1.0 - 1e-6;
+    constexpr double whole_view = 1.0 - 1e-6; // but for the rounding of shares
     std::vector<std::uint32_t> looking_out;
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        if (factors.known(i) && factors.row(i).environment >= all) {
+        if (factors.known(i) && factors.row(i).environment >= whole_view) {
             looking_out.push_back(i);
         }
     }

@@ -139,10 +139,10 @@ bool is_reciprocal(const Reciprocity& reciprocity) {
 
 GroupFactors group_factors(const FormFactorMatrix& factors, std::span<const double> areas,
                            std::span<const std::uint32_t> group_of, std::uint32_t groups) {
-    constexpr std::uint32_t most = 16384;
-    if (groups > most) {
+    constexpr std::uint32_t max_groups = 16384;
+    if (groups > max_groups) {
         throw InvalidArgument(fmt::format("a table of {} groups; at most {}, which is {} factors", groups,
-                                          most, std::uint64_t{most} * most));
+                                          max_groups, std::uint64_t{max_groups} * max_groups));
     }
     check_areas(factors, areas);
     if (group_of.size() != factors.size()) {

@@ -128,10 +128,14 @@ double Closure::relative_gap(const std::vector<double>& gap) const {
 /// target by more than `tolerance`.
 /// @return iterations
 std::uint32_t Closure::find_multipliers(double tolerance) {
-    // Where targets contradict each other the residual ends at what contradicts; the best is kept.
-    constexpr std::uint32_t patience = 60;
-    constexpr double progress = 0.9;
-    constexpr double flat = 1e-13;
+    // Where targets contradict each other the residual ends at what contradicts; the best is kept, and the
+    // end is taken to be reached when so many iterations have not lowered it to this share: twice as many as
+    // a room takes to 1e-12 where targets agree.
+    constexpr std::uint32_t max_stalled_iterations = 60;
+    constexpr double min_progress = 0.9;
+    // Curvature along a direction, relative to that of the diagonal alone, below which it may be rounding:
+    // some hundred units in the last place of a double.
+    constexpr double rounding_curvature = 1e-13;
     const std::size_t size = gap_.size();
     std::vector<double> residual = gap_;
     std::vector<double> product(size);
@@ -152,7 +156,7 @@ std::uint32_t Closure::find_multipliers(double tolerance) {
     double rho_before = 0.0;
     std::uint32_t iteration = 0;
     std::uint32_t since = 0;
-    while (best > tolerance && iteration < settings_.max_iterations && since < patience) {
+    while (best > tolerance && iteration < settings_.max_iterations && since < max_stalled_iterations) {
         double rho = 0.0;
         for (std::size_t i = 0; i < size; ++i) {
             rho += diagonal_[i] > 0.0 ? residual[i] * residual[i] / diagonal_[i] : 0.0;
@@ -172,7 +176,7 @@ std::uint32_t Closure::find_multipliers(double tolerance) {
         ++iteration;
         const double alpha = rho / curvature;
         // What is left along a direction that changes no sum contradicts itself: no step along it helps.
-        if (!(curvature > flat * scale) || !std::isfinite(alpha)) {
+        if (!(curvature > rounding_curvature * scale) || !std::isfinite(alpha)) {
             break;
         }
         for (std::size_t i = 0; i < size; ++i) {
@@ -185,7 +189,7 @@ std::uint32_t Closure::find_multipliers(double tolerance) {
             multiplier_ = l;
         }
         ++since;
-        if (best < progress * mark) {
+        if (best < min_progress * mark) {
             mark = best;
             since = 0;
         }
@@ -297,15 +301,16 @@ Closure::Tally Closure::write() {
 }
 
 void Closure::run(RepairReport& report) {
-    // Which pairs go beyond their bounds shows long before the multipliers are exact.
-    constexpr double roughly = 0.01;
+    // Which pairs go beyond their bounds shows long before the multipliers are exact: the passes before the
+    // last close gaps to this share of what they were.
+    constexpr double rough_share = 0.01;
     bool exact = false;
     for (bool settled = false; !settled;) {
         find_gaps();
         find_diagonal();
         const bool last = ++report.passes >= settings_.max_passes;
         exact = exact || last;
-        const double rough = roughly * relative_gap(gap_);
+        const double rough = rough_share * relative_gap(gap_);
         report.iterations +=
             find_multipliers(exact ? settings_.tolerance : std::max(settings_.tolerance, rough));
         // After the last pass pairs are put at their bounds without a new solution for the others.

@@ -14,23 +14,47 @@ namespace hemi {
 
 namespace {
 
-/// Of a factor that is stored as float, relative, rms: rows and reference are rounded alike, so that
-/// comparing them does not show it.
+/// Error of a factor from being stored as float, relative, rms: uniform up to 2^-24, so 1/sqrt(3) of that.
+/// Rows and reference are rounded alike, so that comparing them does not show it.
 constexpr double rounding = 0x1p-24 * 0.57735;
 
-/// What the variance of a factor may go like.
-constexpr std::size_t shapes = 3;
-using Shapes = std::array<double, shapes>;
+/// A code of 0 stands for half a step of V.
+constexpr double min_visibility_code = 0.5;
+
+/// Trust in the sample: variances of single rows are raised by 1 + 8/n, n being the number of sampled rows.
+/// The relative standard deviation of a variance found from n normal values is sqrt(2/n): the factor allows
+/// for one of them at 32 rows, the most that are sampled, and 1.6 at 12, the fewest, since errors are not
+/// normal. tests/engine/error_estimate_gl_test.cpp checks what comes of it against known factors.
+constexpr double sample_allowance = 8.0;
+
+/// The largest error of all is not in the sample: so much above what the sample's largest extrapolates to.
+/// Chosen, and checked by the same tests.
+constexpr double unsampled_allowance = 1.5;
+/// Up to this ratio of two rows' largest factors their largest errors are taken to have the same ratio;
+/// beyond, where noise does most, its root. Chosen, and checked by the same tests.
+constexpr double proportional_ratio = 10.0;
+
+/// Models of what the variance of a factor is proportional to: their values for one factor, or sums of them.
+/// None holds everywhere; see models_of() and fit_variances().
+constexpr std::size_t models = 3;
+using VarianceModels = std::array<double, models>;
+/// The models of a row's largest error: without and with visibility.
+constexpr std::size_t square_model = 1;
+constexpr std::size_t visibility_model = 2;
 
 double visibility_of(const RowView& row, std::size_t entry) {
     return row.visibility.empty()
                ? 1.0
-               : std::max(0.5, static_cast<double>(row.visibility[entry])) / visibility_clear;
+               : std::max(min_visibility_code, static_cast<double>(row.visibility[entry])) / visibility_clear;
 }
 
-/// What the variance of one factor may go like: F, F², and F0² V (1 - V) or F⁴ (of near patches, by how far
-/// the places are from each other that stand for them).
-Shapes shapes_of(const RowView& row, std::size_t entry) {
+/// Of one factor:
+/// - F, as of a number of texels of about equal weight;
+/// - F², a relative error;
+/// - F0² V (1 - V) with F0 = F / V the unoccluded factor, as of a share of samples that are visible or not;
+///   without visibility F⁴, of sample points that stand for patches near each other: a relative error that
+///   grows with the solid angle.
+VarianceModels models_of(const RowView& row, std::size_t entry) {
     const double factor = static_cast<double>(row.values[entry]);
     const double visibility = visibility_of(row, entry);
     const double square = factor * factor;
@@ -38,26 +62,26 @@ Shapes shapes_of(const RowView& row, std::size_t entry) {
             row.visibility.empty() ? square * square : square * (1.0 - visibility) / visibility};
 }
 
-/// Of a row: sums over its factors, each times weight_j (none: 1).
-Shapes sum_shapes(const RowView& row, std::span<const double> weights) {
-    Shapes sums{};
+/// Sums over the factors of a row, each times weight_j (none: 1).
+VarianceModels sum_models(const RowView& row, std::span<const double> weights) {
+    VarianceModels sums{};
     for (std::size_t k = 0; k < row.columns.size(); ++k) {
-        const Shapes of_factor = shapes_of(row, k);
+        const VarianceModels of_factor = models_of(row, k);
         const double weight = weights.empty() ? 1.0 : weights[row.columns[k]];
-        for (std::size_t s = 0; s < shapes; ++s) {
-            sums[s] += of_factor[s] * weight;
+        for (std::size_t m = 0; m < models; ++m) {
+            sums[m] += of_factor[m] * weight;
         }
     }
     return sums;
 }
 
-/// The largest of a row.
-Shapes largest_shapes(const RowView& row) {
-    Shapes largest{};
+/// The largest over the factors of a row.
+VarianceModels largest_models(const RowView& row) {
+    VarianceModels largest{};
     for (std::size_t k = 0; k < row.columns.size(); ++k) {
-        const Shapes of_factor = shapes_of(row, k);
-        for (std::size_t s = 0; s < shapes; ++s) {
-            largest[s] = std::max(largest[s], of_factor[s]);
+        const VarianceModels of_factor = models_of(row, k);
+        for (std::size_t m = 0; m < models; ++m) {
+            largest[m] = std::max(largest[m], of_factor[m]);
         }
     }
     return largest;
@@ -108,42 +132,42 @@ std::vector<std::uint32_t> sampled_rows(const FormFactorMatrix& factors, const F
     return rows;
 }
 
-/// Variances of all rows, each factor's times weight_j, as the shapes make them of the squared errors in the
-/// sampled rows.
+/// Variances of all rows, each factor's times weight_j.
 struct Variances {
-    std::vector<double> mean;    ///< of what the shapes say: right in the sum
-    std::vector<double> largest; ///< of what they say: on the safe side in every row
+    std::vector<double> mean;    ///< of the models: right in the sum
+    std::vector<double> largest; ///< of the models: on the safe side in every row
     double common = 0.0;         ///< deviation that all rows have in common
 };
+/// Scales each model to the squared errors that the sampled rows have together.
 /// @param measured  sum of squared errors of each row of `sampled`
 /// @param weights   of the columns; may be empty
-Variances spread(const FormFactorMatrix& factors, std::span<const std::uint32_t> sampled,
-                 std::span<const double> measured, std::span<const double> weights) {
-    std::vector<Shapes> of_row(factors.size());
+Variances fit_variances(const FormFactorMatrix& factors, std::span<const std::uint32_t> sampled,
+                        std::span<const double> measured, std::span<const double> weights) {
+    std::vector<VarianceModels> of_row(factors.size());
     parallel_for(factors.size(), FormFactorMatrix::block_rows, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            of_row[i] = sum_shapes(factors.row(static_cast<std::uint32_t>(i)), weights);
+            of_row[i] = sum_models(factors.row(static_cast<std::uint32_t>(i)), weights);
         }
     });
-    Shapes in_sample{};
+    VarianceModels in_sample{};
     double variance = 0.0;
     for (std::size_t k = 0; k < sampled.size(); ++k) {
-        const Shapes unweighted =
-            weights.empty() ? of_row[sampled[k]] : sum_shapes(factors.row(sampled[k]), {});
+        const VarianceModels unweighted =
+            weights.empty() ? of_row[sampled[k]] : sum_models(factors.row(sampled[k]), {});
         variance += measured[k];
-        for (std::size_t s = 0; s < shapes; ++s) {
-            in_sample[s] += unweighted[s];
+        for (std::size_t m = 0; m < models; ++m) {
+            in_sample[m] += unweighted[m];
         }
     }
     const auto used = static_cast<double>(
         std::count_if(in_sample.begin(), in_sample.end(), [](double sum) { return sum > 0.0; }));
-    const double doubt = 1.0 + 8.0 / static_cast<double>(sampled.size()); // a small sample is trusted less
+    const double allowance = 1.0 + sample_allowance / static_cast<double>(sampled.size());
     Variances variances{std::vector<double>(factors.size()), std::vector<double>(factors.size()), 0.0};
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        for (std::size_t s = 0; s < shapes; ++s) {
-            const double said = in_sample[s] > 0.0 ? variance * of_row[i][s] / in_sample[s] : 0.0;
-            variances.mean[i] += said / std::max(1.0, used);
-            variances.largest[i] = std::max(variances.largest[i], said * doubt);
+        for (std::size_t m = 0; m < models; ++m) {
+            const double modelled = in_sample[m] > 0.0 ? variance * of_row[i][m] / in_sample[m] : 0.0;
+            variances.mean[i] += modelled / std::max(1.0, used);
+            variances.largest[i] = std::max(variances.largest[i], modelled * allowance);
         }
     }
     return variances;
@@ -154,10 +178,8 @@ Variances spread(const FormFactorMatrix& factors, std::span<const std::uint32_t>
 /// @param largest  of the rows `sampled`
 double largest_factor_error(const FormFactorMatrix& factors, std::span<const std::uint32_t> sampled,
                             std::span<const double> largest) {
-    constexpr double unseen = 1.5; // the worst of all is not in the sample
-    constexpr double far = 10.0;
-    const std::size_t shape = factors.has_visibility() ? 2 : 1;
-    const auto strength = [&](std::uint32_t i) { return std::sqrt(largest_shapes(factors.row(i))[shape]); };
+    const std::size_t model = factors.has_visibility() ? visibility_model : square_model;
+    const auto strength = [&](std::uint32_t i) { return std::sqrt(largest_models(factors.row(i))[model]); };
     double strongest = 0.0;
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
         strongest = std::max(strongest, strength(i));
@@ -166,9 +188,9 @@ double largest_factor_error(const FormFactorMatrix& factors, std::span<const std
     for (std::size_t k = 0; k < sampled.size(); ++k) {
         const double here = strength(sampled[k]);
         const double reach = here > 0.0 ? strongest / here : 1.0;
-        estimate = std::max(estimate, largest[k] * (reach < far ? reach : std::sqrt(reach)));
+        estimate = std::max(estimate, largest[k] * (reach < proportional_ratio ? reach : std::sqrt(reach)));
     }
-    return std::min(1.0, unseen * estimate);
+    return std::min(1.0, unsampled_allowance * estimate);
 }
 
 /// How much of a row's squared error lies in the columns that are compared: their share of all.
@@ -210,7 +232,7 @@ Variances irradiance_variances(const FormFactorMatrix& factors, const FormFactor
         mean += areas[sampled[k]] * error / share;
         measured += error * error / share;
     }
-    Variances variances = spread(factors, sampled, squares, weights);
+    Variances variances = fit_variances(factors, sampled, squares, weights);
     double modelled = 0.0;
     for (const std::uint32_t i : sampled) {
         modelled += variances.mean[i];
@@ -229,9 +251,11 @@ Variances irradiance_variances(const FormFactorMatrix& factors, const FormFactor
     return variances;
 }
 
-/// What all patches get more, of each other's light, where all get 1 too much from outside.
-double amplification(const FormFactorMatrix& factors, std::span<const double> areas,
-                     std::span<const double> reflectance) {
+/// Multiple-reflection gain: by how much the irradiance of all patches rises on the mean, by reflection among
+/// them, where that of each is 1 higher from outside: sum A rho / sum A (1 - rho sum_j F), as of an enclosure
+/// of one zone.
+double multiple_reflection_gain(const FormFactorMatrix& factors, std::span<const double> areas,
+                                std::span<const double> reflectance) {
     double lost = 0.0;
     double reflected = 0.0;
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
@@ -263,7 +287,7 @@ FactorErrorEstimate estimate_factor_error(const FormFactorMatrix& factors, const
                 });
         squares[k] /= share;
     }
-    const Variances variances = spread(factors, sampled, squares, {});
+    const Variances variances = fit_variances(factors, sampled, squares, {});
     FactorErrorEstimate estimate;
     estimate.sampled = static_cast<std::uint32_t>(sampled.size());
     double sum = 0.0;
@@ -313,7 +337,7 @@ estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix
             continue;
         }
         const Variances variances = irradiance_variances(factors, reference, columns, sampled, areas, b);
-        const double common = variances.common * amplification(factors, areas, rho);
+        const double common = variances.common * multiple_reflection_gain(factors, areas, rho);
         double errors = 0.0;
         double reflected = 0.0;
         double known_area = 0.0;

@@ -22,13 +22,13 @@ void check_areas(const FormFactorMatrix& factors, std::span<const double> areas)
 }
 
 std::vector<std::uint32_t> slice_rows(std::span<const RowBlock> blocks) {
-    constexpr std::uint64_t most_slices = 16;
-    constexpr std::uint64_t fewest_entries = 1 << 18; // of a slice; below, a thread costs more than it gains
+    constexpr std::uint64_t max_slices = 16;
+    constexpr std::uint64_t min_entries = 1 << 18; // in a slice; below, a thread costs more than it gains
     std::uint64_t entries = 0;
     for (const RowBlock& block : blocks) {
         entries += block.columns.size();
     }
-    const std::uint64_t slices = std::clamp<std::uint64_t>(entries / fewest_entries, 1, most_slices);
+    const std::uint64_t slices = std::clamp<std::uint64_t>(entries / min_entries, 1, max_slices);
     std::vector<std::uint32_t> cuts{0};
     std::uint64_t before = 0;
     for (const RowBlock& block : blocks) {

@@ -14,7 +14,8 @@ namespace {
 
 /// Seconds that one row takes of many: where the sample went by in a moment, of more rows, so that workers
 /// and batches are as busy as they will be.
-double seconds_a_row(RowProvider& provider, std::size_t sampled, double seconds) {
+template <class Provider>
+double seconds_a_row(Provider& provider, std::size_t sampled, double seconds) {
     constexpr double min_seconds = 0.4;
     constexpr double max_rows = 1024.0;
     const auto all = all_patches(provider.size());
@@ -25,7 +26,7 @@ double seconds_a_row(RowProvider& provider, std::size_t sampled, double seconds)
     }
     const auto patches = reference_patches(all, more);
     const Stopwatch watch;
-    provider.rows(patches, [](std::uint32_t, const RowView&) {});
+    provider.rows(patches, [](std::uint32_t, const auto&) {});
     return watch.seconds() / static_cast<double>(patches.size());
 }
 
@@ -38,33 +39,46 @@ bool is_weighted(const FactorSettings& settings) {
     return settings.method == Method::hemicube && settings.preset != Preset::plain;
 }
 
-/// @param count  number of rows that `seconds` are to be for
-FormFactorMatrix rows_of(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,
-                         std::span<const std::uint32_t> patches, std::size_t count, double& seconds) {
-    const auto provider = make_row_provider(mesh, settings);
+/// Rows of a sample, and what all rows will take.
+/// @param count    number of rows that `seconds` are to be for
+/// @param compute  makes rows of a provider, and calls back after each
+template <class Provider, class Compute>
+FormFactorMatrix timed_rows(Provider& provider, std::span<const std::uint32_t> patches, std::size_t count,
+                            double& seconds, const Compute& compute) {
     // The first row also pays for contexts and workers, which do not grow with the number of rows.
     const Stopwatch start_watch;
-    provider->rows(patches.first(1), [](std::uint32_t, const RowView&) {});
+    provider.rows(patches.first(1), [](std::uint32_t, const auto&) {});
     const double start = start_watch.seconds();
     const Stopwatch watch;
     double rows_seconds = 0.0;
-    const auto rows_done = [&](std::size_t done, std::size_t total) {
+    FormFactorMatrix rows = compute([&](std::size_t done, std::size_t total) {
         rows_seconds = watch.seconds();
         return go_on(done, total);
-    };
-    const bool weighted = is_weighted(settings);
-    FormFactorMatrix rows = weighted ? compute_visibility_weighted(*provider, mesh, patches,
-                                                                   *plan_rows(settings, mesh.size()).weighted,
-                                                                   scene.enclosure, rows_done, go_on, go_on)
-                                     : compute_matrix(*provider, patches, rows_done);
-    const double pair_seconds = weighted ? watch.seconds() - rows_seconds : 0.0;
+    });
+    const double pair_seconds = watch.seconds() - rows_seconds; // 0 where rows are all there is
     // Each pair is computed once.
-    const double size = mesh.size();
+    const double size = provider.size();
     const auto some = static_cast<double>(patches.size());
     const auto all = static_cast<double>(count);
     const double pairs = all * (size - 0.5 * all) / (some * (size - 0.5 * some));
-    seconds = start + all * seconds_a_row(*provider, patches.size(), rows_seconds) + pairs * pair_seconds;
+    seconds = start + all * seconds_a_row(provider, patches.size(), rows_seconds) + pairs * pair_seconds;
     return rows;
+}
+
+FormFactorMatrix rows_of(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,
+                         std::span<const std::uint32_t> patches, std::size_t count, double& seconds) {
+    if (!is_weighted(settings)) {
+        const auto provider = make_row_provider(mesh, settings);
+        return timed_rows(*provider, patches, count, seconds, [&](const Progress& rows_done) {
+            return compute_matrix(*provider, patches, rows_done);
+        });
+    }
+    const RowPlan plan = plan_rows(settings, mesh.size());
+    const auto provider = make_visibility_provider(mesh, plan.hemicube, settings);
+    return timed_rows(*provider, patches, count, seconds, [&](const Progress& rows_done) {
+        return compute_visibility_weighted(*provider, mesh, patches, *plan.weighted, scene.enclosure,
+                                           rows_done, go_on, go_on);
+    });
 }
 
 void judge(Measurement& measurement, const Scene& scene, const PatchMesh& mesh, const FormFactorMatrix& rows,
@@ -148,7 +162,7 @@ Reference find_reference(const PatchMesh& mesh, std::span<const std::uint32_t> p
     reference.settings = reference_settings(plan_rows(best, mesh.size()).hemicube);
     reference.settings.eye_points = reference.settings.near_eye_points; // as many as there can be
     reference.settings.resolution = std::max(reference.settings.resolution, min_resolution);
-    const auto engine = make_engine(mesh, reference.settings, base);
+    const auto engine = make_visibility_provider(mesh, reference.settings, base);
     const auto first = reference_patches(patches, 1);
     (void)compute_reference(*engine, mesh, first); // pays for the start
     const Stopwatch one;

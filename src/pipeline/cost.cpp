@@ -49,18 +49,21 @@ FactorCost estimate_cost(const PatchMesh& mesh, const FactorSettings& settings) 
 
 FactorCost measure_cost(const PatchMesh& mesh, const FactorSettings& settings) {
     const RowPlan plan = plan_rows(settings, mesh.size());
-    const auto engine = make_engine(mesh, plan.hemicube, settings);
-    const auto take = [&engine](const auto& estimate) {
+    const auto take = [](const auto& estimate, const std::string& renderer) {
         FactorCost cost;
         cost.entries_per_row = estimate.entries_per_row;
         cost.memory = estimate.memory_bytes;
         cost.seconds = estimate.seconds;
-        cost.renderer = engine->renderer();
+        cost.renderer = renderer;
         return cost;
     };
     const auto patches = all_patches(mesh.size());
-    return plan.weighted ? take(estimate_visibility_weighted(*engine, patches))
-                         : take(estimate_matrix(*engine, patches));
+    if (plan.weighted) {
+        const auto engine = make_visibility_provider(mesh, plan.hemicube, settings);
+        return take(estimate_visibility_weighted(*engine, patches), engine->renderer());
+    }
+    const auto engine = make_row_provider(mesh, settings);
+    return take(estimate_matrix(*engine, patches), engine->renderer());
 }
 
 } // namespace hemi

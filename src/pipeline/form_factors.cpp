@@ -44,12 +44,12 @@ FormFactors describe(const Scene& scene, const PatchMesh& mesh, const FactorSett
 }
 
 /// What raw rows depend on, besides the renderer.
-io::CheckpointKey checkpoint_key(const FormFactors& factors, const HemicubeSettings& hemicube) {
-    const bool visibility = hemicube.quantity == RowQuantity::visibility;
+io::CheckpointKey checkpoint_key(const FormFactors& factors, const RowPlan& plan) {
+    const HemicubeSettings& hemicube = plan.hemicube;
     return {{"hemi", HEMI_VERSION},
             {"geometry", fmt::format("{:016x}", factors.geometry_hash)},
             {"method", std::string(to_word(factors.provenance.method))},
-            {"rows of", visibility ? "visibility" : "form factors"},
+            {"rows of", plan.weighted ? "visibility" : "form factors"},
             {"resolution", std::to_string(factors.provenance.resolution)},
             {"seed", std::to_string(factors.provenance.seed)},
             {"eye points", std::to_string(hemicube.eye_points)},
@@ -63,7 +63,7 @@ std::string limit_text(const FactorSettings& settings) {
 }
 
 /// Whether the table of pairs and the matrix fit; says so where they do not.
-bool pairs_fit(RowProvider& visibility, std::span<const std::uint32_t> patches,
+bool pairs_fit(VisibilityProvider& visibility, std::span<const std::uint32_t> patches,
                const FactorSettings& settings, Observer& observer) {
     const bool sample = patches.size() > sample_above;
     const VisibilityWeightedEstimate estimate =
@@ -103,16 +103,17 @@ void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, c
     }
 }
 
-/// The engine's part of all computed rows: observed, kept, timed.
+/// The provider's part of computed rows: observed, kept, timed.
+/// @tparam Row  RowView or VisibilityRow
+template <class Row>
 class Computation {
 public:
-    Computation(FormFactors& factors, RowProvider& provider, const HemicubeSettings& hemicube,
-                Observer& observer, RowCheckpoint* checkpoint, io::CheckpointKey key)
+    Computation(FormFactors& factors, BasicRowProvider<Row>& provider, Observer& observer,
+                RowCheckpoint* checkpoint, io::CheckpointKey key)
         : factors_(factors), provider_(provider), observer_(observer), checkpoint_(checkpoint),
-          hemicubes_before_(provider.hemicubes()),
-          rows_(provider, hemicube.quantity, observer, checkpoint, std::move(key)) {}
+          hemicubes_before_(provider.hemicubes()), rows_(provider, observer, checkpoint, std::move(key)) {}
 
-    [[nodiscard]] RowProvider& rows() { return rows_; }
+    [[nodiscard]] BasicRowProvider<Row>& rows() { return rows_; }
 
     [[nodiscard]] Progress progress(Phase phase) {
         return [this, phase](std::size_t done, std::size_t total) {
@@ -137,12 +138,12 @@ public:
 
 private:
     FormFactors& factors_;
-    RowProvider& provider_;
+    BasicRowProvider<Row>& provider_;
     Observer& observer_;
     RowCheckpoint* checkpoint_;
     std::uint64_t hemicubes_before_; ///< of samples
     Stopwatch watch_;
-    ObservedRows rows_;
+    ObservedRows<Row> rows_;
 };
 
 FormFactors compute_baseline_rows(const Scene& scene, const PatchMesh& mesh,
@@ -155,38 +156,47 @@ FormFactors compute_baseline_rows(const Scene& scene, const PatchMesh& mesh,
     const auto provider = make_row_provider(mesh, settings);
     io::CheckpointKey key = checkpoint_key(factors, {});
     key["rays"] = std::to_string(plan_baseline(settings).rays);
-    Computation computation(factors, *provider, {}, observer, checkpoint, std::move(key));
+    Computation<RowView> computation(factors, *provider, observer, checkpoint, std::move(key));
     factors.matrix = compute_matrix(computation.rows(), patches, computation.progress(Phase::form_factors));
     computation.finish(mesh, patches.size());
     factors.work.seconds = 0.0;
     return factors;
 }
 
-FormFactors compute_hemicube_rows(const Scene& scene, const PatchMesh& mesh,
-                                  std::span<const std::uint32_t> patches, const FactorSettings& settings,
-                                  Observer& observer, RowCheckpoint* checkpoint) {
-    const RowPlan plan = plan_rows(settings, mesh.size());
+FormFactors compute_plain_rows(const Scene& scene, const PatchMesh& mesh,
+                               std::span<const std::uint32_t> patches, const FactorSettings& settings,
+                               Observer& observer, RowCheckpoint* checkpoint) {
     const auto engine = make_row_provider(mesh, settings);
-    if (!plan.weighted) {
-        check_memory(*engine, patches, settings, observer);
-    } else if (!pairs_fit(*engine, patches, settings, observer)) {
+    check_memory(*engine, patches, settings, observer);
+    stop_if_interrupted();
+    FormFactors factors = describe(scene, mesh, settings);
+    Computation<RowView> computation(factors, *engine, observer, checkpoint,
+                                     checkpoint_key(factors, plan_rows(settings, mesh.size())));
+    factors.matrix =
+        compute_matrix(computation.rows(), patches, computation.timed_progress(Phase::form_factors));
+    computation.finish(mesh, patches.size());
+    return factors;
+}
+
+FormFactors compute_visibility_weighted_rows(const Scene& scene, const PatchMesh& mesh,
+                                             std::span<const std::uint32_t> patches,
+                                             const FactorSettings& settings, Observer& observer,
+                                             RowCheckpoint* checkpoint) {
+    const RowPlan plan = plan_rows(settings, mesh.size());
+    const auto engine = make_visibility_provider(mesh, plan.hemicube, settings);
+    if (!pairs_fit(*engine, patches, settings, observer)) {
         FactorSettings plain = settings;
         plain.preset = Preset::plain;
-        return compute_hemicube_rows(scene, mesh, patches, plain, observer, checkpoint);
+        return compute_plain_rows(scene, mesh, patches, plain, observer, checkpoint);
     }
     stop_if_interrupted();
     FormFactors factors = describe(scene, mesh, settings);
-    Computation computation(factors, *engine, plan.hemicube, observer, checkpoint,
-                            checkpoint_key(factors, plan.hemicube));
-    if (plan.weighted) {
-        factors.matrix = compute_visibility_weighted(
-            computation.rows(), mesh, patches, *plan.weighted, scene.enclosure,
-            computation.timed_progress(Phase::visibility), computation.progress(Phase::pairs),
-            computation.progress(Phase::form_factors));
-    } else {
-        factors.matrix =
-            compute_matrix(computation.rows(), patches, computation.timed_progress(Phase::form_factors));
-    }
+    Computation<VisibilityRow> computation(factors, *engine, observer, checkpoint,
+                                           checkpoint_key(factors, plan));
+    factors.matrix = compute_visibility_weighted(
+        computation.rows(), mesh, patches, *plan.weighted, scene.enclosure,
+        computation.timed_progress(Phase::visibility), computation.progress(Phase::pairs),
+        computation.progress(Phase::form_factors));
     computation.finish(mesh, patches.size());
     return factors;
 }
@@ -211,7 +221,7 @@ void add_reference(FormFactors& factors, const PatchMesh& mesh, const FactorSett
     if (!observer.progress(Phase::error_estimate, 0, patches.size())) {
         throw Cancelled();
     }
-    const auto engine = make_engine(mesh, reference_settings(hemicube), settings);
+    const auto engine = make_visibility_provider(mesh, reference_settings(hemicube), settings);
     factors.reference =
         compute_reference(*engine, mesh, patches, [&observer](std::size_t done, std::size_t total) {
             return observer.progress(Phase::error_estimate, done, total);
@@ -232,9 +242,10 @@ FormFactors compute_raw_form_factors(const Scene& scene, const PatchMesh& mesh,
         factors.provenance.renderer = "none";
         return factors;
     }
-    FormFactors factors = settings.method == Method::hemicube
-                              ? compute_hemicube_rows(scene, mesh, patches, settings, observer, checkpoint)
-                              : compute_baseline_rows(scene, mesh, patches, settings, observer, checkpoint);
+    const auto compute = settings.method != Method::hemicube ? compute_baseline_rows
+                         : settings.preset == Preset::plain  ? compute_plain_rows
+                                                             : compute_visibility_weighted_rows;
+    FormFactors factors = compute(scene, mesh, patches, settings, observer, checkpoint);
     if (settings.estimate_error) {
         add_reference(factors, mesh, settings, observer);
     }

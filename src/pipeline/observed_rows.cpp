@@ -1,5 +1,6 @@
 #include "pipeline/observed_rows.hpp"
 
+#include "engine/raw_row.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/text.hpp"
 
@@ -10,14 +11,15 @@
 
 namespace hemi {
 
-ObservedRows::ObservedRows(RowProvider& provider, RowQuantity quantity, Observer& observer,
-                           RowCheckpoint* checkpoint, io::CheckpointKey key)
-    : provider_(provider), quantity_(quantity), observer_(observer), checkpoint_(checkpoint),
-      key_(std::move(key)) {}
+template <class Row>
+ObservedRows<Row>::ObservedRows(BasicRowProvider<Row>& provider, Observer& observer,
+                                RowCheckpoint* checkpoint, io::CheckpointKey key)
+    : provider_(provider), observer_(observer), checkpoint_(checkpoint), key_(std::move(key)) {}
 
-void ObservedRows::rows(std::span<const std::uint32_t> patches, const RowSink& sink) {
-    const RowSink shown = [&](std::uint32_t patch, const RowView& row) {
-        observer_.row(patch, row, quantity_);
+template <class Row>
+void ObservedRows<Row>::rows(std::span<const std::uint32_t> patches, const Sink& sink) {
+    const Sink shown = [&](std::uint32_t patch, const Row& row) {
+        observer_.row(patch, row);
         sink(patch, row);
     };
     if (checkpoint_ == nullptr) {
@@ -26,20 +28,22 @@ void ObservedRows::rows(std::span<const std::uint32_t> patches, const RowSink& s
     }
     const std::vector<std::uint32_t> missing = resume(patches, shown);
     if (!missing.empty()) {
-        provider_.rows(missing, [&](std::uint32_t patch, const RowView& row) {
+        provider_.rows(missing, [&](std::uint32_t patch, const Row& row) {
             keep(patch, row, missing);
             shown(patch, row);
         });
     }
 }
 
-std::vector<std::uint32_t> ObservedRows::resume(std::span<const std::uint32_t> patches, const RowSink& sink) {
+template <class Row>
+std::vector<std::uint32_t> ObservedRows<Row>::resume(std::span<const std::uint32_t> patches,
+                                                     const Sink& sink) {
     std::vector<bool> there(size(), false);
     key_["renderer"] = renderer(); // others give other bits
-    checkpoint_->file_->start(key_, size(), [&](std::uint32_t patch, const RowView& row) {
+    checkpoint_->file_->start(key_, size(), [&](std::uint32_t patch, const RawRow& row) {
         there[patch] = true;
         ++checkpoint_->reused_;
-        sink(patch, row);
+        sink(patch, row_from_raw<Row>(row));
     });
     if (checkpoint_->reused_ > 0) {
         observer_.note(fmt::format("{} of {} taken from the checkpoint {}", count_text(checkpoint_->reused_),
@@ -51,13 +55,14 @@ std::vector<std::uint32_t> ObservedRows::resume(std::span<const std::uint32_t> p
     return missing;
 }
 
-void ObservedRows::keep(std::uint32_t patch, const RowView& row, std::span<const std::uint32_t> patches) {
+template <class Row>
+void ObservedRows<Row>::keep(std::uint32_t patch, const Row& row, std::span<const std::uint32_t> patches) {
     const std::uint32_t first = patch - patch % FormFactorMatrix::block_rows;
     const std::uint32_t count = std::min(FormFactorMatrix::block_rows, size() - first);
     OpenBlock& block =
         open_.try_emplace(first, first, count, rows_of_block(patches, first), expected_entries_)
             .first->second;
-    block.add(patch, row);
+    block.add(patch, raw_row(row));
     if (!block.complete()) {
         return;
     }
@@ -70,5 +75,8 @@ void ObservedRows::keep(std::uint32_t patch, const RowView& row, std::span<const
         observer_.warning(fmt::format("{}; this run cannot be resumed", error.what()), {});
     }
 }
+
+template class ObservedRows<RowView>;
+template class ObservedRows<VisibilityRow>;
 
 } // namespace hemi

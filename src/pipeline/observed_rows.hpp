@@ -14,26 +14,28 @@ namespace hemi {
 
 /// Rows of a provider, shown to an observer; those that a checkpoint holds come from there, and all others
 /// are kept in it.
-class ObservedRows : public RowProvider {
+/// @tparam Row  RowView or VisibilityRow
+template <class Row>
+class ObservedRows : public BasicRowProvider<Row> {
 public:
-    /// @param quantity    what the provider's rows are
+    using Sink = typename BasicRowProvider<Row>::Sink;
+
     /// @param checkpoint  may be null; `key` says what its rows must have been made with
-    ObservedRows(RowProvider& provider, RowQuantity quantity, Observer& observer, RowCheckpoint* checkpoint,
+    ObservedRows(BasicRowProvider<Row>& provider, Observer& observer, RowCheckpoint* checkpoint,
                  io::CheckpointKey key);
 
     [[nodiscard]] std::uint32_t size() const override { return provider_.size(); }
     [[nodiscard]] std::string renderer() const override { return provider_.renderer(); }
     [[nodiscard]] std::uint64_t hemicubes() const override { return provider_.hemicubes(); }
-    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override;
+    void rows(std::span<const std::uint32_t> patches, const Sink& sink) override;
 
 private:
     /// Gives the rows of the checkpoint to `sink`. @return those of `patches` that it does not hold
-    std::vector<std::uint32_t> resume(std::span<const std::uint32_t> patches, const RowSink& sink);
+    std::vector<std::uint32_t> resume(std::span<const std::uint32_t> patches, const Sink& sink);
     /// Adds a row to its block, and the block to the checkpoint once it is complete.
-    void keep(std::uint32_t patch, const RowView& row, std::span<const std::uint32_t> patches);
+    void keep(std::uint32_t patch, const Row& row, std::span<const std::uint32_t> patches);
 
-    RowProvider& provider_;
-    RowQuantity quantity_;
+    BasicRowProvider<Row>& provider_;
     Observer& observer_;
     RowCheckpoint* checkpoint_;
     io::CheckpointKey key_;

@@ -6,7 +6,9 @@ bool Observer::progress(Phase, std::size_t, std::size_t) {
     return true;
 }
 
-void Observer::row(std::uint32_t, const RowView&, RowQuantity) {}
+void Observer::row(std::uint32_t, const RowView&) {}
+
+void Observer::row(std::uint32_t, const VisibilityRow&) {}
 
 void Observer::warning(std::string_view, std::string_view) {}
 

@@ -40,6 +40,13 @@ std::uint64_t available_memory() {
     return std::numeric_limits<std::uint64_t>::max();
 }
 
+EngineSettings with_workers(EngineSettings engine) {
+    if (engine.worker_program.empty()) {
+        engine.worker_program = find_worker_program();
+    }
+    return engine;
+}
+
 } // namespace
 
 RowPlan plan_rows(const FactorSettings& settings, std::uint32_t patches) {
@@ -79,7 +86,6 @@ RowPlan plan_rows(const FactorSettings& settings, std::uint32_t patches) {
     }
     hemicube.seed = settings.seed.value_or(hemicube.seed);
     hemicube.merge_lattices = settings.merge_lattices;
-    hemicube.quantity = plan.weighted ? RowQuantity::visibility : RowQuantity::form_factors;
     return plan;
 }
 
@@ -122,19 +128,17 @@ std::uint64_t memory_limit(const FactorSettings& settings) {
     return settings.max_memory ? *settings.max_memory : available_memory() / 10 * 8;
 }
 
-std::unique_ptr<RowProvider> make_engine(const PatchMesh& mesh, const HemicubeSettings& hemicube,
-                                         const FactorSettings& settings) {
-    EngineSettings engine = settings.engine;
-    if (engine.worker_program.empty()) {
-        engine.worker_program = find_worker_program();
-    }
-    return make_hemicube_engine(mesh, hemicube, engine);
-}
-
 std::unique_ptr<RowProvider> make_row_provider(const PatchMesh& mesh, const FactorSettings& settings) {
     return settings.method == Method::hemicube
-               ? make_engine(mesh, plan_rows(settings, mesh.size()).hemicube, settings)
+               ? make_hemicube_engine(mesh, plan_rows(settings, mesh.size()).hemicube,
+                                      with_workers(settings.engine))
                : make_baseline(mesh, plan_baseline(settings));
+}
+
+std::unique_ptr<VisibilityProvider> make_visibility_provider(const PatchMesh& mesh,
+                                                             const HemicubeSettings& hemicube,
+                                                             const FactorSettings& settings) {
+    return make_visibility_engine(mesh, hemicube, with_workers(settings.engine));
 }
 
 } // namespace hemi

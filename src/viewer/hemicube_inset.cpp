@@ -28,15 +28,10 @@ Bytes encode(const std::array<float, 3>& linear) {
     return bytes;
 }
 
-HemicubeSettings plain_items(HemicubeSettings settings) {
-    settings.quantity = RowQuantity::form_factors;
-    return settings;
-}
-
 } // namespace
 
 HemicubeInset::HemicubeInset(const PatchMesh& mesh, const HemicubeSettings& settings, gl::Context& window)
-    : settings_(plain_items(settings)), geometry_(make_engine_geometry(mesh, settings_)),
+    : settings_(settings), geometry_(make_engine_geometry(mesh, settings_)),
       rows_(geometry_, settings_, window) {}
 
 void HemicubeInset::look(std::uint32_t patch, std::uint32_t eye) {

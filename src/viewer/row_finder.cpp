@@ -68,17 +68,24 @@ public:
         finder_.changed_();
     }
 
+    void row(std::uint32_t patch, const RowView& row) override { gather(patch, row); }
+    void row(std::uint32_t patch, const VisibilityRow& row) override { gather(patch, row); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
     /// Gives the row's own patch what it has of the light that is shown: that of the preview, or of the
     /// lamps.
-    void row(std::uint32_t patch, const RowView& row, RowQuantity quantity) override {
+    template <class Row>
+    void gather(std::uint32_t patch, const Row& row) {
         const Scene& scene = *finder_.scene_;
         const PatchMesh& mesh = *finder_.mesh_;
         const std::size_t channels = scene.channels.size();
-        if (!gathering_) { // the first row says what its values are
+        if (!gathering_) {
             exitance_ = patch_values(mesh, scene.materials, &Material::exitance);
             reflectance_ = patch_values(mesh, scene.materials, &Material::reflectance);
             light_.resize(channels);
-            gathering_.emplace(mesh, quantity, static_cast<std::uint32_t>(channels),
+            gathering_.emplace(mesh, static_cast<std::uint32_t>(channels),
                                shown_.empty() ? exitance_ : std::move(shown_), scene.environment);
         }
         gathering_->gather(patch, row, light_);
@@ -93,9 +100,6 @@ public:
         gathered.radiosity.insert(gathered.radiosity.end(), light_.begin(), light_.end());
         gathered.blocked.push_back(row.blocked);
     }
-
-private:
-    using Clock = std::chrono::steady_clock;
 
     RowFinder& finder_;
     const std::stop_token& stop_;

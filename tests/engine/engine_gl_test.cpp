@@ -3,6 +3,8 @@
 #include "support/scenes.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
+#include "hemi/engine/baselines.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/scene/contact.hpp"
 
@@ -10,6 +12,8 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <numeric>
 #include <random>
 
 using namespace hemi;
@@ -27,7 +31,7 @@ std::vector<std::uint32_t> every(std::uint32_t step, std::uint32_t count) {
 
 FormFactorMatrix compute(const PatchMesh& mesh, const HemicubeSettings& settings,
                          const std::string& device = "osmesa", std::uint32_t jobs = 2) {
-    return compute_matrix(*make_hemicube_engine(mesh, settings, {device, jobs, HEMI_PROGRAM}));
+    return compute_matrix(*make_hemicube_engine(mesh, settings, {device, jobs, find_worker_program()}));
 }
 
 bool same_bytes(const FormFactorMatrix& a, const FormFactorMatrix& b) {
@@ -86,7 +90,7 @@ void check_against_rays(const PatchMesh& mesh, std::uint32_t resolution, std::ui
     HemicubeSettings settings;
     settings.resolution = resolution;
     const EngineGeometry geometry = make_engine_geometry(mesh, settings);
-    GlRows engine(geometry, settings, "osmesa");
+    GlRows engine(geometry, settings, RowQuantity::form_factors, "osmesa");
     for (const std::uint32_t patch : every(step, mesh.size())) {
         INFO("patch " << patch);
         CHECK(disagreements(mesh, settings, patch, 1.0 / 256.0, engine) == 0);
@@ -121,7 +125,7 @@ TEST_CASE("GlRows: a quadrilateral with a straight corner shows the right cells 
         const PatchMesh mesh(scene);
         const HemicubeSettings settings{.resolution = 64};
         const EngineGeometry geometry = make_engine_geometry(mesh, settings);
-        GlRows engine(geometry, settings, "osmesa");
+        GlRows engine(geometry, settings, RowQuantity::form_factors, "osmesa");
         INFO("start " << start);
         CHECK(disagreements(mesh, settings, 0, 1.0 / 256.0, engine) <=
               2); // the map is singular at that corner
@@ -137,8 +141,8 @@ TEST_CASE("GlRows: a merged lattice shows the same items as its faces", "[engine
     const EngineGeometry merged = make_engine_geometry(mesh, settings);
     const EngineGeometry plain = make_engine_geometry(mesh, unmerged);
     CHECK(merged.list.polygons.size() * 8 < plain.list.polygons.size());
-    GlRows merged_engine(merged, settings, "osmesa");
-    GlRows plain_engine(plain, settings, "osmesa");
+    GlRows merged_engine(merged, settings, RowQuantity::form_factors, "osmesa");
+    GlRows plain_engine(plain, settings, RowQuantity::form_factors, "osmesa");
     for (const std::uint32_t patch : every(37, mesh.size())) {
         const auto a = merged_engine.items(patch);
         const auto b = plain_engine.items(patch);
@@ -381,12 +385,38 @@ TEST_CASE("hemicube engine: a worker that cannot start or dies is an error", "[e
 
 TEST_CASE("hemicube engine: it can be stopped and used again", "[engine][gl]") {
     const PatchMesh mesh(room_with_blocks(6));
-    for (const char* program : {"", HEMI_PROGRAM}) {
+    for (const std::filesystem::path& program : {std::filesystem::path(), find_worker_program()}) {
         const auto engine = make_hemicube_engine(mesh, {.resolution = 64}, {"osmesa", 2, program});
         CHECK_THROWS_AS(compute_matrix(*engine, [](std::size_t done, std::size_t) { return done < 5; }),
                         Cancelled);
         CHECK(same_bytes(compute_matrix(*engine), compute(mesh, {.resolution = 64})));
     }
+}
+
+TEST_CASE("providers: an interrupt stops them at the next row", "[engine][gl]") {
+    const PatchMesh mesh(room_with_blocks(2));
+    static int rows_left = 0;
+    const auto stopped_after = [](auto& provider, int rows) {
+        std::vector<std::uint32_t> patches(provider.size());
+        std::iota(patches.begin(), patches.end(), 0u);
+        int delivered = 0;
+        rows_left = rows;
+        set_interrupt_check([] { return rows_left == 0; });
+        CHECK_THROWS_AS(provider.rows(patches,
+                                      [&](std::uint32_t, const auto&) {
+                                          ++delivered;
+                                          --rows_left;
+                                      }),
+                        Cancelled);
+        set_interrupt_check(nullptr);
+        return delivered;
+    };
+    for (const std::filesystem::path& program : {std::filesystem::path(), find_worker_program()}) {
+        const EngineSettings where{"osmesa", 2, program};
+        CHECK(stopped_after(*make_hemicube_engine(mesh, {.resolution = 32}, where), 3) == 3);
+        CHECK(stopped_after(*make_visibility_engine(mesh, {.resolution = 32}, where), 3) == 3);
+    }
+    CHECK(stopped_after(*make_baseline(mesh, {.method = BaselineMethod::contour}), 3) == 3);
 }
 
 TEST_CASE("hemicube rows: one open patch sees the environment alone", "[engine][gl]") {

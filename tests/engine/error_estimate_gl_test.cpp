@@ -109,16 +109,16 @@ struct Tallies {
 void judge(const KnownScene& scene, const Method& method, std::uint64_t seed, Tallies& tallies) {
     HemicubeSettings settings = method.hemicube;
     settings.seed = seed;
-    settings.quantity = method.hybrid ? RowQuantity::visibility : RowQuantity::form_factors;
     std::vector<std::uint32_t> patches(scene.mesh.size());
     std::iota(patches.begin(), patches.end(), 0u);
-    const auto engine = make_hemicube_engine(scene.mesh, settings, {"osmesa", 1, ""});
+    const EngineSettings engine{"osmesa", 1, ""};
     FormFactorMatrix factors =
-        method.hybrid ? compute_visibility_weighted(*engine, scene.mesh, patches,
-                                                    VisibilityWeightedSettings{}, Enclosure::automatic)
-                      : compute_matrix(*engine, patches);
+        method.hybrid
+            ? compute_visibility_weighted(*make_visibility_engine(scene.mesh, settings, engine), scene.mesh,
+                                          patches, VisibilityWeightedSettings{}, Enclosure::automatic)
+            : compute_matrix(*make_hemicube_engine(scene.mesh, settings, engine), patches);
     (void)repair(factors, scene.mesh.areas(), method.repair);
-    const auto better = make_hemicube_engine(scene.mesh, reference_settings(settings), {"osmesa", 1, ""});
+    const auto better = make_visibility_engine(scene.mesh, reference_settings(settings), engine);
     const auto reference = compute_reference(
         *better, scene.mesh, reference_patches(patches, reference_count(settings, patches.size(), 0.1)));
     const FactorErrorEstimate error = estimate_factor_error(factors, reference);

@@ -20,7 +20,7 @@ namespace {
 
 FormFactorMatrix compute(const PatchMesh& mesh, std::uint32_t resolution) {
     return compute_matrix(
-        *make_hemicube_engine(mesh, {.resolution = resolution}, {"osmesa", 2, HEMI_PROGRAM}));
+        *make_hemicube_engine(mesh, {.resolution = resolution}, {"osmesa", 2, find_worker_program()}));
 }
 
 /// Exact factor of one surface to another, unoccluded.
@@ -293,7 +293,7 @@ TEST_CASE("extremes: 100,000 patches", "[engine][gl]") {
     for (std::uint32_t i = 17; i < mesh.size(); i += 401) {
         patches.push_back(i);
     }
-    const auto engine = make_hemicube_engine(mesh, {.resolution = 32}, {"osmesa", 2, HEMI_PROGRAM});
+    const auto engine = make_hemicube_engine(mesh, {.resolution = 32}, {"osmesa", 2, find_worker_program()});
     const FormFactorMatrix factors = compute_matrix(*engine, patches);
     CHECK(largest_leak(factors) < 1e-8);
     // A texel holds a dozen patches: single factors are samples, sums over a wall are right to a few texels

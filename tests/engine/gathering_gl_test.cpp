@@ -1,6 +1,7 @@
 #include "engine/gathering.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/engine/engine.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
 #include "support/scenes.hpp"
 
@@ -42,8 +43,8 @@ std::vector<double> by_the_book(const RowView& row, const std::vector<double>& l
 TEST_CASE("Gathering: a row of form factors gives what its factors bring", "[engine][gl]") {
     const PatchMesh mesh(open_corner());
     const std::vector<double> light = some_light(mesh.size());
-    const Gathering gathering(mesh, RowQuantity::form_factors, 2, light, sky);
-    const auto engine = make_hemicube_engine(mesh, {.resolution = 32}, {"osmesa", 1, HEMI_PROGRAM});
+    const Gathering gathering(mesh, 2, light, sky);
+    const auto engine = make_hemicube_engine(mesh, {.resolution = 32}, {"osmesa", 1, find_worker_program()});
     const FormFactorMatrix factors = compute_matrix(*engine);
     std::vector<double> gathered(2);
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
@@ -58,10 +59,9 @@ TEST_CASE("Gathering: a row of form factors gives what its factors bring", "[eng
 TEST_CASE("Gathering: a row of visibility gives about what the hybrid's factors bring", "[engine][gl]") {
     const PatchMesh mesh(room_with_blocks(8));
     const std::vector<double> light = some_light(mesh.size());
-    const Gathering gathering(mesh, RowQuantity::visibility, 2, light, sky);
-    HemicubeSettings settings{.resolution = 64, .eye_points = 4};
-    settings.quantity = RowQuantity::visibility;
-    const auto engine = make_hemicube_engine(mesh, settings, {"osmesa", 2, HEMI_PROGRAM});
+    const Gathering gathering(mesh, 2, light, sky);
+    const HemicubeSettings settings{.resolution = 64, .eye_points = 4};
+    const auto engine = make_visibility_engine(mesh, settings, {"osmesa", 2, find_worker_program()});
     std::vector<std::uint32_t> patches(mesh.size());
     std::iota(patches.begin(), patches.end(), 0U);
     const FormFactorMatrix factors =
@@ -70,7 +70,7 @@ TEST_CASE("Gathering: a row of visibility gives about what the hybrid's factors 
     double largest = 0.0;
     std::size_t count = 0;
     std::vector<double> gathered(2);
-    engine->rows(patches, [&](std::uint32_t i, const RowView& row) {
+    engine->rows(patches, [&](std::uint32_t i, const VisibilityRow& row) {
         if (row.blocked > 0.01) {
             return;
         }
@@ -92,8 +92,7 @@ TEST_CASE("Gathering: a row of visibility gives about what the hybrid's factors 
 TEST_CASE("Gathering: sizes that do not match are refused", "[engine]") {
     const PatchMesh mesh(open_corner());
     const std::vector<double> light = some_light(mesh.size());
-    CHECK_THROWS_AS(Gathering(mesh, RowQuantity::form_factors, 3, light, {}), InvalidArgument);
-    CHECK_THROWS_AS(Gathering(mesh, RowQuantity::form_factors, 0, {}, {}), InvalidArgument);
-    CHECK_THROWS_AS(Gathering(mesh, RowQuantity::visibility, 2, light, std::vector<double>(1)),
-                    InvalidArgument);
+    CHECK_THROWS_AS(Gathering(mesh, 3, light, {}), InvalidArgument);
+    CHECK_THROWS_AS(Gathering(mesh, 0, {}, {}), InvalidArgument);
+    CHECK_THROWS_AS(Gathering(mesh, 2, light, std::vector<double>(1)), InvalidArgument);
 }

@@ -11,7 +11,8 @@ using namespace hemi::test;
 namespace {
 
 FormFactorMatrix rows_of(const PatchMesh& mesh) {
-    return compute_matrix(*make_hemicube_engine(mesh, {.resolution = 32}, {"osmesa", 1, HEMI_PROGRAM}));
+    return compute_matrix(
+        *make_hemicube_engine(mesh, {.resolution = 32}, {"osmesa", 1, find_worker_program()}));
 }
 
 } // namespace

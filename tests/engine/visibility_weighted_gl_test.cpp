@@ -28,7 +28,6 @@ HemicubeSettings visibility_settings(std::uint32_t eye_points, std::uint32_t res
     HemicubeSettings settings;
     settings.eye_points = eye_points;
     settings.resolution = resolution;
-    settings.quantity = RowQuantity::visibility;
     return settings;
 }
 
@@ -44,7 +43,7 @@ Scene sheet_above_floor() {
 FormFactorMatrix hybrid(const PatchMesh& mesh, const HemicubeSettings& settings,
                         std::span<const std::uint32_t> patches, Enclosure enclosure = Enclosure::automatic,
                         std::uint32_t jobs = 2) {
-    const auto engine = make_hemicube_engine(mesh, settings, {"osmesa", jobs, HEMI_PROGRAM});
+    const auto engine = make_visibility_engine(mesh, settings, {"osmesa", jobs, find_worker_program()});
     return compute_visibility_weighted(*engine, mesh, patches, VisibilityWeightedSettings{}, enclosure);
 }
 
@@ -151,7 +150,7 @@ TEST_CASE("make_hemicube_engine: counts the hemicubes of the rows that it delive
     HemicubeSettings settings = visibility_settings(4, 32);
     settings.near_eye_points = 16;
     const std::vector<std::uint32_t> some{4, 5, 16};
-    for (const char* program : {"", HEMI_PROGRAM}) {
+    for (const std::filesystem::path& program : {std::filesystem::path(), find_worker_program()}) {
         const auto engine = make_hemicube_engine(mesh, settings, {"osmesa", 1, program});
         CHECK(engine->hemicubes() == 0);
         engine->rows(some, [](std::uint32_t, const RowView&) {});
@@ -183,7 +182,7 @@ TEST_CASE("Rows: several eye points a patch equal rays from the same points", "[
         const double two_texels = 2.0 * 4.0 / (32.0 * 32.0 * std::numbers::pi) * 0.33;
         const std::vector<std::uint32_t> some{0, 20, 47, 60};
         const auto drawn =
-            compute_matrix(*make_hemicube_engine(mesh, settings, {"osmesa", 1, HEMI_PROGRAM}), some);
+            compute_matrix(*make_hemicube_engine(mesh, settings, {"osmesa", 1, find_worker_program()}), some);
         const auto traced = compute_matrix(*make_reference_engine(mesh, settings), some);
         for (const std::uint32_t i : some) {
             std::vector<double> difference(mesh.size());
@@ -210,13 +209,13 @@ TEST_CASE("Visibility rows: equal rays that meet a patch or something before it"
     const HemicubeSettings settings = visibility_settings(4, 48);
     const std::vector<std::uint32_t> some =
         triangles ? std::vector<std::uint32_t>{330, 500, 600} : std::vector<std::uint32_t>{4, 31, 50, 62};
-    const auto engine = make_hemicube_engine(mesh, settings, {"osmesa", 1, HEMI_PROGRAM});
+    const auto engine = make_visibility_engine(mesh, settings, {"osmesa", 1, find_worker_program()});
     std::size_t partly = 0;
-    engine->rows(some, [&](std::uint32_t i, const RowView& row) {
-        REQUIRE(row.visibility.size() == row.values.size());
+    engine->rows(some, [&](std::uint32_t i, const VisibilityRow& row) {
+        REQUIRE(row.texels.size() == row.shares.size());
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            CHECK((row.values[k] >= 0.0f && row.values[k] <= 1.0f));
-            if (row.visibility[k] < 40 || row.visibility[k] == visibility_clear) {
+            CHECK((row.shares[k] >= 0.0f && row.shares[k] <= 1.0f));
+            if (row.texels[k] < 40 || row.texels[k] == visibility_clear) {
                 continue; // few texels: neighbours stand in
             }
             INFO("patch " << i << " to " << row.columns[k]);
@@ -225,7 +224,7 @@ TEST_CASE("Visibility rows: equal rays that meet a patch or something before it"
                 continue; // behind the horizon
             }
             partly += traced > 0.0 && traced < 1.0 ? 1 : 0;
-            CHECK(std::abs(static_cast<double>(row.values[k]) - traced) < 0.02); // texels on edges
+            CHECK(std::abs(static_cast<double>(row.shares[k]) - traced) < 0.02); // texels on edges
         }
     });
     CHECK(partly > 10);
@@ -235,13 +234,14 @@ TEST_CASE("Visibility rows: where nothing hides anything, all is clear", "[engin
     Scene scene = empty_scene();
     add_room(scene, Vec3(0, 0, 0), Vec3(1, 1, 1), 12);
     const PatchMesh mesh(scene);
-    const auto engine = make_hemicube_engine(mesh, visibility_settings(1, 16), {"osmesa", 1, HEMI_PROGRAM});
+    const auto engine =
+        make_visibility_engine(mesh, visibility_settings(1, 16), {"osmesa", 1, find_worker_program()});
     const std::vector<std::uint32_t> some{0, 300, 700};
-    engine->rows(some, [&](std::uint32_t, const RowView& row) {
+    engine->rows(some, [&](std::uint32_t, const VisibilityRow& row) {
         CHECK(row.columns.size() == 5 * 144); // also those that no texel fell on
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            CHECK(row.values[k] == 1.0f);
-            CHECK(row.visibility[k] == visibility_clear);
+            CHECK(row.shares[k] == 1.0f);
+            CHECK(row.texels[k] == visibility_clear);
         }
     });
 }

@@ -30,7 +30,8 @@ inline Scene shipped_scene(const std::string& name) {
 
 inline FormFactorMatrix hemicube_rows(const PatchMesh& mesh, std::uint32_t resolution,
                                       const std::vector<std::uint32_t>& patches) {
-    const auto engine = make_hemicube_engine(mesh, {.resolution = resolution}, {"osmesa", 2, HEMI_PROGRAM});
+    const auto engine =
+        make_hemicube_engine(mesh, {.resolution = resolution}, {"osmesa", 2, find_worker_program()});
     return compute_matrix(*engine, patches);
 }
 

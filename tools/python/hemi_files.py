@@ -31,7 +31,7 @@ class Factors:
     """Form factors with what belongs to them: the content of a `.hff`.
 
     factors      scipy.sparse.csr_matrix, N x N, float32, as computed: `hemi convert F.hff F.npz` writes them repaired
-    visibility   uint8 an entry of `factors.data`, 255: nothing hidden, else 254ths; None where it is not known
+    visibility   uint8 an entry of `factors.data`, 255: nothing hidden, else V in 255ths, 1 to 254; None where it is not known
     known        bool, N: rows that were computed
     environment  float64, N: share of a row that meets nothing
     blocked      float64, N: share that meets the backs of one-sided surfaces

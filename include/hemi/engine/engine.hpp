@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/engine/row_provider.hpp"
+#include "hemi/engine/visibility_provider.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
@@ -11,16 +12,6 @@
 
 namespace hemi {
 
-/// What the values of a row are.
-enum class RowQuantity : std::uint32_t {
-    form_factors, ///< F(i, j)
-    /// For every patch j of which the sample points of i would meet the front if nothing hid it: the share of
-    /// it that nothing hides, in [0, 1], weighted as F is, pooled over j's neighbours on the same plane where
-    /// too few texels meet it. `visibility` then says how much that rests on: the number of texels, at most
-    /// 254, or visibility_clear if none was hidden, and enough were seen.
-    visibility,
-};
-
 /// Settings that change the rows.
 struct HemicubeSettings {
     std::uint32_t resolution = 128; ///< texels along a full hemicube edge; even, 2 to 4096
@@ -29,8 +20,6 @@ struct HemicubeSettings {
     std::uint32_t eye_points = 1;   ///< hemicubes a patch: 1, 4, 9 … 64
     /// Up to so many where a surface hovers close above a patch or stands on it; 1: none more.
     std::uint32_t near_eye_points = 1;
-
-    RowQuantity quantity = RowQuantity::form_factors; ///< what the values of a row are
 
     bool operator==(const HemicubeSettings&) const = default; ///< member by member
 };
@@ -48,21 +37,23 @@ struct EngineSettings {
     std::filesystem::path worker_program;
 };
 
-/// Hemicube rows by OpenGL item buffers. Contexts are made on the first call of rows() or renderer().
-/// On software OpenGL with a worker program, rows come from `jobs` worker processes; on a GPU from one
-/// context of this process.
+/// Form factors by hemicubes, drawn as OpenGL item buffers. Contexts are made on the first call of rows() or
+/// renderer(). On software OpenGL with a worker program, rows come from `jobs` worker processes; on a GPU
+/// from one context of this process.
 /// @param mesh      must outlive the engine
 /// @param settings  what changes the rows
 /// @param engine    device and workers
 /// @throws InvalidArgument for a bad resolution, number of eye points or device name; NoDevice if the
-///   device is not there; GlError, or Error if a worker ends early (then no row is delivered in its place).
+///   device is not there; GlError, or Error if a worker ends early or is of another build (then no row is
+///   delivered in its place).
 [[nodiscard]] std::unique_ptr<RowProvider>
 make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const EngineSettings& engine);
 
-/// The same rows without OpenGL: a ray through every texel centre against every surface, double precision.
-/// Slow (resolution² × surfaces a row) and obviously correct: the yardstick of the tests.
-[[nodiscard]] std::unique_ptr<RowProvider> make_reference_engine(const PatchMesh& mesh,
-                                                                 const HemicubeSettings& settings);
+/// Visibility by the same hemicubes: for every patch j in view from i, the share of the delta form factors of
+/// its texels that nothing hides. Parameters and errors as for make_hemicube_engine().
+/// @see compute_visibility_weighted
+[[nodiscard]] std::unique_ptr<VisibilityProvider>
+make_visibility_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const EngineSettings& engine);
 
 /// Polygons that a hemicube draws: one for every lattice of coplanar parallelogram cells, if they are merged,
 /// and one for every other patch.

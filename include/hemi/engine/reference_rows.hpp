@@ -2,7 +2,7 @@
 
 #include "hemi/core/progress.hpp"
 #include "hemi/engine/engine.hpp"
-#include "hemi/engine/row_provider.hpp"
+#include "hemi/engine/visibility_provider.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
@@ -25,11 +25,11 @@ namespace hemi {
 
 /// Rows that others are judged by: exact exchange areas times visibility, seen from i alone. The other rows
 /// stay unknown.
-/// @param visibility  gives rows of RowQuantity::visibility, by reference_settings()
+/// @param visibility  by reference_settings()
 /// @param mesh        the one that `visibility` sees
 /// @param patches     ascending, see reference_patches()
 /// @param progress    called after every row; may be empty
-[[nodiscard]] FormFactorMatrix compute_reference(RowProvider& visibility, const PatchMesh& mesh,
+[[nodiscard]] FormFactorMatrix compute_reference(VisibilityProvider& visibility, const PatchMesh& mesh,
                                                  std::span<const std::uint32_t> patches,
                                                  const Progress& progress = {});
 

@@ -10,14 +10,19 @@
 
 namespace hemi {
 
-/// Receives one row of F. `patch` is the row's index; the view is valid during the call only.
-/// May throw; the provider then stops and passes the exception on.
-using RowSink = std::function<void(std::uint32_t patch, const RowView& row)>;
-
-/// A way to find rows of F. Implementations differ in method and device, never in meaning.
-class RowProvider {
+/// A way to compute rows of one kind, patch by patch. Implementations differ in method and device, never in
+/// meaning. One interface for both kinds of rows, so that whatever stands between a provider and its user
+/// (checkpoints, observers) is written once.
+/// @tparam Row  a view of one row: RowView (form factors) or VisibilityRow
+template <class Row>
+class BasicRowProvider {
 public:
-    virtual ~RowProvider() = default;
+    using RowType = Row; ///< what it provides
+    /// Receives one row. `patch` is the row's index i; the view is valid during the call only.
+    /// May throw; the provider then stops and passes the exception on.
+    using Sink = std::function<void(std::uint32_t patch, const Row& row)>;
+
+    virtual ~BasicRowProvider() = default;
 
     /// Number of patches, and of rows and columns.
     [[nodiscard]] virtual std::uint32_t size() const = 0;
@@ -27,11 +32,18 @@ public:
 
     /// Computes the rows of `patches` (ascending, no duplicates) and hands each to `sink`, from the calling
     /// thread. Rows of one block of FormFactorMatrix::block_rows come in order; blocks come in any order.
-    virtual void rows(std::span<const std::uint32_t> patches, const RowSink& sink) = 0;
+    /// @throws Cancelled where the provider computes itself and stop_if_interrupted() does, asked before
+    ///   every row.
+    virtual void rows(std::span<const std::uint32_t> patches, const Sink& sink) = 0;
 
     /// Hemicubes drawn so far for rows that were delivered; 0 by a method that draws none.
     [[nodiscard]] virtual std::uint64_t hemicubes() const { return 0; }
 };
+
+/// A way to compute rows of F.
+using RowProvider = BasicRowProvider<RowView>;
+/// Receives one row of F.
+using RowSink = RowProvider::Sink;
 
 /// Rows of `patches` as a matrix; the other rows stay unknown.
 /// @param provider  computes the rows

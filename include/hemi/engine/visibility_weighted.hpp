@@ -2,7 +2,7 @@
 
 #include "hemi/core/progress.hpp"
 #include "hemi/engine/exchange_area.hpp"
-#include "hemi/engine/row_provider.hpp"
+#include "hemi/engine/visibility_provider.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace hemi {
 
-/// What the hybrid needs for rows, see estimate_visibility_weighted().
+/// What compute_visibility_weighted() needs for rows, see estimate_visibility_weighted().
 struct VisibilityWeightedEstimate {
     double entries_per_row = 0.0;   ///< mean over the sample: patches that are not wholly hidden
     std::uint64_t memory_bytes = 0; ///< of the table of pairs and the matrix, with 20 % on top of the latter
@@ -19,32 +19,33 @@ struct VisibilityWeightedEstimate {
 
 /// What compute_visibility_weighted() needs for the rows of `patches`, from up to `samples` of them spread
 /// evenly.
-/// @param visibility  gives rows of RowQuantity::visibility
+/// @param visibility  see make_visibility_engine()
 /// @param patches     ascending
 /// @param samples     rows that are computed, and thrown away
-[[nodiscard]] VisibilityWeightedEstimate estimate_visibility_weighted(RowProvider& visibility,
+[[nodiscard]] VisibilityWeightedEstimate estimate_visibility_weighted(VisibilityProvider& visibility,
                                                                       std::span<const std::uint32_t> patches,
                                                                       std::uint32_t samples = 64);
 
-/// What changes the rows of the hybrid, besides what changes their visibility.
+/// What changes the rows, besides what changes their visibility.
 struct VisibilityWeightedSettings {
     ExchangeRule rule = ExchangeRule::standard; ///< of F0
-    /// Rays between the two patches of every pair that is partly hidden, if fewer than four times as many
-    /// texels (counted to 256) tell how much; both are then weighed by their numbers. Pairs that matter
-    /// least, with together up to a twentieth of the variance of all such pairs as a sample of the rows
-    /// tells, get none. 0: none at all.
+    /// Shadow rays between the two patches of every pair that is partly hidden and whose visibility rests on
+    /// less than four times as many texels (counted up to 256); rays and texels are weighted by their
+    /// numbers. Pairs that matter least get none: those that together have up to a twentieth of the variance
+    /// of all such pairs, by a sample of the rows. 0: no rays at all.
     std::uint32_t shadow_rays = 0;
 
     bool operator==(const VisibilityWeightedSettings&) const = default; ///< member by member
 };
 
-/// Rows of `patches` by the hybrid: A_i F(i, j) = F0(i, j)·V(i, j).
+/// Form factors of `patches` as F(i, j) = F0(i, j)·V(i, j).
 ///
-/// F0 is the exact exchange area of the two polygons as if nothing lay between, found once a pair; V is the
-/// visible share of the delta form factors that hemicubes on i and on j spend on each other, weighted by the
-/// texels that either rests on, and sharpened by shadow rays where it is between. So the factors of pairs
-/// that see all of each other carry F0's error alone, and A_i F(i, j) = A_j F(j, i) up to the rounding to
-/// float. Every entry has its visibility beside it.
+/// F0(i, j) is the factor of the two polygons without occlusion, from their exchange area
+/// X0(i, j) = A_i F0(i, j) = A_j F0(j, i) (ExchangeAreas), computed once a pair. V(i, j) = V(j, i) is the
+/// visible share of the delta form factors of the texels that the patches cover in each other's hemicubes,
+/// both directions weighted by their numbers of texels, refined by shadow rays where it is between 0 and 1.
+/// So the factors of pairs that see all of each other carry F0's error alone, and A_i F(i, j) = A_j F(j, i)
+/// up to the rounding to float. Every entry has its visibility beside it.
 ///
 /// Balance: where a row sees nothing of the environment, e is 0 and b what was measured, and the sum is what
 /// comes out, for repair() to close. Where it does, e is what the sum and b leave of 1, since F0 knows that
@@ -53,17 +54,20 @@ struct VisibilityWeightedSettings {
 ///
 /// Memory: for every pair of one of `patches` with any patch 4 bytes until pairs are combined, then 2; and
 /// the matrix.
-/// @param visibility      gives rows of RowQuantity::visibility
-/// @param mesh            of N patches, the one that `visibility` sees
+/// Source: M. F. Cohen, D. P. Greenberg, "The Hemi-Cube", SIGGRAPH 1985; D. R. Baum, H. E. Rushmeier, J. M.
+/// Winget, "Improving Radiosity Solutions Through the Use of Analytically Determined Form-Factors",
+/// SIGGRAPH 1989; derivation in visibility_weighted.cpp.
+/// @param visibility      of the same mesh, see make_visibility_engine()
+/// @param mesh            N patches
 /// @param patches         rows that are wanted, ascending; the others stay unknown
 /// @param settings        rule of F0, shadow rays
 /// @param enclosure       as the scene says
 /// @param rows_done       called after every row of visibility; may be empty
 /// @param pairs_combined  called after every 64 rows whose visibility was combined; may be empty
-/// @param pairs_done      called after every 64 rows of pairs; may be empty
+/// @param pairs_done      called after every 64 rows of factors; may be empty
 /// @throws Cancelled when one of them returns false.
 [[nodiscard]] FormFactorMatrix compute_visibility_weighted(
-    RowProvider& visibility, const PatchMesh& mesh, std::span<const std::uint32_t> patches,
+    VisibilityProvider& visibility, const PatchMesh& mesh, std::span<const std::uint32_t> patches,
     const VisibilityWeightedSettings& settings, Enclosure enclosure, const Progress& rows_done = {},
     const Progress& pairs_combined = {}, const Progress& pairs_done = {});
 

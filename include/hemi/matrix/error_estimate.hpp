@@ -24,10 +24,10 @@ struct FactorErrorEstimate {
 /// What the known rows of `factors` are off by, judged by the rows of `reference`.
 ///
 /// In the sampled rows errors are measured. For all others, the variance of a factor is taken to go like F,
-/// like F² and, where factors are F0·V, like F0² V (1 - V), else like F⁴: each of these is scaled to what the
-/// sample shows. Totals are made from their mean, the error of a single row from the largest of them, with
-/// something on top where the sample is small. The largest error of a factor goes like its row's largest
-/// factor.
+/// like F² and, where factors are F0·V with F0(i, j) the unoccluded factor, like F0² V (1 - V), else like F⁴:
+/// each of these is scaled to what the sample shows. Totals are made from their mean, the error of a single
+/// row from the largest of them, with something on top where the sample is small. The largest error of a
+/// factor goes like its row's largest factor.
 /// @param factors    N rows
 /// @param reference  N rows, some of them known: better ones, see compute_reference()
 /// @param columns    compare in these columns only, ascending; empty: in all. What lies in others is taken to

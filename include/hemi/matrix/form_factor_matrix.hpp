@@ -16,7 +16,7 @@ inline constexpr std::uint8_t visibility_clear = 255;
 struct RowView {
     std::span<const std::uint32_t> columns; ///< patches j, ascending
     std::span<const float> values;          ///< F(i, j)
-    /// Where factors are F0·V: the code of V of every entry, else empty.
+    /// Where factors are F0·V, F0(i, j) the unoccluded factor: the code of V of every entry, else empty.
     std::span<const std::uint8_t> visibility = {};
     double environment = 0.0; ///< e_i, share that meets nothing
     double blocked = 0.0;     ///< b_i, share that meets back faces

@@ -31,9 +31,9 @@ struct Names<Repair> {
 
 /// How far rows are repaired.
 struct RepairSettings {
-    /// Relative error of the unoccluded factor F0 where factors are F0·V: 1e-3 by the standard rule, 3e-5 by
-    /// the exact one. Pairs that see each other clearly may move by about this, and partly hidden ones may
-    /// exceed F0 by it.
+    /// Relative error of the unoccluded factor F0(i, j) where factors are F0·V: 1e-3 by the standard rule,
+    /// 3e-5 by the exact one. Pairs that see each other clearly may move by about this, and partly hidden
+    /// ones may exceed F0 by it.
     double unoccluded_error = 1e-3;
     double tolerance = 1e-9;             ///< of a row sum, before it is rounded to floats
     std::uint32_t max_passes = 20;       ///< with more and more pairs held at their bounds
@@ -63,19 +63,18 @@ struct RepairReport {
 
 /// Repairs rows in place.
 ///
-/// Factors with visibility, x0 = A_i F0·V, have w = (A_i F0)² [V (1 - V) + r²] with r the relative error of
-/// F0 and without V (1 - V) where the pair is clear. Plain rows are made reciprocal first and have w = x0².
-/// With row targets t and x = x0 + w_ij (l_i + l_j) the multipliers solve (diag(W 1) + W) l = t - X0 1, by
-/// conjugate gradients with a diagonal preconditioner. Pairs beyond a bound are put there and held, and the
-/// rest is solved again. Where targets contradict each other (two facing plates of different targets) the
-/// rows come as close as they can.
-/// Covered rows (b > buried_above) and unknown rows set no target; unknown rows stay empty, and pairs with
-/// them are in the known row only. The diagonal does not change. Rows that are reciprocal to the rounding of
-/// floats are afterwards, too.
-/// Memory: O(N), 1 bit an entry where something is held at F0, and the entries that are added. The
-/// result is the same on any number of threads.
-/// Source: least-squares enforcement as in R. P. Taylor, R. Luck, "Comparison of reciprocity and closure
-/// enforcement methods for radiation view factors", J. Thermophysics and Heat Transfer 9, 1995.
+/// Factors with visibility, F = F0·V with F0(i, j) the unoccluded factor, start from x0 = X0·V, X0 = A_i
+/// F0(i, j) being the unoccluded exchange area, and have w = X0² [V (1 - V) + r²] with r the relative error
+/// of F0 and without V (1 - V) where the pair is clear. Plain rows are made reciprocal first and have w =
+/// x0². With row targets t and x = x0 + w_ij (l_i + l_j) the multipliers solve (diag(W 1) + W) l = t - (row
+/// sums of x0), by conjugate gradients with a diagonal preconditioner. Pairs beyond a bound are put there and
+/// held, and the rest is solved again. Where targets contradict each other (two facing plates of different
+/// targets) the rows come as close as they can. Covered rows (b > buried_above) and unknown rows set no
+/// target; unknown rows stay empty, and pairs with them are in the known row only. The diagonal does not
+/// change. Rows that are reciprocal to the rounding of floats are afterwards, too. Memory: O(N), 1 bit an
+/// entry where something is held at X0, and the entries that are added. The result is the same on any number
+/// of threads. Source: least-squares enforcement as in R. P. Taylor, R. Luck, "Comparison of reciprocity and
+/// closure enforcement methods for radiation view factors", J. Thermophysics and Heat Transfer 9, 1995.
 /// @param factors   N rows, changed in place
 /// @param areas     N areas
 /// @param repair    what is made true; none only measures

@@ -37,6 +37,7 @@ public:
     void discard() noexcept;
 
 private:
+    template <class Row>
     friend class ObservedRows;
     std::unique_ptr<io::CheckpointFile> file_;
     std::uint64_t reused_ = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hemi/core/names.hpp"
-#include "hemi/engine/engine.hpp"
+#include "hemi/engine/visibility_provider.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 
 #include <cstddef>
@@ -41,9 +41,12 @@ public:
     /// `done` of `total` units of a phase are finished. Phases come one after the other.
     /// @return false to stop the work, which then throws Cancelled
     virtual bool progress(Phase phase, std::size_t done, std::size_t total);
-    /// A row has come from the engine, in any order, before rows are combined: form factors, or, where
-    /// `quantity` says so, visibilities. The view is valid during the call.
-    virtual void row(std::uint32_t patch, const RowView& row, RowQuantity quantity);
+    /// A row of plain form factors has come from the engine; rows come in any order. The view is valid during
+    /// the call.
+    virtual void row(std::uint32_t patch, const RowView& row);
+    /// A row of visibilities has come, from which factors will be made once all are there. Valid during the
+    /// call.
+    virtual void row(std::uint32_t patch, const VisibilityRow& row);
     /// Something that a person should know and that does not stop the work.
     /// @param setting  name of a setting that would help, such as "max-memory"; empty: none
     virtual void warning(std::string_view message, std::string_view setting);

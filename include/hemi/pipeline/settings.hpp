@@ -2,11 +2,13 @@
 
 #include "hemi/engine/baselines.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/engine/visibility_provider.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/matrix/provenance.hpp"
 #include "hemi/matrix/repair.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 namespace hemi {
@@ -49,14 +51,16 @@ struct RowPlan {
 /// Bytes that form factors may take: max_memory, else 80 % of the memory that the system says is available.
 [[nodiscard]] std::uint64_t memory_limit(const FactorSettings& settings);
 
-/// The engine that computes the rows of these settings.
+/// What computes rows of form factors by these settings: plain hemicubes, or a baseline method.
 /// @param mesh  must outlive it
 /// @throws as make_hemicube_engine() and make_baseline()
 [[nodiscard]] std::unique_ptr<RowProvider> make_row_provider(const PatchMesh& mesh,
                                                              const FactorSettings& settings);
-/// A hemicube engine on the settings' device with their workers.
+/// What computes rows of visibility, on the settings' device with their workers.
 /// @param mesh  must outlive it
-[[nodiscard]] std::unique_ptr<RowProvider>
-make_engine(const PatchMesh& mesh, const HemicubeSettings& hemicube, const FactorSettings& settings);
+/// @throws as make_visibility_engine()
+[[nodiscard]] std::unique_ptr<VisibilityProvider> make_visibility_provider(const PatchMesh& mesh,
+                                                                           const HemicubeSettings& hemicube,
+                                                                           const FactorSettings& settings);
 
 } // namespace hemi

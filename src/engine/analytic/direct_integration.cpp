@@ -114,10 +114,10 @@ private:
     }
 
     [[nodiscard]] double refine(const Interval& s, const Interval& t, double tolerance, int depth) const {
-        constexpr int deepest = 12;
+        constexpr int max_depth = 12;
         // The difference is the coarse rule's error; the fine one's is far below it.
         const double fine = rule(s, t, 3);
-        if (depth == deepest ||
+        if (depth == max_depth ||
             std::abs(fine - rule(s, t, 2)) <= std::max(tolerance, relative_accuracy * fine)) {
             return fine;
         }
@@ -148,14 +148,16 @@ std::optional<double> rectangle_exchange(std::span<const Vec3> a, const Vec3& no
     if (!rectangle_a || !rectangle_b) {
         return std::nullopt;
     }
-    constexpr double far = 12.0;
+    // The closed forms are sums of large terms of both signs and lose digits as (distance / size)⁴: squares
+    // have a relative error of 1e-9 at 16 sizes, and 1e-5 at 100.
+    constexpr double max_distance = 12.0; // between corners, in shortest edges
     double distance = 0.0;
     for (const Vec3& from : a) {
         for (const Vec3& to : b) {
             distance = std::max(distance, glm::length(to - from));
         }
     }
-    if (distance > far * std::min(rectangle_a->shortest, rectangle_b->shortest)) {
+    if (distance > max_distance * std::min(rectangle_a->shortest, rectangle_b->shortest)) {
         return std::nullopt;
     }
     const Vec3& origin = a[0];

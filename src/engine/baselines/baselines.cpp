@@ -8,6 +8,7 @@
 #include "engine/rays/patch_rays.hpp"
 #include "engine/rays/ray_tracer.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 #include "hemi/engine/exchange_area.hpp"
 
 #include <fmt/format.h>
@@ -44,6 +45,7 @@ public:
                 }
             });
             for (std::size_t k = 0; k < batch.size(); ++k) {
+                stop_if_interrupted();
                 const Row& done = batch[k];
                 RowView view;
                 view.columns = done.columns;

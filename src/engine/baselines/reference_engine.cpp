@@ -1,6 +1,7 @@
 #include "engine/baselines/reference_engine.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
 
 #include "hemi/engine/delta_form_factors.hpp"
 
@@ -78,6 +79,7 @@ public:
         std::vector<std::uint32_t> columns;
         std::vector<float> values;
         for (const std::uint32_t patch : patches) {
+            stop_if_interrupted();
             std::vector<std::uint64_t> sums(std::size_t{item_first_patch} + mesh_.size());
             std::uint64_t total = 0;
             const auto eyes = tracer_.eyes().of(patch);
@@ -202,9 +204,6 @@ bool ReferenceTracer::inside(const Surface& surface, const Vec3& normal, const V
 std::unique_ptr<RowProvider> make_reference_engine(const PatchMesh& mesh, const HemicubeSettings& settings) {
     DeltaFormFactors::check_resolution(settings.resolution);
     check_eye_points(settings.eye_points);
-    if (settings.quantity != RowQuantity::form_factors) {
-        throw InvalidArgument("the reference engine finds form factors only");
-    }
     return std::make_unique<ReferenceEngine>(mesh, settings);
 }
 

@@ -5,6 +5,7 @@
 #include "hemi/engine/engine.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace hemi {
@@ -37,5 +38,12 @@ private:
     EyePoints eyes_;
     double tolerance_;
 };
+
+/// Rows of F as make_hemicube_engine() has them, without OpenGL: by ReferenceTracer. Slow (resolution² ×
+/// surfaces a row) and obviously correct: what the tests compare the engine with.
+/// @param mesh  must outlive the engine
+/// @throws InvalidArgument for a bad resolution or number of eye points
+[[nodiscard]] std::unique_ptr<RowProvider> make_reference_engine(const PatchMesh& mesh,
+                                                                 const HemicubeSettings& settings);
 
 } // namespace hemi

@@ -18,7 +18,7 @@ namespace hemi {
 
 namespace {
 
-constexpr std::uint32_t most_eyes_a_side = 8;
+constexpr std::uint32_t max_eyes_a_side = 8;
 
 /// Point of a rule on [0, 1]; the weights sum to 1.
 struct EdgePoint {
@@ -166,13 +166,13 @@ void add_gauss_points(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t 
 } // namespace
 
 void check_eye_points(std::uint32_t count) {
-    for (std::uint32_t k = 1; k <= most_eyes_a_side; ++k) {
+    for (std::uint32_t k = 1; k <= max_eyes_a_side; ++k) {
         if (k * k == count) {
             return;
         }
     }
     throw InvalidArgument(fmt::format("{} eye points a patch; it must be 1, 4, 9, 16 … or {}", count,
-                                      most_eyes_a_side * most_eyes_a_side));
+                                      max_eyes_a_side * max_eyes_a_side));
 }
 
 EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count, std::uint32_t near_count) {

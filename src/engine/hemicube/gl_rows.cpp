@@ -46,13 +46,13 @@ struct GlRows::State {
     };
     using Batch = std::vector<Hemicube>;
 
-    State(const EngineGeometry& the_geometry, const HemicubeSettings& the_settings,
+    State(const EngineGeometry& the_geometry, const HemicubeSettings& the_settings, RowQuantity quantity,
           std::unique_ptr<gl::Context> own, gl::Context& the_context)
         : geometry(the_geometry), settings(the_settings), weights(the_settings.resolution),
           own_context(std::move(own)), context(&the_context),
           buffers(*context, settings.resolution, batch_slots(settings.resolution, context->software())),
           views(geometry.list, buffers.slots()) {
-        if (settings.quantity == RowQuantity::visibility) {
+        if (quantity == RowQuantity::visibility) {
             visibility.emplace(geometry.list, geometry.eyes.patches());
         } else {
             accumulator.emplace(geometry.list.item_of_id, geometry.eyes.patches());
@@ -91,27 +91,27 @@ struct GlRows::State {
         if (share >= 1.0) {
             return weights;
         }
-        constexpr std::size_t most_kept = 32;
+        constexpr std::size_t max_kept = 32;
         const auto found = std::find_if(scaled_weights.begin(), scaled_weights.end(),
                                         [share](const auto& entry) { return entry.first == share; });
         if (found != scaled_weights.end()) {
             return found->second;
         }
-        if (scaled_weights.size() == most_kept) {
+        if (scaled_weights.size() == max_kept) {
             scaled_weights.pop_front();
         }
         return scaled_weights.emplace_back(share, weights.scaled(share)).second;
     }
 
     /// Adds a hemicube to its row; the row itself once it was the last.
-    std::optional<RowView> add(const Hemicube& hemicube, const std::uint32_t* ids) {
+    std::optional<RawRow> add(const Hemicube& hemicube, const std::uint32_t* ids) {
         const auto eyes = geometry.eyes.of(hemicube.patch);
         const EyePoint& eye = eyes[hemicube.eye];
         const DeltaFormFactors& eye_weights = weights_for(eye.share);
         const bool last = hemicube.eye + 1 == eyes.size();
         if (visibility) {
             visibility->add(ids, eye_weights, hemicube.fronts, eye, frame(hemicube));
-            return last ? std::optional(visibility->take()) : std::nullopt;
+            return last ? std::optional(raw_row(visibility->take())) : std::nullopt;
         }
         accumulator->add(ids, eye_weights);
         return last ? std::optional(accumulator->take()) : std::nullopt;
@@ -140,14 +140,15 @@ struct GlRows::State {
     DrawStream stream;
 };
 
-GlRows::GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, const std::string& device) {
+GlRows::GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, RowQuantity quantity,
+               const std::string& device) {
     auto context = gl::make_context(device);
     gl::Context& made = *context;
-    state_ = std::make_unique<State>(geometry, settings, std::move(context), made);
+    state_ = std::make_unique<State>(geometry, settings, quantity, std::move(context), made);
 }
 
 GlRows::GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, gl::Context& context)
-    : state_(std::make_unique<State>(geometry, settings, nullptr, context)) {}
+    : state_(std::make_unique<State>(geometry, settings, RowQuantity::form_factors, nullptr, context)) {}
 
 GlRows::~GlRows() {
     if (state_) {
@@ -165,7 +166,7 @@ bool GlRows::software() const {
     return state_->context->software();
 }
 
-void GlRows::rows(std::span<const std::uint32_t> patches, const RowSink& sink) {
+void GlRows::rows(std::span<const std::uint32_t> patches, const RawRowProvider::Sink& sink) {
     State& state = *state_;
     state.context->make_current();
     const std::size_t texels = std::size_t{3} * state.settings.resolution * state.settings.resolution;

@@ -2,6 +2,7 @@
 
 #include "engine/hemicube/draw_list.hpp"
 #include "engine/hemicube/eye.hpp"
+#include "engine/raw_row.hpp"
 #include "hemi/engine/engine.hpp"
 
 #include <cstdint>
@@ -27,8 +28,10 @@ struct EngineGeometry {
 /// Rows by item buffers on one context of this process and thread.
 class GlRows {
 public:
+    /// @param quantity  what the rows mean
     /// @throws NoDevice, GlError
-    GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, const std::string& device);
+    GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, RowQuantity quantity,
+           const std::string& device);
     /// The same on a context that is there already, for what a window shows of the hemicubes: items() only.
     /// The context must outlive it, and be current when it is made and destroyed.
     GlRows(const EngineGeometry& geometry, const HemicubeSettings& settings, gl::Context& context);
@@ -40,7 +43,7 @@ public:
     [[nodiscard]] bool software() const;
 
     /// Computes rows in the order given and hands each on.
-    void rows(std::span<const std::uint32_t> patches, const RowSink& sink);
+    void rows(std::span<const std::uint32_t> patches, const RawRowProvider::Sink& sink);
 
     /// The item buffer of one eye point of a patch: 3·resolution rows of `resolution` items (see
     /// draw_list.hpp). For tests and for looking at what a patch sees. Leaves OpenGL's default state behind.

@@ -1,6 +1,7 @@
 #include "engine/hemicube/gl_rows.hpp"
 #include "engine/workers/worker_pool.hpp"
 #include "gl/context.hpp"
+#include "hemi/core/interrupt.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/engine/engine.hpp"
 
@@ -9,16 +10,18 @@ namespace hemi {
 namespace {
 
 /// Rows by one context of this process.
-class InProcessEngine final : public RowProvider {
+class InProcessEngine final : public RawRowProvider {
 public:
     InProcessEngine(std::unique_ptr<const EngineGeometry> geometry, const HemicubeSettings& settings,
-                    std::string device)
-        : geometry_(std::move(geometry)), settings_(settings), device_(std::move(device)) {}
+                    RowQuantity quantity, std::string device)
+        : geometry_(std::move(geometry)), settings_(settings), quantity_(quantity),
+          device_(std::move(device)) {}
 
     [[nodiscard]] std::uint32_t size() const override { return geometry_->eyes.patches(); }
     [[nodiscard]] std::string renderer() const override { return engine().renderer(); }
-    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
-        engine().rows(patches, [&](std::uint32_t patch, const RowView& row) {
+    void rows(std::span<const std::uint32_t> patches, const Sink& sink) override {
+        engine().rows(patches, [&](std::uint32_t patch, const RawRow& row) {
+            stop_if_interrupted();
             hemicubes_ += geometry_->eyes.of(patch).size();
             sink(patch, row);
         });
@@ -28,29 +31,60 @@ public:
 private:
     GlRows& engine() const {
         if (!engine_) {
-            engine_ = std::make_unique<GlRows>(*geometry_, settings_, device_);
+            engine_ = std::make_unique<GlRows>(*geometry_, settings_, quantity_, device_);
         }
         return *engine_;
     }
 
     std::unique_ptr<const EngineGeometry> geometry_;
     HemicubeSettings settings_;
+    RowQuantity quantity_;
     std::string device_;
     mutable std::unique_ptr<GlRows> engine_;
     std::uint64_t hemicubes_ = 0;
 };
 
-} // namespace
+/// Rows of an engine as rows of visibility.
+class VisibilityEngine final : public VisibilityProvider {
+public:
+    explicit VisibilityEngine(std::unique_ptr<RawRowProvider> engine) : engine_(std::move(engine)) {}
 
-std::unique_ptr<RowProvider> make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
-                                                  const EngineSettings& engine) {
+    [[nodiscard]] std::uint32_t size() const override { return engine_->size(); }
+    [[nodiscard]] std::string renderer() const override { return engine_->renderer(); }
+    void rows(std::span<const std::uint32_t> patches, const Sink& sink) override {
+        engine_->rows(patches, [&sink](std::uint32_t patch, const RawRow& row) {
+            sink(patch, row_from_raw<VisibilityRow>(row));
+        });
+    }
+    [[nodiscard]] std::uint64_t hemicubes() const override { return engine_->hemicubes(); }
+
+private:
+    std::unique_ptr<RawRowProvider> engine_;
+};
+
+std::unique_ptr<RawRowProvider> make_raw_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
+                                                RowQuantity quantity, const EngineSettings& engine) {
     DeltaFormFactors::check_resolution(settings.resolution);
     gl::check_device_name(engine.device);
     auto geometry = std::make_unique<const EngineGeometry>(make_engine_geometry(mesh, settings));
     if (engine.worker_program.empty()) {
-        return std::make_unique<InProcessEngine>(std::move(geometry), settings, engine.device);
+        return std::make_unique<InProcessEngine>(std::move(geometry), settings, quantity, engine.device);
     }
-    return make_worker_pool(std::move(geometry), settings, engine);
+    return make_worker_pool(std::move(geometry), settings, quantity, engine);
+}
+
+} // namespace
+
+std::unique_ptr<RowProvider> make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
+                                                  const EngineSettings& engine) {
+    return make_raw_engine(mesh, settings, RowQuantity::form_factors, engine);
+}
+
+std::unique_ptr<VisibilityProvider> make_visibility_engine(const PatchMesh& mesh,
+                                                           const HemicubeSettings& settings,
+                                                           const EngineSettings& engine) {
+    return std::make_unique<VisibilityEngine>(
+        make_raw_engine(mesh, settings, RowQuantity::visibility, engine));
 }
 
 } // namespace hemi

@@ -11,16 +11,21 @@ namespace hemi {
 
 namespace {
 
-// A rasteriser that snaps vertices to 1/256 texel may put a texel centre this near an edge on either side.
+// A rasteriser that snaps vertices to 1/256 texel, 0.0039, may put a texel centre this near an edge on either
+// side.
 constexpr double snap = 0.004; // texels
 
-// Fewer covered texels than this are pooled with those of the neighbours, in windows up to so many cells
-// either way.
-constexpr std::uint32_t enough_texels = 2;
-constexpr std::int64_t widest_window = 7;
-// Only so many texels, none of them hidden, make a pair clear in a polygon that is partly hidden.
+// Fewer covered texels than this are pooled with those of the neighbours on the polygon's grid, in centred
+// windows of 3 x 3, 5 x 5 … 15 x 15 cells. Measured in rooms of 10,000 and 50,000 patches against 4096 rays a
+// pair: pooling to 2 texels lowers the rms error of V from 0.19 to 0.044 (10,000 patches, 4 x 32² texels
+// each), and windows of 16 cells and more never lowered it further.
+constexpr std::uint32_t min_texels = 2;
+constexpr std::int64_t max_window = 7; // cells either way
+// Only so many texels, none of them hidden, make a pair clear in a polygon that is partly hidden: fewer may
+// miss what hides a part of the patch. Chosen, not fitted.
 constexpr std::uint32_t clear_texels = 12;
-constexpr std::uint32_t most_evidence = visibility_clear - 1;
+// Numbers of texels are kept in a byte, of which one value means clear.
+constexpr std::uint32_t max_evidence = visibility_clear - 1;
 
 std::uint32_t texels(std::uint64_t tally) {
     return static_cast<std::uint32_t>(tally);
@@ -41,7 +46,7 @@ std::pair<std::uint32_t, double> cell_of(double at, std::uint32_t cells) {
 VisibilityAccumulator::VisibilityAccumulator(const DrawList& list, std::uint32_t patches)
     : list_(list), patches_(patches), item_of_id_(list.item_of_id), maps_(list.polygons.size()),
       visible_(list.item_of_id.size()), hidden_(list.item_of_id.size()), side_seen_(list.polygons.size()),
-      share_(patches), evidence_(patches), columns_(patches), values_(patches), evidences_(patches) {
+      share_(patches), evidence_(patches), columns_(patches), shares_(patches), texels_(patches) {
     std::vector<std::uint32_t> first_id(patches, 0);
     for (std::uint32_t id = item_first_patch; id < item_of_id_.size(); ++id) {
         if (item_of_id_[id] < item_first_patch) {
@@ -246,7 +251,7 @@ void VisibilityAccumulator::set(std::uint32_t id, Tally visible, Tally hidden) {
     share_[patch] = static_cast<float>(covered > 0.0 ? weight(visible) / covered
                                                      : static_cast<double>(texels(visible)) / count);
     evidence_[patch] =
-        static_cast<std::uint8_t>(clear ? std::uint32_t{visibility_clear} : std::min(count, most_evidence));
+        static_cast<std::uint8_t>(clear ? std::uint32_t{visibility_clear} : std::min(count, max_evidence));
 }
 
 void VisibilityAccumulator::pool(const Side& side) {
@@ -310,7 +315,7 @@ void VisibilityAccumulator::pool_cells(const DrawPolygon& polygon, std::uint32_t
                 Tally visible = visible_[id];
                 Tally hidden = hidden_[id];
                 for (std::int64_t reach = 1;
-                     texels(visible) + texels(hidden) < enough_texels && reach <= widest_window; ++reach) {
+                     texels(visible) + texels(hidden) < min_texels && reach <= max_window; ++reach) {
                     const auto u0 = static_cast<std::size_t>(std::max<std::int64_t>(u - reach, 0));
                     const auto v0 = static_cast<std::size_t>(std::max<std::int64_t>(v - reach, 0));
                     const auto u1 = static_cast<std::size_t>(std::min<std::int64_t>(u + reach + 1, columns));
@@ -328,9 +333,9 @@ void VisibilityAccumulator::pool_cells(const DrawPolygon& polygon, std::uint32_t
     }
 }
 
-RowView VisibilityAccumulator::take() {
+VisibilityRow VisibilityAccumulator::take() {
     const double unit = 1.0 / std::exchange(total_, 0u);
-    RowView row;
+    VisibilityRow row;
     row.environment = weight(std::exchange(visible_[item_nothing], 0)) * unit;
     row.blocked = weight(std::exchange(visible_[item_blocked], 0)) * unit;
     for (const Side& side : sides_) {
@@ -342,14 +347,14 @@ RowView VisibilityAccumulator::take() {
     for (std::uint32_t patch = 0; patch < patches_; ++patch) {
         if (evidence_[patch] != 0) {
             columns_[entries] = patch;
-            values_[entries] = share_[patch];
-            evidences_[entries] = std::exchange(evidence_[patch], std::uint8_t{0});
+            shares_[entries] = share_[patch];
+            texels_[entries] = std::exchange(evidence_[patch], std::uint8_t{0});
             ++entries;
         }
     }
     row.columns = {columns_.data(), entries};
-    row.values = {values_.data(), entries};
-    row.visibility = {evidences_.data(), entries};
+    row.shares = {shares_.data(), entries};
+    row.texels = {texels_.data(), entries};
     return row;
 }
 

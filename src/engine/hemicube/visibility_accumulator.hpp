@@ -4,7 +4,7 @@
 #include "engine/hemicube/eye.hpp"
 #include "engine/hemicube/view_builder.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
-#include "hemi/matrix/form_factor_matrix.hpp"
+#include "hemi/engine/visibility_provider.hpp"
 
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace hemi {
 
-/// Makes rows of RowQuantity::visibility: V = visible / (visible + hidden) delta form factors, on the same
+/// Makes rows of visibility: V = visible / (visible + hidden) delta form factors, on the same
 /// texels. What is visible is in the item buffers; what a polygon's front covers but others hide is found by
 /// scanning the spans of its outline, on the CPU.
 /// Memory: 16 bytes a draw id and 16 a cell of the largest polygon.
@@ -29,7 +29,7 @@ public:
              const EyePoint& eye, const EyeFrame& frame);
 
     /// The row so far, and starts the next one. The view is valid until the next call.
-    [[nodiscard]] RowView take();
+    [[nodiscard]] VisibilityRow take();
 
 private:
     /// A weight in the upper and the number of its texels in the lower half: both are summed at once.
@@ -81,8 +81,8 @@ private:
     std::vector<float> share_;           ///< per patch
     std::vector<std::uint8_t> evidence_; ///< per patch, 0: none
     std::vector<std::uint32_t> columns_;
-    std::vector<float> values_;
-    std::vector<std::uint8_t> evidences_;
+    std::vector<float> shares_;
+    std::vector<std::uint8_t> texels_;
 };
 
 } // namespace hemi

@@ -9,7 +9,7 @@ namespace hemi {
 std::vector<std::optional<Vec3>> leak_directions(const PatchMesh& mesh,
                                                  std::span<const std::uint32_t> patches) {
     constexpr std::uint32_t rays = 65536;
-    constexpr std::uint32_t fewest = 2; // a single ray may slip through where edges meet
+    constexpr std::uint32_t min_escaped = 2; // a single ray may slip through where edges meet
     std::vector<std::optional<Vec3>> directions(patches.size());
     if (patches.empty()) {
         return directions;
@@ -27,7 +27,7 @@ std::vector<std::optional<Vec3>> leak_directions(const PatchMesh& mesh,
                     ++escaped;
                 }
             }
-            if (escaped >= fewest) {
+            if (escaped >= min_escaped) {
                 directions[k] = glm::normalize(sum);
             }
         }

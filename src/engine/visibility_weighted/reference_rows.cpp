@@ -9,10 +9,14 @@ namespace hemi {
 
 namespace {
 
-constexpr std::uint32_t fewest_rows = 12;
-constexpr std::uint32_t most_rows = 32;
-constexpr std::uint32_t most_eye_points = 64;
+// Fewer rows say too little of the variance of all, see error_estimate.cpp; more are not worth their time.
+constexpr std::uint32_t min_rows = 12;
+constexpr std::uint32_t max_rows = 32;
+// The most that a patch can have, and the next lower square, whose points are none of those.
+constexpr std::uint32_t max_eye_points = 64;
 constexpr std::uint32_t other_eye_points = 49;
+// What a hemicube takes besides its texels, in the time of texels.
+constexpr double texels_of_overhead = 3e4;
 
 } // namespace
 
@@ -30,11 +34,10 @@ std::vector<std::uint32_t> reference_patches(std::span<const std::uint32_t> patc
 
 HemicubeSettings reference_settings(const HemicubeSettings& settings) {
     HemicubeSettings better = settings;
-    better.quantity = RowQuantity::visibility;
-    const bool has_most = std::max(settings.eye_points, settings.near_eye_points) == most_eye_points;
-    const std::uint32_t most = has_most ? other_eye_points : most_eye_points; // never the same places
-    better.eye_points = std::clamp<std::uint32_t>(4 * settings.eye_points, 16, most);
-    better.near_eye_points = most;
+    const bool has_max = std::max(settings.eye_points, settings.near_eye_points) == max_eye_points;
+    const std::uint32_t max = has_max ? other_eye_points : max_eye_points; // never the same places
+    better.eye_points = std::clamp<std::uint32_t>(4 * settings.eye_points, 16, max);
+    better.near_eye_points = max;
     better.resolution = std::max<std::uint32_t>(64, settings.eye_points > 1 ? settings.resolution : 64);
     better.seed = ~settings.seed;
     return better;
@@ -43,16 +46,16 @@ HemicubeSettings reference_settings(const HemicubeSettings& settings) {
 std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows, double share) {
     const auto cost = [](const HemicubeSettings& of) {
         const double texels = 3.0 * of.resolution * of.resolution;
-        return of.eye_points * (texels + 3e4); // that many take as long as all the rest
+        return of.eye_points * (texels + texels_of_overhead);
     };
     const double affordable =
         share * static_cast<double>(rows) * cost(settings) / cost(reference_settings(settings));
     const auto count = static_cast<std::size_t>(
-        std::clamp(affordable, static_cast<double>(fewest_rows), static_cast<double>(most_rows)));
+        std::clamp(affordable, static_cast<double>(min_rows), static_cast<double>(max_rows)));
     return static_cast<std::uint32_t>(std::min(count, rows));
 }
 
-FormFactorMatrix compute_reference(RowProvider& visibility, const PatchMesh& mesh,
+FormFactorMatrix compute_reference(VisibilityProvider& visibility, const PatchMesh& mesh,
                                    std::span<const std::uint32_t> patches, const Progress& progress) {
     return compute_visibility_weighted(visibility, mesh, patches, {ExchangeRule::exact, 0},
                                        Enclosure::automatic, progress);

@@ -36,14 +36,14 @@ class Worker {
 public:
     void run() {
         const UnpackedGeometry input = unpack(map_whole(worker_geometry_fd, PROT_READ));
-        GlRows engine(input.geometry, input.settings, input.device);
+        GlRows engine(input.geometry, input.settings, input.quantity, input.device);
         FromWorker ready;
         ready.kind = FromWorker::Kind::ready;
         ready.software = engine.software() ? 1 : 0;
         ready.set_text(engine.renderer());
         send(ready);
 
-        const ResultSlot layout(input.geometry.eyes.patches(), input.settings);
+        const ResultSlot layout(input.geometry.eyes.patches(), input.settings, input.quantity);
         std::byte* buffer = map_whole(worker_results_fd, PROT_READ | PROT_WRITE).data();
         for (;;) {
             while (jobs_.empty()) {
@@ -79,7 +79,7 @@ private:
         std::uint32_t rows = 0;
         std::size_t entries = 0;
         std::size_t done = 0;
-        engine.rows(patches, [&](std::uint32_t patch, const RowView& row) {
+        engine.rows(patches, [&](std::uint32_t patch, const RawRow& row) {
             while (busy_[slot_]) {
                 receive();
             }
@@ -135,6 +135,10 @@ int run_hemicube_worker() {
         Worker().run();
     } catch (const Hangup&) {
         return EXIT_SUCCESS;
+    } catch (const OtherBuild& error) {
+        const std::string packet = refusal_packet(error);
+        (void)::send(worker_socket_fd, packet.data(), packet.size(), MSG_NOSIGNAL);
+        return EXIT_FAILURE;
     } catch (const std::exception& error) {
         FromWorker failed;
         failed.kind = FromWorker::Kind::failed;

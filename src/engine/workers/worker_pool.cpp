@@ -137,16 +137,23 @@ public:
         }
     }
 
-    /// Waits for a message. @throws Error when the worker is gone or failed.
+    /// Waits for a message. @throws Error when the worker is gone, failed or is of another build.
     FromWorker receive() {
-        FromWorker message;
+        std::array<char, sizeof(FromWorker)> packet{};
         ssize_t got = -1;
         do {
-            got = recv(socket_.get(), &message, sizeof message, 0);
+            got = recv(socket_.get(), packet.data(), packet.size(), 0);
         } while (got < 0 && errno == EINTR);
-        if (got != sizeof message) {
+        if (got > 0) {
+            if (const auto reason = refusal_reason({packet.data(), static_cast<std::size_t>(got)})) {
+                throw Error(*reason);
+            }
+        }
+        if (got != static_cast<ssize_t>(packet.size())) {
             ended();
         }
+        FromWorker message;
+        std::memcpy(&message, packet.data(), packet.size());
         if (message.kind == FromWorker::Kind::failed) {
             const std::string text(message.text.data());
             if (message.no_device != 0) {
@@ -195,12 +202,12 @@ private:
     SharedMemory results_;
 };
 
-class WorkerPool final : public RowProvider {
+class WorkerPool final : public RawRowProvider {
 public:
     WorkerPool(std::unique_ptr<const EngineGeometry> geometry, const HemicubeSettings& settings,
-               EngineSettings engine)
+               RowQuantity quantity, EngineSettings engine)
         : geometry_(std::move(geometry)), size_(geometry_->eyes.patches()), settings_(settings),
-          engine_(std::move(engine)), layout_(size_, settings) {}
+          quantity_(quantity), engine_(std::move(engine)), layout_(size_, settings, quantity) {}
 
     [[nodiscard]] std::uint32_t size() const override { return size_; }
 
@@ -209,10 +216,11 @@ public:
         return renderer_;
     }
 
-    void rows(std::span<const std::uint32_t> patches, const RowSink& sink) override {
+    void rows(std::span<const std::uint32_t> patches, const Sink& sink) override {
         start();
         try {
-            serve(patches, [&](std::uint32_t patch, const RowView& row) {
+            serve(patches, [&](std::uint32_t patch, const RawRow& row) {
+                stop_if_interrupted();
                 hemicubes_ += geometry_->eyes.of(patch).size();
                 sink(patch, row);
             });
@@ -229,7 +237,7 @@ private:
         if (!workers_.empty()) {
             return;
         }
-        const std::string bytes = pack(*geometry_, settings_, engine_.device);
+        const std::string bytes = pack(*geometry_, settings_, quantity_, engine_.device);
         const SharedMemory geometry("hemi geometry", bytes.size());
         std::memcpy(geometry.data(), bytes.data(), bytes.size());
         std::uint32_t jobs =
@@ -283,7 +291,7 @@ private:
         return jobs;
     }
 
-    void serve(std::span<const std::uint32_t> patches, const RowSink& sink) {
+    void serve(std::span<const std::uint32_t> patches, const Sink& sink) {
         const auto jobs = jobs_of(patches);
         std::size_t next = 0;
         std::size_t done = 0;
@@ -334,13 +342,13 @@ private:
         }
     }
 
-    void deliver(const WorkerProcess& worker, const FromWorker& chunk, const RowSink& sink) const {
+    void deliver(const WorkerProcess& worker, const FromWorker& chunk, const Sink& sink) const {
         const RowHead* heads = layout_.heads(worker.results(), chunk.slot);
         const std::uint32_t* columns = layout_.columns(worker.results(), chunk.slot);
         const float* values = layout_.values(worker.results(), chunk.slot);
         const std::uint8_t* visibility = layout_.visibility(worker.results(), chunk.slot);
         for (std::uint32_t r = 0; r < chunk.rows; ++r) {
-            RowView row;
+            RawRow row;
             row.columns = {columns, heads[r].entries};
             row.values = {values, heads[r].entries};
             if (visibility != nullptr) {
@@ -358,6 +366,7 @@ private:
     std::unique_ptr<const EngineGeometry> geometry_;
     std::uint32_t size_;
     HemicubeSettings settings_;
+    RowQuantity quantity_;
     EngineSettings engine_;
     ResultSlot layout_;
     std::vector<WorkerProcess> workers_;
@@ -367,10 +376,10 @@ private:
 
 } // namespace
 
-std::unique_ptr<RowProvider> make_worker_pool(std::unique_ptr<const EngineGeometry> geometry,
-                                              const HemicubeSettings& settings,
-                                              const EngineSettings& engine) {
-    return std::make_unique<WorkerPool>(std::move(geometry), settings, engine);
+std::unique_ptr<RawRowProvider> make_worker_pool(std::unique_ptr<const EngineGeometry> geometry,
+                                                 const HemicubeSettings& settings, RowQuantity quantity,
+                                                 const EngineSettings& engine) {
+    return std::make_unique<WorkerPool>(std::move(geometry), settings, quantity, engine);
 }
 
 } // namespace hemi

@@ -9,8 +9,9 @@ namespace hemi {
 
 /// Rows from worker processes: one per core on software OpenGL, a single one on a GPU.
 /// @throws InvalidArgument, NoDevice, GlError, Error as make_hemicube_engine, on first use.
-[[nodiscard]] std::unique_ptr<RowProvider> make_worker_pool(std::unique_ptr<const EngineGeometry> geometry,
-                                                            const HemicubeSettings& settings,
-                                                            const EngineSettings& engine);
+[[nodiscard]] std::unique_ptr<RawRowProvider> make_worker_pool(std::unique_ptr<const EngineGeometry> geometry,
+                                                               const HemicubeSettings& settings,
+                                                               RowQuantity quantity,
+                                                               const EngineSettings& engine);
 
 } // namespace hemi

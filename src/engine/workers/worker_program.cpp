@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 fs::path own_folder() {
     Dl_info info{};
     // A function's address as an object's: POSIX promises that dladdr can take it.
-    if (dladdr(reinterpret_cast<const void*>(&find_worker_program), &info) == 0 || info.dli_fname == nullptr) {
+    if (dladdr(reinterpret_cast<const void*>(&find_worker_program), &info) == 0 ||
+        info.dli_fname == nullptr) {
         return {};
     }
     std::error_code error;

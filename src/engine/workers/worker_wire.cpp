@@ -2,17 +2,33 @@
 
 #include "hemi/core/error.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 namespace hemi {
 
 namespace {
 
-// "HEMI", and the sizes of what travels, so that another build is noticed.
-constexpr std::uint64_t magic = 0x494D4548u | (std::uint64_t{sizeof(DrawPolygon)} << 32) |
-                                (std::uint64_t{sizeof(EyePoint)} << 44) |
-                                (std::uint64_t{sizeof(FromWorker)} << 52);
+/// What the geometry and a refusal begin with. No later build may change these, nor that the first array of
+/// the geometry is worker_build() in characters.
+constexpr std::string_view geometry_magic = "HEMIGEOM";
+constexpr std::string_view refusal_magic = "HEMIREFU";
+
+/// Of the sizes of all that travels, and what else both sides must agree on. FNV-1a.
+constexpr std::uint32_t layout_hash() {
+    constexpr std::array<std::size_t, 12> sizes{
+        sizeof(ToWorker),    sizeof(FromWorker), sizeof(RowHead),     sizeof(HemicubeSettings),
+        sizeof(RowQuantity), sizeof(Vec3),       sizeof(DrawPolygon), sizeof(OutlineCorner),
+        sizeof(EyePoint),    sizeof(double),     result_slots,        FormFactorMatrix::block_rows};
+    std::uint32_t hash = 2166136261u;
+    for (const std::size_t size : sizes) {
+        hash = (hash ^ static_cast<std::uint32_t>(size)) * 16777619u;
+    }
+    return hash;
+}
 
 template <typename T>
 void append(std::string& bytes, std::span<const T> values) {
@@ -70,8 +86,8 @@ private:
 
 } // namespace
 
-ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings)
-    : with_visibility_(settings.quantity == RowQuantity::visibility) {
+ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings, RowQuantity quantity)
+    : with_visibility_(quantity == RowQuantity::visibility) {
     constexpr std::uint64_t texels_a_chunk = 1u << 19;
     const std::uint64_t texels = std::uint64_t{3} * settings.resolution * settings.resolution;
     const std::uint64_t row_texels = texels * std::max(settings.eye_points, settings.near_eye_points);
@@ -85,11 +101,42 @@ ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings)
     bytes_ = (bytes_ + page - 1) / page * page;
 }
 
-std::string pack(const EngineGeometry& geometry, const HemicubeSettings& settings,
+std::string worker_build() {
+    return fmt::format(HEMI_VERSION " (layout {:08x})", layout_hash());
+}
+
+void check_same_build(const std::string& program, const std::string& worker) {
+    if (program != worker) {
+        throw OtherBuild(
+            fmt::format("the worker program is of hemi {}, and hemi {} started it; install both from "
+                        "one build, or let HEMI_WORKER name the worker program that belongs to "
+                        "the library",
+                        worker, program));
+    }
+}
+
+std::string refusal_packet(const OtherBuild& reason) {
+    std::string packet(refusal_magic);
+    packet += reason.what();
+    packet.resize(std::min(packet.size(), sizeof(FromWorker))); // what a program has room for
+    return packet;
+}
+
+std::optional<std::string> refusal_reason(std::span<const char> packet) {
+    const std::string_view text(packet.data(), packet.size());
+    if (!text.starts_with(refusal_magic)) {
+        return std::nullopt;
+    }
+    return std::string(text.substr(refusal_magic.size()));
+}
+
+std::string pack(const EngineGeometry& geometry, const HemicubeSettings& settings, RowQuantity quantity,
                  const std::string& device) {
     std::string bytes;
-    append(bytes, magic);
+    bytes.append(geometry_magic);
+    append(bytes, std::span<const char>(worker_build()));
     append(bytes, settings);
+    append(bytes, quantity);
     append(bytes, std::span<const char>(device));
     const DrawList& list = geometry.list;
     append(bytes, std::span<const Vec3>(list.vertices));
@@ -105,12 +152,19 @@ std::string pack(const EngineGeometry& geometry, const HemicubeSettings& setting
 }
 
 UnpackedGeometry unpack(std::span<const std::byte> bytes) {
-    Unpacker from(bytes);
-    if (from.value<std::uint64_t>() != magic) {
-        throw Error("worker: the geometry is of another version of the program");
+    if (bytes.size() < geometry_magic.size() ||
+        std::memcmp(bytes.data(), geometry_magic.data(), geometry_magic.size()) != 0) {
+        throw OtherBuild(
+            fmt::format("the worker program is of hemi {}, and another version of hemi started it; "
+                        "install both from one build",
+                        worker_build()));
     }
+    Unpacker from(bytes.subspan(geometry_magic.size()));
+    const auto program = from.array<char>();
+    check_same_build({program.begin(), program.end()}, worker_build());
     UnpackedGeometry result;
     result.settings = from.value<HemicubeSettings>();
+    result.quantity = from.value<RowQuantity>();
     const auto device = from.array<char>();
     result.device.assign(device.begin(), device.end());
     DrawList& list = result.geometry.list;

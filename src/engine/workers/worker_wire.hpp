@@ -1,19 +1,22 @@
 #pragma once
 
 #include "engine/hemicube/gl_rows.hpp"
+#include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
 
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
 
 namespace hemi {
 
-// What a program and its workers say to each other. Both are the same build on the same machine, so
-// structures travel as they lie in memory. Items and draw ids: see draw_list.hpp.
+// What a program and its workers say to each other. Both must be of the same build, which the worker checks,
+// and are on the same machine, so structures travel as they lie in memory. Items and draw ids: see
+// draw_list.hpp.
 //
 // A worker finds three descriptors: a packet socket, the geometry (read-only), and its result buffer. The
 // program sends jobs; the worker answers each with one or more chunks of rows, in order, which lie in one of
@@ -56,7 +59,7 @@ struct RowHead {
 /// Where things lie in a result slot.
 class ResultSlot {
 public:
-    ResultSlot(std::uint32_t patches, const HemicubeSettings& settings);
+    ResultSlot(std::uint32_t patches, const HemicubeSettings& settings, RowQuantity quantity);
 
     /// Most rows in a chunk: few enough that a chunk takes a fraction of a second.
     [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
@@ -83,15 +86,35 @@ private:
     std::size_t bytes_;
 };
 
+/// Version of this library and a hash of the layout of all that travels: what must be equal in a program and
+/// its workers.
+[[nodiscard]] std::string worker_build();
+
+/// A program and a worker are of different builds.
+class OtherBuild : public Error {
+public:
+    using Error::Error;
+};
+/// @param program,worker  worker_build() of each
+/// @throws OtherBuild that names both if they differ
+void check_same_build(const std::string& program, const std::string& worker);
+
+/// The packet by which a worker refuses a program of another build. Not a FromWorker, whose layout may be
+/// what differs: eight letters and the reason. No later build may change it.
+[[nodiscard]] std::string refusal_packet(const OtherBuild& reason);
+/// The reason, if the packet is a refusal.
+[[nodiscard]] std::optional<std::string> refusal_reason(std::span<const char> packet);
+
 /// Geometry and settings as bytes, and back. `device` is what the worker opens.
 [[nodiscard]] std::string pack(const EngineGeometry& geometry, const HemicubeSettings& settings,
-                               const std::string& device);
+                               RowQuantity quantity, const std::string& device);
 struct UnpackedGeometry {
     EngineGeometry geometry;
     HemicubeSettings settings;
+    RowQuantity quantity = RowQuantity::form_factors;
     std::string device;
 };
-/// @throws Error if the bytes are not what pack() made.
+/// @throws OtherBuild if another build made the bytes; Error if they are not what pack() made.
 [[nodiscard]] UnpackedGeometry unpack(std::span<const std::byte> bytes);
 
 } // namespace hemi
