@@ -95,17 +95,17 @@ TEST_CASE("Viewer: closing the window while it solves ends the workers", "[viewe
     CHECK(left == 0);
 }
 
-TEST_CASE("Viewer: README tells what mouse and keys do as F1 tells it", "[viewer]") {
+TEST_CASE("Viewer: the page on the window lists mouse and keys as F1 does", "[viewer]") {
     std::ifstream keys(HEMI_SOURCE_DIR "/src/viewer/keys.cpp");
     const std::string source{std::istreambuf_iterator<char>(keys), {}};
-    std::ifstream guide(HEMI_SOURCE_DIR "/README.md");
-    const std::string readme{std::istreambuf_iterator<char>(guide), {}};
+    std::ifstream guide(HEMI_SOURCE_DIR "/tools/doxygen/pages/window.md");
+    const std::string page{std::istreambuf_iterator<char>(guide), {}};
     const std::regex line(R"re(\{"([^"]+)", "([^"]+)"\})re");
     std::size_t lines = 0;
     for (std::sregex_iterator match(source.begin(), source.end(), line), end; match != end; ++match) {
         ++lines;
         INFO((*match)[1] << ": " << (*match)[2]);
-        CHECK(readme.find("| " + (*match)[1].str() + " | " + (*match)[2].str() + " |") != std::string::npos);
+        CHECK(page.find("| " + (*match)[1].str() + " | " + (*match)[2].str() + " |") != std::string::npos);
     }
     CHECK(lines > 20);
 }
