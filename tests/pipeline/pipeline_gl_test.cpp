@@ -71,9 +71,10 @@ private:
 /// A folder that goes with the test.
 class Folder {
 public:
-    Folder()
-        : path_(std::filesystem::temp_directory_path() / ("hemi-pipeline-" + std::to_string(std::rand()))) {
-        std::filesystem::create_directory(path_);
+    Folder() {
+        std::string name = (std::filesystem::temp_directory_path() / "hemi-pipeline-XXXXXX").string();
+        REQUIRE(mkdtemp(name.data()) != nullptr);
+        path_ = name;
     }
     ~Folder() { std::filesystem::remove_all(path_); }
     Folder(const Folder&) = delete;

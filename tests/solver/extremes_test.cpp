@@ -386,7 +386,7 @@ TEST_CASE("conjugate gradients: refuse rows that are not reciprocal and areas th
     CHECK_THAT(refusal<InvalidArgument>(problem, gradients()), Catch::Contains("need the areas"));
     problem.areas.assign(50, 1.0);
     CHECK_THAT(refusal<InvalidArgument>(problem, gradients()),
-               Catch::Contains("--repair") && Catch::Contains("patches "));
+               Catch::Contains("repair the rows") && Catch::Contains("patches "));
     problem.areas.pop_back();
     CHECK_THAT(refusal<InvalidArgument>(problem, gradients()), Catch::Contains("49 areas"));
     problem.areas.push_back(0.0);
