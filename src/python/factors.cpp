@@ -9,8 +9,6 @@
 #include "python/diagnosis.hpp"
 #include "python/work.hpp"
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <limits>
 #include <numeric>
