@@ -118,14 +118,21 @@ def test_single_plain_rows_are_the_programs(scenes, program, tmp_path):
 
 
 @pytest.mark.parametrize("method, tolerance, settings", [
-    ("direct", 1e-6, {}), ("contour", 1e-4, {}), ("montecarlo", 3e-3, {"rays": 16384, "seed": 3}),
-    ("hemisphere", 3e-2, {"resolution": 512}),
+    ("direct", 1e-6, {}), ("contour", 1e-4, {}), ("montecarlo", 5e-3, {"rays": 65536, "seed": 3}),
 ])
 def test_baseline_methods_find_the_cube(make_box, method, tolerance, settings):
     factors = hemi.form_factors(make_box(), method=method, estimate=False, **settings)
     assert factors.matrix[0, 1] == pytest.approx(OPPOSITE, rel=tolerance)
     assert factors.matrix[0, 2] == pytest.approx(ADJACENT, rel=tolerance)
     assert factors.settings["method"] == method and factors.settings["preset"] is None
+
+
+def test_the_hemisphere_finds_what_the_centre_of_a_face_sees(make_box):
+    factors = hemi.form_factors(make_box(), method="hemisphere", resolution=512, estimate=False)
+    slope = 0.5 / numpy.sqrt(1.25)
+    opposite = 4 / numpy.pi * slope * numpy.arctan(slope)
+    assert factors.matrix[0, 1] == pytest.approx(opposite, rel=2e-3)
+    assert factors.matrix[0, 2] == pytest.approx((1 - opposite) / 4, rel=2e-3)
 
 
 @pytest.mark.parametrize("arguments, words", [
@@ -184,7 +191,9 @@ def test_what_is_saved_is_loaded(small_box, small_factors, tmp_path, extension):
     if extension == "hff":
         alone = hemi.load(str(path))
         assert alone.scene is None and alone.groups == small_box.groups and alone.check()["ok"]
-        assert alone.settings == small_factors.settings
+        stored = {"near_eye_points"} ^ set(alone.settings) # the file does not have these points
+        assert {name: alone.settings[name] for name in stored} == {
+            name: small_factors.settings[name] for name in stored}
         assert alone.estimate.row_rms == small_factors.estimate.row_rms
         assert (hemi.load(path, repair="none").matrix != small_factors.matrix).nnz > 0
 

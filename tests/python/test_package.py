@@ -39,12 +39,24 @@ def arguments_of_stub(function):
     return names, optional
 
 
+def split_at_commas(text):
+    """Parts between the commas that are in no bracket."""
+    parts, depth = [""], 0
+    for letter in text:
+        depth += (letter in "[(") - (letter in "])")
+        if letter == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return [part.strip() for part in parts]
+
+
 def arguments_of_module(function):
     """The same, of the signature that pybind11 writes at the beginning of the docstring."""
     signature = function.__doc__.splitlines()[0]
     inside = signature[signature.index("(") + 1:signature.rindex(") ->")]
-    names = [name for name in re.findall(r"(?:^|, )(\w+): ", inside) if name != "self"]
-    return names, set(re.findall(r"(\w+): [^=]*? = ", inside))
+    parts = [part for part in split_at_commas(inside) if ": " in part and not part.startswith("self: ")]
+    return [part.split(":")[0] for part in parts], {part.split(":")[0] for part in parts if " = " in part}
 
 
 def public_members(type_):

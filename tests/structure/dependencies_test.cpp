@@ -21,14 +21,16 @@ const std::map<std::string, std::set<std::string>> allowed{
     {"io", {"core", "scene", "matrix", "solver"}},
     {"display", {"core", "scene", "gl"}},
     {"worker", {"core", "engine"}},
+    {"python", {"core", "scene", "matrix", "engine", "solver", "io", "display", "pipeline"}},
     {"viewer", {"core", "scene", "matrix", "gl", "engine", "solver", "io", "display"}},
     {"cli", {"core", "scene", "matrix", "gl", "engine", "solver", "io", "display", "viewer"}}};
 
 /// Libraries that stay behind one module, by the beginning of the header's name.
 const std::map<std::string, std::string> at_home{
-    {"glad/", "gl"},  {"EGL/", "gl"},         {"GL/", "gl"},       {"GLFW/", "viewer"},
-    {"CLI/", "cli"},  {"stb", "io"},          {"tiny_obj", "io"},  {"zip.h", "io"},
-    {"zlib.h", "io"}, {"embree3/", "engine"}, {"imgui", "viewer"}, {"backends/imgui", "viewer"}};
+    {"glad/", "gl"},        {"EGL/", "gl"},         {"GL/", "gl"},       {"GLFW/", "viewer"},
+    {"CLI/", "cli"},        {"stb", "io"},          {"tiny_obj", "io"},  {"zip.h", "io"},
+    {"zlib.h", "io"},       {"embree3/", "engine"}, {"imgui", "viewer"}, {"backends/imgui", "viewer"},
+    {"pybind11/", "python"}};
 
 std::vector<std::string> split(const std::string& path) {
     std::vector<std::string> parts;

@@ -70,14 +70,15 @@ def main():
     })
     scene = hemi.Scene(vertices, faces, groups=names)
     lamp = int(numpy.flatnonzero(scene.group_of == scene.groups.index("lamp"))[0])
-    factors = hemi.form_factors(scene, patches=[lamp])
+    factors = hemi.form_factors(scene, "exact", patches=[lamp])
     row = factors.row(lamp)
     irradiance = row.dense() / scene.areas
     print(f"{scene}: sum of row {lamp} {row.sum:.4f}, environment {row.environment:.4f}")
 
     figure = pyplot.figure(figsize=(11, 4.8))
     colours = pyplot.get_cmap("inferno")
-    scale = matplotlib.colors.Normalize(0, irradiance.max())
+    on_floor = scene.group_of == scene.groups.index("floor")
+    scale = matplotlib.colors.Normalize(0, irradiance[on_floor].max()) # the top of the ball has more
     space = figure.add_subplot(1, 2, 1, projection="3d")
     space.add_collection3d(Poly3DCollection(scene.corners, facecolors=colours(scale(irradiance))))
     space.set(xlim=(-2, 2), ylim=(-2, 2), zlim=(0, 2.2), xlabel="x, m", ylabel="y, m", zlabel="z, m",
@@ -85,12 +86,12 @@ def main():
     space.set_box_aspect((4, 4, 2.2))
     space.view_init(elev=18, azim=-70)
 
-    floor = irradiance[scene.group_of == scene.groups.index("floor")]
     flat = figure.add_subplot(1, 2, 2)
     # The patches of the floor go with y fastest.
-    image = flat.imshow(floor.reshape(cells, cells).T, origin="lower", extent=(-2, 2, -2, 2), cmap=colours, norm=scale)
+    seen = irradiance[on_floor].reshape(cells, cells).T
+    image = flat.imshow(seen, origin="lower", extent=(-2, 2, -2, 2), cmap=colours, norm=scale)
     flat.set(xlabel="x, m", ylabel="y, m", title="The floor, from above")
-    figure.colorbar(image, ax=flat, label="F(lamp, j) / A(j), W/m² per watt of the lamp")
+    figure.colorbar(image, ax=flat, label="F(lamp, j) / A(j), W/m² per watt of the lamp", extend="max")
     figure.tight_layout()
     figure.savefig(arguments.output, dpi=120)
 
