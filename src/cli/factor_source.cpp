@@ -43,9 +43,8 @@ FormFactors reuse_rows(const std::filesystem::path& path, const LoadedScene& loa
 void report_checkpoint(const RowCheckpoint* checkpoint, const Terminal& terminal) {
     if (checkpoint != nullptr && checkpoint->rows() > 0) {
         terminal.note(
-            fmt::format("{} of the checkpoint {} are complete; the same command with --resume goes on "
-                        "from there",
-                        plural(checkpoint->rows(), "row", "rows"), checkpoint->path().string()));
+            fmt::format("{} kept in the checkpoint {}; the same command with --resume goes on from there",
+                        plural(checkpoint->rows(), "row is", "rows are"), checkpoint->path().string()));
     }
 }
 

@@ -1,6 +1,6 @@
 #include "cli/terminal.hpp"
 
-#include "io/formats/text_scan.hpp"
+#include "hemi/core/text.hpp"
 
 #include <fmt/format.h>
 
@@ -49,7 +49,7 @@ void Terminal::write(std::string_view label, std::string_view colour, std::strin
     if (!label.empty()) {
         text += colours_ ? fmt::format("\x1b[{}m{}\x1b[0m: ", colour, label) : fmt::format("{}: ", label);
     }
-    text += io::printable(message, true);
+    text += printable(message, true);
     text += '\n';
     std::fwrite(text.data(), 1, text.size(), stderr);
 }

@@ -47,4 +47,15 @@ std::string plural(std::uint64_t count, std::string_view one, std::string_view m
     return fmt::format("{} {}", count_text(count), count == 1 ? one : many);
 }
 
+std::string printable(std::string_view text, bool keep_line_ends) {
+    std::string result(text);
+    for (char& letter : result) {
+        const bool control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7F;
+        if (control && !(keep_line_ends && letter == '\n')) {
+            letter = '?';
+        }
+    }
+    return result;
+}
+
 } // namespace hemi

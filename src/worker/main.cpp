@@ -1,5 +1,5 @@
-/// The program in which software OpenGL draws hemicubes: the library starts one for every core. It is of no use
-/// otherwise.
+/// The program in which software OpenGL draws hemicubes: the library starts one for every core. It is of no
+/// use otherwise.
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
 

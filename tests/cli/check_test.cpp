@@ -82,7 +82,7 @@ TEST_CASE("check: a scene with a small gap is called nearly closed", "[cli]") {
     INFO(run.out);
     CHECK(run.status == 0);
     CHECK(run.out_has("nearly closed (from the rows)"));
-    CHECK(run.out_has("if the scene is meant to be closed there are gaps"));
+    CHECK(run.out_has("if the scene is meant to be closed, there are gaps"));
     CHECK(run.err_has("nearly closed"));
     CHECK(run_hemi(quick({"check", path, "--enclosure", "open"})).err.empty());
     const Json json = run_hemi(quick({"check", path, "--json"})).json();
@@ -99,11 +99,11 @@ TEST_CASE("check: covered patches are told from turned surfaces", "[cli]") {
     const Outcome covered = run_hemi(quick({"check", box, "--max-row-error", "1e-3"}));
     INFO(covered.out);
     CHECK(covered.status == 0); // covered patches are no error
-    CHECK(covered.out_has("under or inside something"));
+    CHECK(covered.out_has("under or inside other geometry"));
     const Json json = run_hemi(quick({"check", box, "--json"})).json();
     CHECK(json["covered"]["count"] > 0);
     CHECK(json["turned"].empty());
-    CHECK(run_hemi(quick({"factors", box})).err_has("covered"));
+    CHECK(run_hemi(quick({"factors", box})).err_has("buried"));
 
     Json turned = cube(4);
     Json& polygon = turned["surfaces"][1]["polygon"];

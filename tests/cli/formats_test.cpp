@@ -119,7 +119,8 @@ TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]"
     refused({"convert", hff, vtp}, 2, "a .vtp needs the patches");
     refused({"convert", hres, directory.path("x.npz")}, 2, "can be written as .vtp");
     refused({"convert", hff, directory.path("x.npz"), "--factors", hff, "--row", "1"}, 2, "are for a .hres");
-    refused({"convert", hres, vtp, "--factors", hff, "--row", "24"}, 2, "--row 24: there are 24 rows");
+    refused({"convert", hres, vtp, "--factors", hff, "--row", "24"}, 2,
+            "row 24: there are 24 rows, counted from 0 (--row)");
     refused({"convert", hres, vtp, "--row", "1"}, 2, "--factors");
     refused({"convert", hres, vtp, "--factors", hff, "--row", "3", "--row", "3"}, 2,
             "--row 3: is given twice");

@@ -27,7 +27,7 @@ TEST_CASE("factors: every method finds the factors of the cube", "[cli]") {
         CHECK(factor("floor", "left") == Approx(0.20004377607540316).margin(limit));
     }
     const Outcome direct = run_hemi({"factors", scene, "--method", "direct"});
-    CHECK(direct.err_has("as if nothing lay between"));
+    CHECK(direct.err_has("unoccluded"));
 }
 
 TEST_CASE("factors: options that say nothing to a method are refused", "[cli]") {

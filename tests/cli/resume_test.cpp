@@ -102,7 +102,7 @@ TEST_CASE("Resume: finished rows are not computed again, and others are", "[cli]
     SECTION("other settings are refused") {
         const Outcome run = run_hemi(with(plain, {"--resume", "--seed", "5"}));
         CHECK(run.status == 3);
-        CHECK(run.err_has("a.hff.rows: holds rows of another run: seed 0, here 5"));
+        CHECK(run.err_has("a.hff.rows: this checkpoint holds rows of another run: seed 0, here 5"));
         CHECK(directory.has("a.hff.rows"));
     }
     SECTION("the same settings go on") {

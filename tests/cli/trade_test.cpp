@@ -59,11 +59,11 @@ TEST_CASE("error target: the cheapest settings that do are found, said and store
     const Outcome loose = run_hemi(on_osmesa({"factors", scene, "--error-target", "0.1", "--json"}));
     REQUIRE(loose.status == 0);
     CHECK(loose.json()["chosen_for"] ==
-          "--preset plain --eye-points 1 --resolution 64 for --error-target 0.1");
+          "preset plain, eye points 1, resolution 64, for an error target of 0.1");
     const Outcome close =
         run_hemi(on_osmesa({"factors", scene, "--error-target", "1e-5", "--json", "-o", file}));
     REQUIRE(close.status == 0);
-    CHECK(close.json()["chosen_for"] == "--preset fast for --error-target 1e-05");
+    CHECK(close.json()["chosen_for"] == "preset fast, for an error target of 1e-05");
     CHECK(close.json()["error_estimate"]["row"]["rms"] <= 1e-5);
     const Json info = run_hemi({"info", file, "--json"}).json();
     CHECK(info["preset"] == "fast");
@@ -72,9 +72,9 @@ TEST_CASE("error target: the cheapest settings that do are found, said and store
     const Outcome solved = run_hemi(on_osmesa(
         {"solve", scene, "--error-target", "1e-5", "--json", "--result", directory.path("a.hres")}));
     REQUIRE(solved.status == 0);
-    CHECK(solved.json()["chosen_for"] == "--preset fast for --error-target 1e-05");
+    CHECK(solved.json()["chosen_for"] == "preset fast, for an error target of 1e-05");
     CHECK(solved.json()["error_estimate"]["radiosity"]["rms"] <= 1e-5);
-    CHECK(run_hemi({"info", directory.path("a.hres")}).out_has("for --error-target 1e-05"));
+    CHECK(run_hemi({"info", directory.path("a.hres")}).out_has("for an error target of 1e-05"));
     CHECK(run_hemi(on_osmesa({"solve", scene, "--error-target", "1e-5"})).out_has("chosen"));
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("error target: what cannot be met is status 5, what contradicts it is 
     for (const char* command : {"factors", "solve"}) {
         const Outcome missed = run_hemi(on_osmesa({command, scene, "--error-target", "1e-15"}));
         CHECK(missed.status == 5);
-        CHECK(missed.err_has("--error-target 1e-15 cannot be met: the best there is"));
+        CHECK(missed.err_has("an error target of 1e-15 cannot be met: the best settings"));
         CHECK(missed.out.empty());
         const Outcome poor =
             run_hemi(on_osmesa({command, scene, "--error-target", "1e-4", "--max-memory", "1K"}));
@@ -126,7 +126,7 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
     REQUIRE(trade["measurements"].size() > 4);
     CHECK(trade["omitted"].empty());
     REQUIRE(trade["best"].is_string());
-    CHECK(trade["advice"].get<std::string>().starts_with("Take " + trade["best"].get<std::string>()));
+    CHECK(trade["advice"].get<std::string>().starts_with("Recommended: " + trade["best"].get<std::string>()));
     double last = 0.0;
     std::size_t on_front = 0;
     double least = 1e300;
@@ -152,7 +152,7 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
     const Outcome text = run_hemi(on_osmesa({"trade", scene, "--budget", "60s"}));
     CHECK(text.status == 0);
     CHECK(text.out_has("radiosity"));
-    CHECK(text.out_has("Take --"));
+    CHECK(text.out_has("Recommended: --"));
 }
 
 TEST_CASE("trade: what it cannot do is refused", "[cli]") {

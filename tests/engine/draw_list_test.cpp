@@ -3,6 +3,8 @@
 #include "hemi/core/error.hpp"
 #include "support/scenes.hpp"
 
+#include "hemi/engine/engine.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>

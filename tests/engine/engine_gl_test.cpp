@@ -416,7 +416,7 @@ TEST_CASE("providers: an interrupt stops them at the next row", "[engine][gl]") 
         CHECK(stopped_after(*make_hemicube_engine(mesh, {.resolution = 32}, where), 3) == 3);
         CHECK(stopped_after(*make_visibility_engine(mesh, {.resolution = 32}, where), 3) == 3);
     }
-    CHECK(stopped_after(*make_baseline(mesh, {.method = BaselineMethod::contour}), 3) == 3);
+    CHECK(stopped_after(*make_baseline(mesh, {.method = Method::contour}), 3) == 3);
 }
 
 TEST_CASE("hemicube rows: one open patch sees the environment alone", "[engine][gl]") {

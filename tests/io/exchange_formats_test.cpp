@@ -261,7 +261,7 @@ TEST_CASE("View3D factors: header, areas, rows and emissivities are where View3D
     file.matrix.set_block(
         {0, {0, 1, 2, 2}, {1, 0}, {1.0f / 3.0f, 1e-7f}, {}, {0, 0, 0}, {0, 0, 0}, {1, 1, 1}});
     file.areas = {1.0, 2.0 / 3.0, 3e6};
-    file.enclosure = "closed";
+    file.enclosure = Enclosure::closed;
     const std::vector<double> emissivity{0.5, 0.0, 1.0};
     io::write_view3d(folder / "a.txt", file, io::View3dFormat::text, emissivity);
     const std::string text = io::read_file(folder / "a.txt");

@@ -21,14 +21,15 @@ FormFactors sample(std::uint32_t size, bool with_visibility = true) {
     }
     file.groups = {"floor", "Decke ä \"1\"", ""};
     file.geometry_hash = 0xFEDCBA9876543210u;
-    file.provenance.preset = "exact";
-    file.provenance.method = "montecarlo";
+    file.provenance.preset = Preset::exact;
+    file.provenance.exchange_rule = ExchangeRule::exact;
+    file.provenance.method = Method::montecarlo;
     file.provenance.resolution = 512;
     file.provenance.eye_points = 9;
     file.provenance.shadow_rays = 16;
     file.provenance.seed = std::numeric_limits<std::uint64_t>::max();
     file.provenance.renderer = "Some Renderer (line, 4.5)";
-    file.enclosure = "closed";
+    file.enclosure = Enclosure::closed;
     return file;
 }
 
@@ -57,15 +58,16 @@ void require_equal(const FormFactors& a, const FormFactors& b) {
     REQUIRE(a.group_of == b.group_of);
     REQUIRE(a.touching == b.touching);
     REQUIRE(a.geometry_hash == b.geometry_hash);
-    REQUIRE(a.preset == b.preset);
-    REQUIRE(a.method == b.method);
-    REQUIRE(a.resolution == b.resolution);
-    REQUIRE(a.eye_points == b.eye_points);
-    REQUIRE(a.shadow_rays == b.shadow_rays);
-    REQUIRE(a.seed == b.seed);
-    REQUIRE(a.renderer == b.renderer);
+    REQUIRE(a.provenance.preset == b.provenance.preset);
+    REQUIRE(a.provenance.exchange_rule == b.provenance.exchange_rule);
+    REQUIRE(a.provenance.method == b.provenance.method);
+    REQUIRE(a.provenance.resolution == b.provenance.resolution);
+    REQUIRE(a.provenance.eye_points == b.provenance.eye_points);
+    REQUIRE(a.provenance.shadow_rays == b.provenance.shadow_rays);
+    REQUIRE(a.provenance.seed == b.provenance.seed);
+    REQUIRE(a.provenance.renderer == b.provenance.renderer);
     REQUIRE(a.enclosure == b.enclosure);
-    REQUIRE(a.chosen_for == b.chosen_for);
+    REQUIRE(a.provenance.chosen_for == b.provenance.chosen_for);
     REQUIRE(a.reference.entries() == b.reference.entries());
     if (a.reference.entries() > 0) {
         require_same_entries(a.reference, b.reference);
@@ -144,6 +146,27 @@ TEST_CASE("HFF: any flipped bit is noticed", "[io]") {
     }
 }
 
+TEST_CASE("HFF: a file of before, which does not say the rule of unoccluded factors, has its preset's",
+          "[io]") {
+    const Folder folder;
+    for (const Preset preset : {Preset::standard, Preset::exact}) {
+        FormFactors file = sample(10);
+        file.provenance.preset = preset;
+        file.provenance.exchange_rule = ExchangeRule::exact;
+        file.provenance.near_eye_points = 64;
+        io::write_hff(folder / "a.hff", file);
+        CHECK(io::read_hff(folder / "a.hff").provenance.exchange_rule == ExchangeRule::exact);
+        CHECK(io::read_hff(folder / "a.hff").provenance.near_eye_points == 64);
+        const std::string bytes = io::read_file(folder / "a.hff");
+        const std::string key = "exchange_rule";
+        const std::size_t offset = bytes.find(key) - chunk_start(bytes, 0) - 16;
+        const auto old = folder.write("old.hff", with_payload(bytes, 0, offset, "unknown_words"));
+        const Provenance read = io::read_hff(old).provenance;
+        CHECK(read.preset == preset);
+        CHECK(read.exchange_rule == (preset == Preset::exact ? ExchangeRule::exact : ExchangeRule::standard));
+    }
+}
+
 TEST_CASE("HFF: lies with a right checksum are noticed, and cost no memory", "[io]") {
     const Folder folder;
     io::write_hff(folder / "a.hff", judged_sample(70));
@@ -164,7 +187,7 @@ TEST_CASE("HFF: lies with a right checksum are noticed, and cost no memory", "[i
         {1, 0, raw(std::nan("")), "chunk AREA: an area of nan"},
         {2, 0, raw(3u), "chunk GRUP: group 3; there are 3"},
         {3, 0, raw(9u), "chunk CONT: shorter than its own counts say"},
-        {3, 4, raw(70u), "chunk CONT: patch 70 in contact"},
+        {3, 4, raw(70u), "chunk CONT: touching patch 70"},
         {4, 0, raw(64u), "starts at row 64, where row 0 must come"},
         {4, 4, raw(63u), "chunk ROWS: "},
         {4, 4, raw(0xFFFFFFFFu), "chunk ROWS: shorter than its own counts say"},

@@ -47,13 +47,13 @@ Json entries_of(const FormFactorMatrix& factors) {
 
 TEST_CASE("Elmer: rows with their counts, from 1, empty rows included", "[io]") {
     const Folder folder;
-    io::write_elmer(folder / "ViewFactors.dat", small_file().factors, io::ElmerFormat::text);
+    io::write_elmer(folder / "ViewFactors.dat", small_file().matrix, io::ElmerFormat::text);
     REQUIRE(io::read_file(folder / "ViewFactors.dat") == "2\n1 2 0.333333343\n1 3 0.5\n0\n1\n3 2 1\n");
 }
 
 TEST_CASE("Elmer: the binary file is 32-bit counts and columns and 64-bit factors", "[io]") {
     const Folder folder;
-    io::write_elmer(folder / "a.bin", small_file().factors, io::ElmerFormat::binary);
+    io::write_elmer(folder / "a.bin", small_file().matrix, io::ElmerFormat::binary);
     std::string expected;
     const auto put = [&expected](auto number) {
         expected.append(reinterpret_cast<const char*>(&number), sizeof number);
@@ -139,13 +139,13 @@ TEST_CASE("View3D factors: text and binary read back, with areas and enclosure",
     for (int i = 0; i < 150; ++i) {
         file.areas.push_back(0.125 * (i + 1));
     }
-    file.enclosure = "closed";
+    file.enclosure = Enclosure::closed;
     for (const io::View3dFormat format : {io::View3dFormat::text, io::View3dFormat::binary}) {
         io::write_view3d(folder / "a", file, format);
         const FormFactors back = io::read_view3d(folder / "a", format);
         require_same_entries(file.matrix, back.matrix);
         REQUIRE(back.areas == file.areas);
-        REQUIRE(back.enclosure == "closed");
+        REQUIRE(back.enclosure == Enclosure::closed);
     }
 }
 
@@ -167,7 +167,7 @@ TEST_CASE("View3D factors: what is wrong is named with its place, its value and 
     const std::string head = "View3D 3.3 0 0 0 2\n";
     REQUIRE(
         io::read_view3d(folder.write("a.txt", head + "1 2\n0 0.5\n0.25 0\n0.9 0.9\n"), io::View3dFormat::text)
-            .factors.entries() == 2);
+            .matrix.entries() == 2);
     const std::vector<std::pair<std::string, std::string>> texts{
         {"", ":1: \"\"; must be program, version, format"},
         {"View3D 3.3 0 0 2\n", ":1: \"View3D 3.3 0 0 2\"; must be program"},
@@ -264,21 +264,22 @@ TEST_CASE("HDF5: h5py reads rows, patches, groups and what made them", "[io]") {
     }
     file.groups = {"wände \"x\"", "floor"};
     file.provenance.renderer = "llvmpipe";
-    file.provenance.preset = "exact";
+    file.provenance.preset = Preset::exact;
     file.provenance.resolution = 64;
     file.provenance.eye_points = 4;
     file.provenance.seed = 18446744073709551615u;
-    file.enclosure = "closed";
+    file.enclosure = Enclosure::closed;
     file.geometry_hash = 0x0123456789abcdefu;
     file.error = FactorErrorEstimate{};
     file.error->rows.assign(150, 1e-4);
-    io::write_h5(folder / "a.h5", file, "closure");
+    file.repair.emplace().repair = Repair::closure;
+    io::write_h5(folder / "a.h5", file);
 
     Json expected{{"size", 150},
                   {"entries", entries_of(file.matrix)},
                   {"groups", file.groups},
                   {"attributes",
-                   {{"schema", "hemi/factors/1"},
+                   {{"schema", "hemi/factors-hdf5/1"},
                     {"repair", "closure"},
                     {"preset", "exact"},
                     {"method", "hemicube"},
@@ -304,24 +305,23 @@ TEST_CASE("HDF5: arrays of many chunks, and rows of which nothing else is known"
     FormFactors file;
     file.matrix = random_matrix(7000, true); // 140,000 entries: two whole chunks and a part
     REQUIRE(file.matrix.entries() > 2 * 65536);
-    io::write_h5(folder / "a.h5", file, "none");
+    io::write_h5(folder / "a.h5", file);
     run_h5py(
         folder / "a.h5",
         folder.write("expected.json", Json{{"size", 7000},
                                            {"entries", entries_of(file.matrix)},
-                                           {"attributes", {{"schema", "hemi/factors/1"}, {"repair", "none"}}}}
+                                           {"attributes", {{"schema", "hemi/factors-hdf5/1"}, {"repair", "none"}}}}
                                           .dump()));
 }
 
 TEST_CASE("HDF5: what cannot be written leaves no file", "[io]") {
     const Folder folder;
     FormFactors file = small_file();
-    require_parts(message_of<IoError>([&] { io::write_h5("/dev/full", file, "none"); }),
+    require_parts(message_of<IoError>([&] { io::write_h5("/dev/full", file); }),
                   {"/dev/full: cannot be written: No space left"});
-    require_parts(message_of<IoError>([&] { io::write_h5(folder / "no/a.h5", file, "none"); }),
-                  {"No such file"});
+    require_parts(message_of<IoError>([&] { io::write_h5(folder / "no/a.h5", file); }), {"No such file"});
     file.areas.pop_back();
-    REQUIRE_THROWS_AS(io::write_h5(folder / "a.h5", file, "none"), InvalidArgument);
+    REQUIRE_THROWS_AS(io::write_h5(folder / "a.h5", file), InvalidArgument);
     REQUIRE(folder.files() == 0);
 }
 

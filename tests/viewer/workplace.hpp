@@ -92,7 +92,7 @@ public:
     [[nodiscard]] FormFactorMatrix factors(const std::string& options) const {
         REQUIRE(run(fmt::format("'{}' factors room.json --device osmesa {} -o room.hff", HEMI_PROGRAM,
                                 options)) == 0);
-        return io::read_hff(path("room.hff")).factors;
+        return io::read_hff(path("room.hff")).matrix;
     }
 
 private:

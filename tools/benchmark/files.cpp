@@ -84,7 +84,7 @@ std::vector<Writer> writers() {
         {".hff", [](const fs::path& path, const FormFactors& file) { io::write_hff(path, file); }},
         {".npz", [](const fs::path& path, const FormFactors& file) { io::write_npz(path, file.matrix); }},
         {".npy", [](const fs::path& path, const FormFactors& file) { io::write_npy(path, file.matrix); }},
-        {".h5", [](const fs::path& path, const FormFactors& file) { io::write_h5(path, file, "none"); }},
+        {".h5", [](const fs::path& path, const FormFactors& file) { io::write_h5(path, file); }},
         {".mtx", [](const fs::path& path, const FormFactors& file) { io::write_mtx(path, file.matrix); }},
         {".csv", [](const fs::path& path, const FormFactors& file) { io::write_csv(path, file.matrix); }},
         {".dat", [](const fs::path& path,
@@ -114,8 +114,8 @@ double seconds_of(const std::function<void()>& work) {
 void measure_writers(Report& report, const TemporaryFolder& folder, unsigned rounds) {
     const FormFactors small = half_full(1000);
     const FormFactors large = half_full(4000);
-    const auto entries = static_cast<double>(large.factors.entries());
-    const double times = entries / static_cast<double>(small.factors.entries());
+    const auto entries = static_cast<double>(large.matrix.entries());
+    const double times = entries / static_cast<double>(small.matrix.entries());
     for (const Writer& writer : writers()) {
         const fs::path path = folder / ("factors" + std::string(writer.extension));
         const std::array<Subject, 2> subjects{

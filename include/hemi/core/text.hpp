@@ -17,4 +17,7 @@ namespace hemi {
 /// "1 patch", "2 patches".
 [[nodiscard]] std::string plural(std::uint64_t count, std::string_view one, std::string_view many);
 
+/// `text` with control characters as "?": names in files must not command a terminal.
+[[nodiscard]] std::string printable(std::string_view text, bool keep_line_ends = false);
+
 } // namespace hemi

@@ -84,4 +84,7 @@ struct DeviceInfo {
 /// Everything that could be used here; makes and destroys a context on each.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
+/// What made the loader of OpenGL's functions: "glad 2.0.2".
+[[nodiscard]] std::string opengl_loader();
+
 } // namespace hemi

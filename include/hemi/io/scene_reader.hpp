@@ -21,8 +21,10 @@ struct SceneReaderOptions {
 /// @throws ParseError or InputError with file, place, value and what would be right.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                Diagnostics& diagnostics);
+/// The same by default options; warnings are not kept.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& path);
 
-/// hemi's JSON: see README, "Scenes". Meshes it names are read relative to the file.
+/// hemi's JSON: see the page on scenes. Meshes it names are read relative to the file.
 [[nodiscard]] Scene read_json_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                     Diagnostics& diagnostics);
 

@@ -1,7 +1,7 @@
 #include "cli/report/text.hpp"
 
 #include "hemi/core/error.hpp"
-#include "io/formats/text_scan.hpp"
+#include "hemi/core/text.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -29,7 +29,7 @@ Table::Table(std::vector<std::string> header, std::size_t left) : rows_{std::mov
 
 void Table::add(std::vector<std::string> row) {
     for (std::string& cell : row) {
-        cell = io::printable(cell);
+        cell = printable(cell);
     }
     rows_.push_back(std::move(row));
 }

@@ -30,4 +30,8 @@ std::vector<DeviceInfo> list_devices() {
     return devices;
 }
 
+std::string opengl_loader() {
+    return gl::loader_version();
+}
+
 } // namespace hemi

@@ -94,17 +94,6 @@ std::optional<double> parse_number(std::string_view word) {
     return value;
 }
 
-std::string printable(std::string_view text, bool keep_line_ends) {
-    std::string result(text);
-    for (char& letter : result) {
-        const bool control = static_cast<unsigned char>(letter) < 0x20 || letter == 0x7F;
-        if (control && !(keep_line_ends && letter == '\n')) {
-            letter = '?';
-        }
-    }
-    return result;
-}
-
 std::string in_quotes(std::string_view text) {
     constexpr std::size_t longest = 60;
     return fmt::format("\"{}{}\"", printable(to_utf8(text.substr(0, longest))),

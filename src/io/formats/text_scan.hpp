@@ -1,5 +1,7 @@
 #pragma once
 
+#include "hemi/core/text.hpp"
+
 #include <charconv>
 #include <cstddef>
 #include <filesystem>
@@ -48,9 +50,6 @@ template <class Integer>
     }
     return value;
 }
-
-/// `text` with control characters as "?": names in files must not command a terminal.
-[[nodiscard]] std::string printable(std::string_view text, bool keep_line_ends = false);
 
 /// `text` in quotes for a message: shortened, control characters as "?".
 [[nodiscard]] std::string in_quotes(std::string_view text);

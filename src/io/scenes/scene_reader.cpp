@@ -64,4 +64,9 @@ Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& op
     return scene;
 }
 
+Scene read_scene(const std::filesystem::path& path) {
+    Diagnostics not_kept;
+    return read_scene(path, {}, not_kept);
+}
+
 } // namespace hemi::io

@@ -1,9 +1,8 @@
-#include "cli/program.hpp"
 #include "support/occluded_reference.hpp"
-#include "support/scene_file.hpp"
 #include "support/scenes.hpp"
 
-#include "hemi/io/factor_file.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/pipeline/form_factors.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -14,10 +13,6 @@
 
 using namespace hemi;
 using namespace hemi::test;
-using cli_test::Directory;
-using cli_test::Outcome;
-using cli_test::run_hemi;
-using cli_test::Words;
 
 namespace {
 
@@ -26,20 +21,17 @@ struct Computed {
     double seconds = 0.0; ///< for the factors
 };
 
-/// All factors of a scene by a preset of the program.
-Computed compute(const Scene& scene, const std::string& preset, const std::vector<std::string>& more = {}) {
-    const Directory directory;
-    const std::string file = directory.path("a.hff");
-    std::vector<std::string> arguments{"factors",  directory.write("scene.json", scene_json(scene)),
-                                       "--preset", preset,
-                                       "--device", "osmesa",
-                                       "-o",       file,
-                                       "--json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome run = run_hemi(arguments);
-    INFO(run.err);
-    REQUIRE(run.status == 0);
-    return {io::read_hff(file).factors, run.json()["seconds"]["factors"]};
+/// Raw factors of a scene by a preset as it ships, on software OpenGL.
+Computed compute(const Scene& scene, Preset preset, std::optional<std::uint32_t> shadow_rays = {}) {
+    const PatchMesh mesh(scene);
+    FactorSettings settings;
+    settings.preset = preset;
+    settings.shadow_rays = shadow_rays;
+    settings.estimate_error = false;
+    settings.engine.device = "osmesa";
+    const Stopwatch watch;
+    FormFactors factors = compute_raw_form_factors(scene, mesh, all_patches(mesh.size()), settings);
+    return {std::move(factors.matrix), watch.seconds()};
 }
 
 RowErrors compare(const FormFactorMatrix& factors, const OccludedReference& reference,
@@ -51,8 +43,8 @@ RowErrors compare(const FormFactorMatrix& factors, const OccludedReference& refe
     return errors;
 }
 
-std::string told(const std::string& preset, const RowErrors& errors, double seconds) {
-    return preset + ": rms " + std::to_string(1e6 * errors.rms) + "e-6, max " +
+std::string describe(std::string_view preset, const RowErrors& errors, double seconds) {
+    return std::string(preset) + ": rms " + std::to_string(1e6 * errors.rms) + "e-6, max " +
            std::to_string(1e6 * errors.max) + "e-6 (" + std::to_string(errors.worst_i) + " to " +
            std::to_string(errors.worst_j) + "), " + std::to_string(seconds) + " s";
 }
@@ -69,58 +61,59 @@ std::vector<std::uint32_t> floor_patches(const PatchMesh& mesh) {
 
 } // namespace
 
-TEST_CASE("hybrid: the unit cube of 24 x 24 patches a face", "[engine][gl][slow]") {
+TEST_CASE("presets: the unit cube of 24 x 24 patches a face", "[pipeline][gl][slow]") {
     Scene scene = empty_scene();
     add_room(scene, Vec3(0.0), Vec3(1.0), 24);
     scene.enclosure = Enclosure::closed;
     const PatchMesh mesh(scene);
     const OccludedReference reference(mesh, {}, 1);
-    const Computed computed = compute(scene, "default");
+    const Computed computed = compute(scene, Preset::standard);
     // Every kind of pair: patches at corners, at edges and inside of two walls.
     std::vector<std::uint32_t> patches{0, 1, 23, 24, 25, 300, 575, 2 * 576, 2 * 576 + 11, 2 * 576 + 288};
     const auto spread = sampled_patches(mesh, 14);
     patches.insert(patches.end(), spread.begin(), spread.end());
     const RowErrors errors = compare(computed.factors, reference, patches);
-    INFO(told("default", errors, computed.seconds));
+    INFO(describe("default", errors, computed.seconds));
     CHECK(errors.max <= 1e-5);
     CHECK(errors.rms <= 2e-7);
 }
 
-TEST_CASE("hybrid: a room with two turned boxes, 1,110 patches", "[engine][gl]") {
+TEST_CASE("presets: a room with two turned boxes, 1,110 patches", "[pipeline][gl]") {
     const Scene scene = coarse_room_with_turned_boxes();
     const PatchMesh mesh(scene);
     const OccludedReference reference(mesh, {"first", "second"}, 20);
     const auto patches = sampled_patches(mesh, 40);
-    const Computed fair = compute(scene, "default");
+    const Computed fair = compute(scene, Preset::standard);
     const RowErrors default_errors = compare(fair.factors, reference, patches);
-    const Computed best = compute(scene, "exact");
+    const Computed best = compute(scene, Preset::exact);
     const RowErrors exact_errors = compare(best.factors, reference, patches);
-    INFO(told("default", default_errors, fair.seconds) << "; " << told("exact", exact_errors, best.seconds));
+    INFO(describe("default", default_errors, fair.seconds)
+         << "; " << describe("exact", exact_errors, best.seconds));
     CHECK(default_errors.rms <= 2e-5);
     CHECK(default_errors.max <= 1e-3);
     CHECK(exact_errors.rms <= 5e-6);
 }
 
-TEST_CASE("hybrid: a room with two turned boxes, 5,790 patches", "[engine][gl][slow]") {
+TEST_CASE("presets: a room with two turned boxes, 5,790 patches", "[pipeline][gl][slow]") {
     const Scene scene = fine_room_with_turned_boxes();
     const PatchMesh mesh(scene);
     const OccludedReference reference(mesh, {"first", "second"}, 14);
     const auto patches = sampled_patches(mesh, 32);
-    const Computed fair = compute(scene, "default");
+    const Computed fair = compute(scene, Preset::standard);
     const RowErrors default_errors = compare(fair.factors, reference, patches);
-    const Computed best = compute(scene, "exact");
+    const Computed best = compute(scene, Preset::exact);
     const RowErrors exact_errors = compare(best.factors, reference, patches);
-    const Computed without = compute(scene, "default", {"--shadow-rays", "0"});
+    const Computed without = compute(scene, Preset::standard, 0);
     const RowErrors errors_without = compare(without.factors, reference, patches);
-    INFO(told("default", default_errors, fair.seconds)
-         << "; " << told("exact", exact_errors, best.seconds) << "; "
-         << told("no rays", errors_without, without.seconds));
+    INFO(describe("default", default_errors, fair.seconds)
+         << "; " << describe("exact", exact_errors, best.seconds) << "; "
+         << describe("no rays", errors_without, without.seconds));
     CHECK(default_errors.rms <= 8e-6);
     CHECK(default_errors.rms <= 0.8 * errors_without.rms); // what shadow rays are for
     CHECK(exact_errors.rms <= 3e-6);
 }
 
-TEST_CASE("hybrid: triangles cut into patches behind a sphere", "[engine][gl]") {
+TEST_CASE("presets: triangles cut into patches behind a sphere", "[pipeline][gl]") {
     Scene scene = read_case("10_concentric_spheres.obj");
     for (Surface& surface : scene.surfaces) {
         surface.patches = Grid{2, 2};
@@ -128,35 +121,38 @@ TEST_CASE("hybrid: triangles cut into patches behind a sphere", "[engine][gl]") 
     scene.materials.resize(1);
     const PatchMesh mesh(scene);
     const OccludedReference reference(mesh, {"inner"}, 10);
-    const Computed computed = compute(scene, "exact");
+    const Computed computed = compute(scene, Preset::exact);
     const RowErrors errors = compare(computed.factors, reference, sampled_patches(mesh, 30));
-    INFO(told("exact", errors, computed.seconds));
+    INFO(describe("exact", errors, computed.seconds));
     CHECK(errors.rms <= 1.2e-5);
 }
 
-TEST_CASE("hybrid: the shared cases of 16 patches a face", "[engine][gl][slow]") {
+TEST_CASE("presets: the shared cases of 16 patches a face", "[pipeline][gl][slow]") {
     const std::set<std::string> occluded{"occluded_corner", "concentric_spheres"};
     for (const ExactCase& exact : exact_cases()) {
         const bool hidden = occluded.contains(exact.name);
         struct Limit {
-            const char* preset;
+            Preset preset;
             double error;
         };
         for (const Limit& limit :
-             {Limit{"default", hidden ? 3e-4 : 1e-4}, Limit{"exact", hidden ? 3e-5 : 1e-6}}) {
-            const Outcome run =
-                run_hemi({"factors", data_path("cases/" + exact.file), "--patches-per-face", "16", "--preset",
-                          limit.preset, "--device", "osmesa", "--by-group", "--json", "-q"});
-            INFO(exact.name << ", " << limit.preset << ": " << run.err);
-            REQUIRE(run.status == 0);
-            const auto table = run.json();
-            const auto index = [&table](const std::string& name) {
-                const auto& groups = table["groups"];
-                return static_cast<std::size_t>(std::find(groups.begin(), groups.end(), name) -
-                                                groups.begin());
+             {Limit{Preset::standard, hidden ? 3e-4 : 1e-4}, Limit{Preset::exact, hidden ? 3e-5 : 1e-6}}) {
+            const Scene scene = read_case(exact.file);
+            const PatchMesh mesh(scene, {.patch_size = {}, .patches_per_face = 16});
+            FactorSettings settings;
+            settings.preset = limit.preset;
+            settings.engine.device = "osmesa";
+            const FormFactors factors = compute_form_factors(scene, mesh, settings);
+            const GroupFactors groups = group_factors(factors.matrix, factors.areas, factors.group_of,
+                                                      static_cast<std::uint32_t>(factors.groups.size()));
+            INFO(exact.name << ", " << to_word(limit.preset));
+            const auto index = [&factors](const std::string& name) {
+                const auto found = std::find(factors.groups.begin(), factors.groups.end(), name);
+                REQUIRE(found != factors.groups.end());
+                return static_cast<std::size_t>(found - factors.groups.begin());
             };
             for (const auto& pair : exact.pairs) {
-                const double factor = table["factors"][index(pair.from)][index(pair.to)];
+                const double factor = groups.factors[index(pair.from) * groups.groups + index(pair.to)];
                 INFO(pair.from << " to " << pair.to << ": " << factor << " for " << pair.factor);
                 CHECK(std::abs(factor - pair.factor) <= limit.error);
                 if (!hidden && pair.factor > 0.0) { // a factor of 3e-7 has digits of its own
@@ -167,14 +163,14 @@ TEST_CASE("hybrid: the shared cases of 16 patches a face", "[engine][gl][slow]")
     }
 }
 
-TEST_CASE("hybrid: a patch half under a block keeps what its other half sees", "[engine][gl]") {
+TEST_CASE("presets: a patch half under a block keeps what its other half sees", "[pipeline][gl]") {
     struct Limit {
-        const char* preset;
+        Preset preset;
         double row, element;
     };
-    for (const Limit& limit : {Limit{"default", 0.04, 3e-3}, Limit{"exact", 0.02, 1.2e-3}}) {
-        for (const double covered : {0.1, 0.4, 0.6, 0.9}) {
-            const StraddledRoom room = straddled_room(covered);
+    for (const Limit& limit : {Limit{Preset::standard, 0.04, 3e-3}, Limit{Preset::exact, 0.02, 1.2e-3}}) {
+        for (const double buried : {0.1, 0.4, 0.6, 0.9}) {
+            const StraddledRoom room = straddled_room(buried);
             const PatchMesh whole(room.whole);
             const PatchMesh cut(room.cut);
             const auto parent = parents(whole, cut);
@@ -182,18 +178,19 @@ TEST_CASE("hybrid: a patch half under a block keeps what its other half sees", "
             const Computed computed = compute(room.whole, limit.preset);
             for (const std::uint32_t i : floor_patches(whole)) {
                 const RowView row = computed.factors.row(i);
-                // The blocked share is that of the eye points; the sum comes of F0 and is closer.
+                // The back-face share is that of the sample points; the sum comes from F0 and is closer.
                 CHECK(row.sum() + row.environment + row.blocked == Approx(1.0).margin(0.1).epsilon(0));
                 const auto expected = straddled_row(whole, cut, parent, reference, i);
                 RowErrors errors;
                 errors.add(i, row, expected);
                 const double sum = std::accumulate(expected.begin(), expected.end(), 0.0);
-                INFO(limit.preset << ", covered " << covered << ", patch " << i << " at "
-                                  << whole.centres()[i].x << " " << whole.centres()[i].y << ": sum "
-                                  << row.sum() << " for " << sum << "; " << told("", errors, 0.0));
+                INFO(to_word(limit.preset)
+                     << ", buried " << buried << ", patch " << i << " at " << whole.centres()[i].x << " "
+                     << whole.centres()[i].y << ": sum " << row.sum() << " for " << sum << "; "
+                     << describe("", errors, 0.0));
                 CHECK(std::abs(row.sum() - sum) <= limit.row);
                 CHECK(errors.max <= limit.element);
-                if (sum == 0.0) { // all of it covered
+                if (sum == 0.0) { // all of it buried
                     CHECK(row.sum() <= 1e-4);
                 }
             }
@@ -201,12 +198,12 @@ TEST_CASE("hybrid: a patch half under a block keeps what its other half sees", "
     }
 }
 
-TEST_CASE("hybrid: a sheet close above a patch", "[engine][gl]") {
+TEST_CASE("presets: a sheet close above a patch", "[pipeline][gl]") {
     struct Limit {
-        const char* preset;
+        Preset preset;
         double element;
     };
-    for (const Limit& limit : {Limit{"default", 4e-3}, Limit{"exact", 2.5e-3}}) {
+    for (const Limit& limit : {Limit{Preset::standard, 4e-3}, Limit{Preset::exact, 2.5e-3}}) {
         for (const double gap : {0.05, 0.1, 0.25, 0.5}) {
             const Scene scene = room_with_sheet(gap);
             const PatchMesh mesh(scene);
@@ -216,7 +213,7 @@ TEST_CASE("hybrid: a sheet close above a patch", "[engine][gl]") {
             const auto floor = floor_patches(mesh);
             patches.insert(patches.end(), floor.begin(), floor.end());
             const RowErrors errors = compare(computed.factors, reference, patches);
-            INFO("gap " << gap << ", " << told(limit.preset, errors, computed.seconds));
+            INFO("gap " << gap << ", " << describe(to_word(limit.preset), errors, computed.seconds));
             CHECK(errors.max <= limit.element);
         }
     }
