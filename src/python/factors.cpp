@@ -1,8 +1,8 @@
-#include "core/parallel_for.hpp"
 #include "hemi/io/factor_file.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/vtp_file.hpp"
 #include "hemi/matrix/balance.hpp"
+#include "hemi/matrix/product.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
@@ -276,22 +276,10 @@ Doubles multiply(const FactorsOfScene& self, const Doubles& right) {
     }
     const std::size_t channels = right.ndim() == 2 ? static_cast<std::size_t>(right.shape(1)) : 1;
     Doubles product(std::vector<py::ssize_t>(right.shape(), right.shape() + right.ndim()));
-    const double* const from = right.data();
-    double* const to = product.mutable_data();
+    const std::span<const double> from(right.data(), size * channels);
+    const std::span<double> to(product.mutable_data(), size * channels);
     const py::gil_scoped_release release;
-    parallel_for(size, FormFactorMatrix::block_rows, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            double* const sums = to + i * channels;
-            std::fill(sums, sums + channels, 0.0);
-            const RowView row = matrix.row(static_cast<std::uint32_t>(i));
-            for (std::size_t k = 0; k < row.columns.size(); ++k) {
-                const double* const values = from + row.columns[k] * channels;
-                for (std::size_t c = 0; c < channels; ++c) {
-                    sums[c] += double{row.values[k]} * values[c];
-                }
-            }
-        }
-    });
+    hemi::multiply(matrix, from, static_cast<std::uint32_t>(channels), to);
     return product;
 }
 
