@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h> // here, so that no source goes without it: casts would differ
 
 #include <memory>
 #include <optional>

@@ -2,9 +2,8 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/pipeline/diagnosis.hpp"
+#include "python/bindings.hpp"
 #include "python/work.hpp"
-
-#include <pybind11/stl.h>
 
 #include <array>
 #include <string>

@@ -1,4 +1,3 @@
-#include "core/parallel_for.hpp"
 #include "hemi/io/factor_file.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/vtp_file.hpp"
@@ -7,12 +6,10 @@
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/diagnosis.hpp"
+#include "python/matrix_arrays.hpp"
 #include "python/work.hpp"
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace hemi::python {
@@ -213,88 +210,18 @@ void save(FactorsOfScene& self, const py::object& path) {
     warn(diagnostics);
 }
 
-/// Offsets of rows in arrays that hold all entries.
-template <class Index>
-std::vector<Index> row_offsets(const FormFactorMatrix& matrix) {
-    std::vector<Index> offsets{0};
-    offsets.reserve(std::size_t{matrix.size()} + 1);
-    for (const RowBlock& block : matrix.blocks()) {
-        const auto before = static_cast<std::uint64_t>(offsets.back());
-        for (std::size_t row = 1; row < block.begin.size(); ++row) {
-            offsets.push_back(static_cast<Index>(before + block.begin[row]));
-        }
-    }
-    return offsets;
-}
-
-/// One array of all blocks' `part`s.
-template <class To, class From>
-std::vector<To> joined(const FormFactorMatrix& matrix, std::vector<From> RowBlock::*part) {
-    std::vector<To> all;
-    all.reserve(matrix.entries());
-    for (const RowBlock& block : matrix.blocks()) {
-        all.insert(all.end(), (block.*part).begin(), (block.*part).end());
-    }
-    return all;
-}
-
-/// scipy wants columns and offsets of one type.
-template <class Index>
-py::object make_csr(const FormFactorMatrix& matrix) {
-    const py::object csr = py::module_::import("scipy.sparse").attr("csr_matrix");
-    const py::tuple parts =
-        py::make_tuple(owned(joined<float>(matrix, &RowBlock::values)),
-                       owned(joined<Index>(matrix, &RowBlock::columns)), owned(row_offsets<Index>(matrix)));
-    return csr(parts, py::arg("shape") = py::make_tuple(matrix.size(), matrix.size()),
-               py::arg("copy") = false);
-}
-
 py::object matrix_of(FactorsOfScene& self) {
     if (!self.csr) {
-        const FormFactorMatrix& matrix = self.factors.matrix;
-        const bool small = matrix.entries() <= std::uint64_t{std::numeric_limits<std::int32_t>::max()};
-        self.csr = small ? make_csr<std::int32_t>(matrix) : make_csr<std::int64_t>(matrix);
+        self.csr = csr_matrix(self.factors.matrix);
     }
     return *self.csr;
 }
 
 py::object visibility_of(FactorsOfScene& self) {
     if (!self.visibility) {
-        const FormFactorMatrix& matrix = self.factors.matrix;
-        self.visibility = matrix.has_visibility()
-                              ? py::object(owned(joined<std::uint8_t>(matrix, &RowBlock::visibility)))
-                              : py::object(py::none());
+        self.visibility = visibility_codes(self.factors.matrix);
     }
     return *self.visibility;
-}
-
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-Doubles multiply(const FactorsOfScene& self, const Doubles& right) {
-    const FormFactorMatrix& matrix = self.factors.matrix;
-    const std::size_t size = matrix.size();
-    if (right.ndim() < 1 || right.ndim() > 2 || static_cast<std::size_t>(right.shape(0)) != size) {
-        throw InvalidArgument(fmt::format("F @ x: x must have the shape [{0}] or [{0}, channels]", size));
-    }
-    const std::size_t channels = right.ndim() == 2 ? static_cast<std::size_t>(right.shape(1)) : 1;
-    Doubles product(std::vector<py::ssize_t>(right.shape(), right.shape() + right.ndim()));
-    const double* const from = right.data();
-    double* const to = product.mutable_data();
-    const py::gil_scoped_release release;
-    parallel_for(size, FormFactorMatrix::block_rows, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            double* const sums = to + i * channels;
-            std::fill(sums, sums + channels, 0.0);
-            const RowView row = matrix.row(static_cast<std::uint32_t>(i));
-            for (std::size_t k = 0; k < row.columns.size(); ++k) {
-                const double* const values = from + row.columns[k] * channels;
-                for (std::size_t c = 0; c < channels; ++c) {
-                    sums[c] += double{row.values[k]} * values[c];
-                }
-            }
-        }
-    });
-    return product;
 }
 
 Row row_of(const py::object& self, std::int64_t index) {
@@ -315,32 +242,6 @@ py::array_t<double> dense(const Row& row) {
         values[row.view.columns[k]] = double{row.view.values[k]};
     }
     return owned(std::move(values));
-}
-
-py::array_t<double> share_of_rows(const FormFactorMatrix& matrix, std::vector<double> RowBlock::*share) {
-    std::vector<double> all;
-    all.reserve(matrix.size());
-    for (const RowBlock& block : matrix.blocks()) {
-        all.insert(all.end(), (block.*share).begin(), (block.*share).end());
-    }
-    return owned(std::move(all));
-}
-
-py::array_t<bool> known_rows(const FormFactorMatrix& matrix) {
-    py::array_t<bool> known(matrix.size());
-    for (std::uint32_t i = 0; i < matrix.size(); ++i) {
-        known.mutable_at(i) = matrix.known(i);
-    }
-    return known;
-}
-
-py::array_t<double> row_sums_of(const FormFactorMatrix& matrix) {
-    std::vector<double> sums;
-    sums.reserve(matrix.size());
-    for (std::uint32_t i = 0; i < matrix.size(); ++i) {
-        sums.push_back(matrix.row(i).sum());
-    }
-    return owned(std::move(sums));
 }
 
 py::dict by_group(const FormFactors& factors) {
@@ -508,7 +409,10 @@ Raises
 IndexError, InvalidArgument
     There is no such patch; its row was not computed.
 )");
-    type.def("__matmul__", &multiply, py::arg("x"), py::is_operator());
+    type.def(
+        "__matmul__",
+        [](const FactorsOfScene& self, const Doubles& x) { return multiply(self.factors.matrix, x); },
+        py::arg("x"), py::is_operator());
     // Or numpy would take x @ F for products with single objects.
     type.attr("__array_ufunc__") = py::none();
     type.def("__len__", [](const FactorsOfScene& self) { return self.factors.matrix.size(); });

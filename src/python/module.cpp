@@ -2,8 +2,6 @@
 #include "python/bindings.hpp"
 #include "python/work.hpp"
 
-#include <pybind11/stl.h>
-
 namespace hemi::python {
 
 namespace {

@@ -5,8 +5,6 @@
 #include "python/bindings.hpp"
 #include "python/work.hpp"
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -195,30 +193,19 @@ ScenePointer scene_from_arrays(const Doubles& vertices, const py::object& faces,
     });
 }
 
-void check_two_sided_groups(const Scene& scene, const std::string& path,
-                            const std::vector<std::string>& two_sided) {
-    if (!two_sided.empty() && io::extension_of(path) == ".json") {
-        throw InvalidArgument("two_sided is not for JSON scenes, which say \"two_sided\": true");
-    }
-    for (const std::string& name : two_sided) {
-        if (std::find(scene.groups.begin(), scene.groups.end(), name) == scene.groups.end()) {
-            throw InvalidArgument(fmt::format("two_sided \"{}\": {} has no such group{}", name, path,
-                                              did_you_mean(name, scene.groups)));
-        }
-    }
-}
-
 ScenePointer read_scene(const py::object& path, std::optional<double> patch_size,
                         std::optional<std::uint32_t> patches_per_face,
                         const std::optional<std::string>& enclosure, const py::object& environment,
                         const std::vector<std::string>& two_sided, bool skip_degenerate, bool allow_outside) {
     const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+    if (!two_sided.empty() && io::extension_of(file) == ".json") {
+        throw InvalidArgument("two_sided is not for JSON scenes, which say \"two_sided\": true");
+    }
     Diagnostics diagnostics;
     Scene scene = run([&] {
         return io::read_scene(file, {two_sided, skip_degenerate, allow_outside}, diagnostics);
     });
     warn(diagnostics);
-    check_two_sided_groups(scene, file, two_sided);
     if (enclosure) {
         scene.enclosure = argument_word<Enclosure>("enclosure", *enclosure);
     }

@@ -7,8 +7,6 @@
 #include "python/bindings.hpp"
 #include "python/work.hpp"
 
-#include <pybind11/stl.h>
-
 #include <algorithm>
 #include <array>
 

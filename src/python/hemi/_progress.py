@@ -5,14 +5,14 @@ class Bar:
     """Shows phases of long work, one after the other, by tqdm."""
 
     def __init__(self):
+        self._phase = None
+        self._bar = None
         try:
             from tqdm.auto import tqdm
         except ImportError:
             raise ImportError("progress=True shows bars by tqdm, which is not installed; install it, or pass a "
                               "function of (phase, done, total)") from None
         self._tqdm = tqdm
-        self._phase = None
-        self._bar = None
 
     def __call__(self, phase, done, total):
         if phase != self._phase:
