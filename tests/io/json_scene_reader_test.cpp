@@ -357,7 +357,7 @@ TEST_CASE("JSON reader: meshes and MTL files outside the scene's folder are open
                                     "../" + (outside / "").parent_path().filename().string() + "/o.obj"}) {
         INFO(name);
         require_parts(message_of<InputError>([&] { (void)read_mesh(name, false); }),
-                      {"room.json: surfaces[0].mesh: ", "; must be in the scene's folder or below it "
+                      {"room.json: surfaces[0].mesh: ", "; must be in the scene's folder or below it, "
                                                         "unless files outside it are allowed"});
         REQUIRE(read_mesh(name, true).surfaces.size() == 1);
     }
