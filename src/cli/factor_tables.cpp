@@ -60,7 +60,7 @@ void show_row(const FormFactors& factors, std::uint32_t index, const PatchNames&
     FactorList list{{row.columns.begin(), row.columns.end()}, {row.values.begin(), row.values.end()}};
     list.sort();
     if (json) {
-        print_json({{"schema", "hemi/factors/1"},
+        print_json({{"schema", "hemi/factors-row/1"},
                     {"renderer", factors.provenance.renderer},
                     {"patches", factors.matrix.size()},
                     {"row", index},
@@ -95,7 +95,7 @@ void show_point(const PatchMesh& mesh, const std::array<double, 6>& at, const Pa
     list.sort();
     const double sum = std::accumulate(list.factors.begin(), list.factors.end(), 0.0);
     if (json) {
-        print_json({{"schema", "hemi/factors/1"},
+        print_json({{"schema", "hemi/factors-from-point/1"},
                     {"patches", factors.size()},
                     {"point", {point.x, point.y, point.z}},
                     {"normal", {normal.x / length, normal.y / length, normal.z / length}},

@@ -253,7 +253,7 @@ private:
         }
         seconds_["total"] = total_.seconds();
         if (arguments_.common.json) {
-            print_json({{"schema", "hemi/factors/1"},
+            print_json({{"schema", "hemi/factors-by-group/1"},
                         {"renderer", factors_.provenance.renderer},
                         {"patches", factors_.matrix.size()},
                         {"groups", factors_.groups},

@@ -16,7 +16,7 @@ namespace hemi {
 
 namespace {
 
-bool all_equal(const std::vector<double>& values) {
+bool all_equal(std::span<const double> values) {
     return std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
 }
 
@@ -25,11 +25,40 @@ bool all_zero(std::span<const double> values) {
 }
 
 /// Whether all channels are the same problem.
-bool is_grey(const Scene& scene) {
-    return all_equal(scene.environment) &&
-           std::all_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
-               return all_equal(material.reflectance) && all_equal(material.exitance);
-           });
+bool is_grey(const PatchValues& values) {
+    const auto grey = [&values](std::span<const double> all) {
+        for (std::size_t k = 0; k < all.size(); k += values.channels) {
+            if (!all_equal(all.subspan(k, values.channels))) {
+                return false;
+            }
+        }
+        return true;
+    };
+    return all_equal(values.environment) && grey(values.reflectance) && grey(values.exitance);
+}
+
+/// Patches that reflect in some channel.
+std::vector<std::uint32_t> reflecting(const PatchValues& values, std::uint32_t size) {
+    std::vector<std::uint32_t> patches;
+    const std::span<const double> reflectance(values.reflectance);
+    for (std::uint32_t i = 0; i < size; ++i) {
+        if (!all_zero(reflectance.subspan(std::size_t{i} * values.channels, values.channels))) {
+            patches.push_back(i);
+        }
+    }
+    return patches;
+}
+
+void check_sizes(const PatchValues& values, std::uint32_t size) {
+    const std::size_t count = std::size_t{size} * values.channels;
+    if (values.channels == 0 || values.reflectance.size() != count || values.exitance.size() != count ||
+        (!values.environment.empty() && values.environment.size() != values.channels)) {
+        throw InvalidArgument(
+            fmt::format("{} reflectances, {} exitances and {} values of the environment for {} "
+                        "in {}",
+                        values.reflectance.size(), values.exitance.size(), values.environment.size(),
+                        plural(size, "patch", "patches"), plural(values.channels, "channel", "channels")));
+    }
 }
 
 /// The first `solved` of `channels` values a patch.
@@ -91,24 +120,34 @@ std::vector<std::uint32_t> reflecting_patches(const Scene& scene, const PatchMes
     return patches;
 }
 
+PatchValues patch_values(const Scene& scene, const PatchMesh& mesh) {
+    return {static_cast<std::uint32_t>(scene.channels.size()),
+            patch_values(mesh, scene.materials, &Material::reflectance),
+            patch_values(mesh, scene.materials, &Material::exitance), scene.environment};
+}
+
 Solution solve_radiosity(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
                          const SolverSettings& settings, Observer& observer, bool with_irradiance) {
+    return solve_radiosity(factors, patch_values(scene, mesh), settings, observer, with_irradiance);
+}
+
+Solution solve_radiosity(const FormFactors& factors, PatchValues values, const SolverSettings& settings,
+                         Observer& observer, bool with_irradiance) {
     const Stopwatch watch;
     const FormFactorMatrix& matrix = factors.matrix;
-    check_rows(matrix, reflecting_patches(scene, mesh));
-    const auto channels = static_cast<std::uint32_t>(scene.channels.size());
-    const std::uint32_t solved = is_grey(scene) ? 1 : channels;
-    const auto all_reflectance = patch_values(mesh, scene.materials, &Material::reflectance);
-    auto all_exitance = patch_values(mesh, scene.materials, &Material::exitance);
-    const auto reflectance = first_channels(all_reflectance, channels, solved);
-    const auto exitance = first_channels(all_exitance, channels, solved);
-    const std::span<const double> environment(scene.environment);
+    check_sizes(values, matrix.size());
+    check_rows(matrix, reflecting(values, matrix.size()));
+    const std::uint32_t channels = values.channels;
+    const std::uint32_t solved = is_grey(values) ? 1 : channels;
+    const auto reflectance = first_channels(values.reflectance, channels, solved);
+    const auto exitance = first_channels(values.exitance, channels, solved);
+    const std::span<const double> environment(values.environment);
     const RadiosityProblem problem{&matrix,
                                    solved,
                                    reflectance,
                                    exitance,
                                    environment.first(std::min<std::size_t>(solved, environment.size())),
-                                   mesh.areas()};
+                                   factors.areas};
     if (all_zero(exitance) && all_zero(environment)) {
         observer.warning("nothing radiates: no material has exitance, and the environment is dark",
                          "environment");
@@ -121,7 +160,7 @@ Solution solve_radiosity(const Scene& scene, const PatchMesh& mesh, const FormFa
     }
     solution.channels = channels;
     solution.radiosity = repeated(std::move(solution.radiosity), channels / solved);
-    solution.exitance = std::move(all_exitance);
+    solution.exitance = std::move(values.exitance);
     for (std::uint32_t i = 0; i < matrix.size(); ++i) {
         const RowView row = matrix.row(i);
         solution.row_sum.push_back(row.sum());
@@ -134,8 +173,8 @@ Solution solve_radiosity(const Scene& scene, const PatchMesh& mesh, const FormFa
     solution.seconds = watch.seconds();
     stop_if_interrupted();
     if (factors.error) {
-        solution.error = estimate_radiosity_error(matrix, factors.reference, mesh.areas(), channels,
-                                                  all_reflectance, solution.exitance, solution.radiosity);
+        solution.error = estimate_radiosity_error(matrix, factors.reference, factors.areas, channels,
+                                                  values.reflectance, solution.exitance, solution.radiosity);
     }
     return solution;
 }

@@ -30,7 +30,7 @@ TEST_CASE("factors: the unit cube by group agrees with the closed form", "[cli]"
                                   "--device", "osmesa", "--jobs", "2", "--resolution", "256"});
     REQUIRE(run.status == 0);
     const Json factors = run.json();
-    CHECK(factors["schema"] == "hemi/factors/1");
+    CHECK(factors["schema"] == "hemi/factors-by-group/1");
     CHECK(factors["renderer"].is_string());
     CHECK(factors["patches"] == 384);
     CHECK(factors["groups"] == Json({"floor", "left", "right", "front", "back", "ceiling"}));

@@ -160,7 +160,8 @@ TEST_CASE("Command line: too little memory is exit 1 with figures and advice", "
     const Outcome run =
         run_hemi(quick({"factors", scene, "--max-memory", "64K", "-o", directory.path("a.hff")}));
     CHECK(run.status == 1);
-    CHECK(run.err_has("the limit is 64.0 KiB") && run.err_has("--max-memory"));
+    CHECK(run.err_has("the limit is 64.0 KiB"));
+    CHECK(run.err_has("--max-memory"));
     CHECK(run.err_has("--patch-size"));
     CHECK_FALSE(directory.has("a.hff"));
     CHECK(run_hemi(quick({"factors", scene, "--max-memory", "1.5GiB"})).status == 0);

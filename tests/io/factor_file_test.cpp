@@ -146,6 +146,27 @@ TEST_CASE("HFF: any flipped bit is noticed", "[io]") {
     }
 }
 
+TEST_CASE("HFF: a file of before, which does not say the rule of unoccluded factors, has its preset's",
+          "[io]") {
+    const Folder folder;
+    for (const Preset preset : {Preset::standard, Preset::exact}) {
+        FormFactors file = sample(10);
+        file.provenance.preset = preset;
+        file.provenance.exchange_rule = ExchangeRule::exact;
+        file.provenance.near_eye_points = 64;
+        io::write_hff(folder / "a.hff", file);
+        CHECK(io::read_hff(folder / "a.hff").provenance.exchange_rule == ExchangeRule::exact);
+        CHECK(io::read_hff(folder / "a.hff").provenance.near_eye_points == 64);
+        const std::string bytes = io::read_file(folder / "a.hff");
+        const std::string key = "exchange_rule";
+        const std::size_t offset = bytes.find(key) - chunk_start(bytes, 0) - 16;
+        const auto old = folder.write("old.hff", with_payload(bytes, 0, offset, "unknown_words"));
+        const Provenance read = io::read_hff(old).provenance;
+        CHECK(read.preset == preset);
+        CHECK(read.exchange_rule == (preset == Preset::exact ? ExchangeRule::exact : ExchangeRule::standard));
+    }
+}
+
 TEST_CASE("HFF: lies with a right checksum are noticed, and cost no memory", "[io]") {
     const Folder folder;
     io::write_hff(folder / "a.hff", judged_sample(70));

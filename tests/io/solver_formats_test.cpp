@@ -279,7 +279,7 @@ TEST_CASE("HDF5: h5py reads rows, patches, groups and what made them", "[io]") {
                   {"entries", entries_of(file.matrix)},
                   {"groups", file.groups},
                   {"attributes",
-                   {{"schema", "hemi/factors/1"},
+                   {{"schema", "hemi/factors-hdf5/1"},
                     {"repair", "closure"},
                     {"preset", "exact"},
                     {"method", "hemicube"},
@@ -310,7 +310,7 @@ TEST_CASE("HDF5: arrays of many chunks, and rows of which nothing else is known"
         folder / "a.h5",
         folder.write("expected.json", Json{{"size", 7000},
                                            {"entries", entries_of(file.matrix)},
-                                           {"attributes", {{"schema", "hemi/factors/1"}, {"repair", "none"}}}}
+                                           {"attributes", {{"schema", "hemi/factors-hdf5/1"}, {"repair", "none"}}}}
                                           .dump()));
 }
 

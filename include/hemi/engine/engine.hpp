@@ -62,7 +62,7 @@ make_visibility_engine(const PatchMesh& mesh, const HemicubeSettings& settings, 
 
 /// The worker program that belongs to this library: what the environment variable HEMI_WORKER names, else
 /// libexec/hemi/hemi-hemicube-worker in the folder of the running program (or of the shared library that hemi
-/// is part of) or up to two folders above it, else where it was installed. Empty if it is in none of these
+/// is part of) or up to four folders above it, else where it was installed. Empty if it is in none of these
 /// places.
 [[nodiscard]] std::filesystem::path find_worker_program();
 

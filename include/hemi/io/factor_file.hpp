@@ -132,7 +132,8 @@ void write_factors(const std::filesystem::path& path, const FormFactors& factors
 /// others.
 [[nodiscard]] std::optional<FactorContent> factor_content(const std::filesystem::path& path);
 
-/// F summed over groups as CSV: group,area,<every group>,environment,blocked, a line for each leaving group.
+/// F summed over groups as CSV: group, area, a column for every group, environment, blocked; a line for each
+/// leaving group.
 /// @param path    of the file
 /// @param names   of the groups
 /// @param groups  what is written

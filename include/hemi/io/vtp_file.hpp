@@ -26,7 +26,8 @@ void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::sp
 
 /// What a stored solution knows of its patches: row balance, radiosity, irradiance, exitance, reflectance,
 /// and estimated errors where there are any.
-/// @param mesh  the result's patches
+/// @param result  what is shown
+/// @param mesh    its patches
 [[nodiscard]] std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh& mesh);
 /// What form factors know of single patches: row balance, and the estimated error of rows where there is one.
 [[nodiscard]] std::vector<CellArray> factor_arrays(const FormFactors& factors);

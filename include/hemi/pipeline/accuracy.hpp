@@ -25,14 +25,20 @@ struct Candidate {
     [[nodiscard]] std::string description() const;
 };
 /// Hemicubes by a preset, with what is set over it.
-/// @param base     device, jobs, seed, memory and repair
-/// @param patches  size of the scene
+/// @param base         device, jobs, seed, memory and repair
+/// @param preset       what the settings begin with
+/// @param patches      size of the scene
+/// @param eye_points   sample points a patch; empty: the preset's
+/// @param resolution   texels along a hemicube edge; empty: the preset's
+/// @param shadow_rays  for a partly hidden pair; empty: the preset's
 [[nodiscard]] Candidate hemicube_candidate(const FactorSettings& base, Preset preset, std::uint32_t patches,
                                            std::optional<std::uint32_t> eye_points = {},
                                            std::optional<std::uint32_t> resolution = {},
                                            std::optional<std::uint32_t> shadow_rays = {});
 /// A baseline method.
-/// @param rays  of montecarlo
+/// @param base    seed and memory
+/// @param method  which one
+/// @param rays    of montecarlo, a patch
 [[nodiscard]] Candidate baseline_candidate(const FactorSettings& base, Method method, std::uint32_t rays = 0);
 
 /// Rows by which candidates are judged.
@@ -57,13 +63,22 @@ struct Measurement {
 };
 /// Tries a candidate on the reference's rows. Errors are upper ones where factors are visibility-weighted:
 /// pairs are seen from one end only, and rows are not closed.
+/// @param scene      materials and enclosure
+/// @param mesh       its patches
+/// @param candidate  what is tried
+/// @param reference  what it is judged by
 /// @param count      number of rows that `seconds` are to be for
 /// @param radiosity  N·channels of about what it is; may be empty
 [[nodiscard]] Measurement try_on_sample(const Scene& scene, const PatchMesh& mesh, const Candidate& candidate,
                                         const Reference& reference, std::size_t count,
                                         std::span<const double> radiosity);
 /// Computes all rows of a candidate, prepares them, and judges them.
-/// @param rows  gets the form factors; may be null
+/// @param scene      materials and enclosure
+/// @param mesh       its patches
+/// @param candidate  what is tried
+/// @param reference  what it is judged by
+/// @param radiosity  N·channels of about what it is; may be empty
+/// @param rows       gets the form factors; may be null
 [[nodiscard]] Measurement try_on_all(const Scene& scene, const PatchMesh& mesh, const Candidate& candidate,
                                      const Reference& reference, std::span<const double> radiosity,
                                      FormFactors* rows = nullptr);
@@ -87,14 +102,24 @@ struct TargetResult {
 };
 /// The cheapest settings whose rows err by no more than `target` (2-norm of a row, rms over rows), by the
 /// estimate: each is judged by a few rows before all are computed.
-/// @param base  device, jobs, seed, memory and repair
+/// @param scene     gives the enclosure
+/// @param mesh      its patches
+/// @param base      device, jobs, seed, memory and repair
+/// @param target    largest error that will do
+/// @param observer  is told of progress and may cancel
 /// @throws TargetMissed; as compute_form_factors
 [[nodiscard]] TargetResult factors_to_target(const Scene& scene, const PatchMesh& mesh,
                                              const FactorSettings& base, double target,
                                              Observer& observer = no_observer());
 /// The cheapest settings by which the reflected radiosity errs by no more than `target`, relative and rms, by
 /// the estimate. The patches' size is not part of it.
+/// @param scene            materials, environment, enclosure
+/// @param mesh             its patches
 /// @param patches          whose rows are needed
+/// @param base             device, jobs, seed, memory and repair
+/// @param solver           solver, tolerance
+/// @param target           largest error that will do
+/// @param observer         is told of progress and may cancel
 /// @param with_irradiance  see solve_radiosity()
 /// @throws TargetMissed; InvalidArgument if nothing reflects; as compute_form_factors and solve_radiosity
 [[nodiscard]] TargetResult solve_to_target(const Scene& scene, const PatchMesh& mesh,

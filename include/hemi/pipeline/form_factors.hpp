@@ -32,7 +32,11 @@ namespace hemi {
 /// Raw rows of some patches, as `.hff` files hold them; prepare_form_factors() makes them ready to be used.
 /// Above 256 rows a sample of 64 tells first what they will need; where unoccluded factors times visibility
 /// do not fit the memory, plain rows take their place, with a warning.
+/// @param scene       gives the enclosure
+/// @param mesh        its patches
 /// @param patches     whose rows are wanted, ascending; all others stay unknown
+/// @param settings    how
+/// @param observer    is told of progress and may cancel
 /// @param checkpoint  where finished rows are kept, or null; only for all patches
 /// @throws as compute_form_factors
 [[nodiscard]] FormFactors compute_raw_form_factors(const Scene& scene, const PatchMesh& mesh,
@@ -45,7 +49,8 @@ namespace hemi {
 /// a closed scene count as buried (mark_touching_faces_buried), reciprocity and closure are enforced
 /// (repair), and the error of what comes out is estimated where there are reference rows (estimate_error).
 /// Nothing but the estimate changes where it was done before.
-/// @param wanted  what is enforced; empty: closure where factors have visibility, nothing in plain rows
+/// @param factors  raw; changed in place
+/// @param wanted   what is enforced; empty: closure where factors have visibility, nothing in plain rows
 void prepare_form_factors(FormFactors& factors, std::optional<Repair> wanted = {});
 
 /// Estimates the error of the rows as they are now, by the reference rows; none where there are none.

@@ -48,6 +48,7 @@ public:
     /// call.
     virtual void row(std::uint32_t patch, const VisibilityRow& row);
     /// Something that a person should know and that does not stop the work.
+    /// @param message  one sentence
     /// @param setting  name of a setting that would help, such as "max-memory"; empty: none
     virtual void warning(std::string_view message, std::string_view setting);
     /// Something that a person may like to know, such as rows that need not be computed again.

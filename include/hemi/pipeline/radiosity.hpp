@@ -13,6 +13,16 @@ namespace hemi {
 /// Patches whose rows the radiosity depends on, ascending: those that reflect in some channel.
 [[nodiscard]] std::vector<std::uint32_t> reflecting_patches(const Scene& scene, const PatchMesh& mesh);
 
+/// What patches reflect and radiate. Arrays of N·channels hold channel c of patch i at [i·channels + c].
+struct PatchValues {
+    std::uint32_t channels = 1;      ///< wavelengths, bands or colours
+    std::vector<double> reflectance; ///< N·channels, in [0, 1)
+    std::vector<double> exitance;    ///< N·channels, >= 0
+    std::vector<double> environment; ///< channels, >= 0; empty: dark
+};
+/// Those of a scene.
+[[nodiscard]] PatchValues patch_values(const Scene& scene, const PatchMesh& mesh);
+
 /// The radiosity of a scene, with the estimated error that its form factors bring. Channels that are all the
 /// same problem are solved once.
 /// @param scene            materials and environment
@@ -23,6 +33,11 @@ namespace hemi {
 /// @param with_irradiance  finds the irradiance too
 /// @throws InputError if the row of a reflecting patch is not known; NotConverged; Cancelled
 [[nodiscard]] Solution solve_radiosity(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
+                                       const SolverSettings& settings = {},
+                                       Observer& observer = no_observer(), bool with_irradiance = true);
+/// The same for any values of the patches, one by one.
+/// @throws InvalidArgument too, for values that do not fit
+[[nodiscard]] Solution solve_radiosity(const FormFactors& factors, PatchValues values,
                                        const SolverSettings& settings = {},
                                        Observer& observer = no_observer(), bool with_irradiance = true);
 

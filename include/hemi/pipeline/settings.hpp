@@ -52,12 +52,15 @@ struct RowPlan {
 [[nodiscard]] std::uint64_t memory_limit(const FactorSettings& settings);
 
 /// What computes rows of form factors by these settings: plain hemicubes, or a baseline method.
-/// @param mesh  must outlive it
+/// @param mesh      must outlive it
+/// @param settings  how, where and by how many
 /// @throws as make_hemicube_engine() and make_baseline()
 [[nodiscard]] std::unique_ptr<RowProvider> make_row_provider(const PatchMesh& mesh,
                                                              const FactorSettings& settings);
 /// What computes rows of visibility, on the settings' device with their workers.
-/// @param mesh  must outlive it
+/// @param mesh      must outlive it
+/// @param hemicube  what changes the rows
+/// @param settings  device and workers
 /// @throws as make_visibility_engine()
 [[nodiscard]] std::unique_ptr<VisibilityProvider> make_visibility_provider(const PatchMesh& mesh,
                                                                            const HemicubeSettings& hemicube,

@@ -42,8 +42,9 @@ fs::path find_worker_program() {
     }
     constexpr const char* name = "libexec/hemi/hemi-hemicube-worker";
     fs::path folder = own_folder();
-    // Beside the program, as in a build; one folder up, as installed; two, for a module of Python.
-    for (int up = 0; up < 3 && !folder.empty(); ++up, folder = folder.parent_path()) {
+    // Beside the program, as in a build; one folder up, as installed; two, for a module of Python in a build;
+    // four, for one that is installed: lib/python3.11/dist-packages/hemi.
+    for (int up = 0; up < 5 && !folder.empty(); ++up, folder = folder.parent_path()) {
         if (is_file(folder / name)) {
             return folder / name;
         }

@@ -114,7 +114,7 @@ private:
     }
 
     void write_head(hid_t at) {
-        text(at, "schema", "hemi/factors/1");
+        text(at, "schema", "hemi/factors-hdf5/1");
         text(at, "program", "hemi " HEMI_VERSION);
         text(at, "meaning",
              "F(i, j), row i and column j of /factors, is the share of what leaves patch i that arrives at "

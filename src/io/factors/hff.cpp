@@ -44,7 +44,9 @@ Json header(const FormFactors& file) {
               {"method", to_word(file.provenance.method)},
               {"resolution", file.provenance.resolution},
               {"eye_points", file.provenance.eye_points},
+              {"near_eye_points", file.provenance.near_eye_points},
               {"shadow_rays", file.provenance.shadow_rays},
+              {"exchange_rule", to_word(file.provenance.exchange_rule)},
               {"seed", file.provenance.seed},
               {"renderer", file.provenance.renderer},
               {"enclosure", to_word(file.enclosure)},
@@ -143,9 +145,13 @@ std::vector<std::uint32_t> read_header(ChunkReader& reader, FormFactors& file) {
     file.provenance.seed = head.member("seed").integer(std::numeric_limits<std::uint64_t>::max());
     file.provenance.renderer = head.member("renderer").any_text();
     file.enclosure = read_word<Enclosure>(head.member("enclosure"));
-    // Files do not say the rule: it was the preset's.
-    file.provenance.exchange_rule =
-        file.provenance.preset == Preset::exact ? ExchangeRule::exact : ExchangeRule::standard;
+    if (head.has("exchange_rule")) {
+        file.provenance.exchange_rule = read_word<ExchangeRule>(head.member("exchange_rule"));
+        file.provenance.near_eye_points = integer32(head.member("near_eye_points"));
+    } else { // files of before: the rule was the preset's
+        file.provenance.exchange_rule =
+            file.provenance.preset == Preset::exact ? ExchangeRule::exact : ExchangeRule::standard;
+    }
     file.provenance.chosen_for = head.member("chosen_for").any_text();
     if (head.has("error")) {
         file.error = read_error(head.member("error"));

@@ -24,7 +24,7 @@ assert list(patches["index"]) == list(range(size)) and numpy.array_equal(patches
 assert [file.groups[g] for g in file.group_of] == list(patches["group"])
 
 groups = hemi_files.read_json(folder / "groups.json")
-assert groups["schema"] == "hemi/factors/1" and groups["groups"] == file.groups
+assert groups["schema"] == "hemi/factors-by-group/1" and groups["groups"] == file.groups
 assert numpy.allclose(groups["factors"], file.by_group(), atol=1e-6)
 
 damaged = bytearray((folder / "a.hff").read_bytes())
