@@ -14,10 +14,12 @@ namespace {
 std::atomic<int> arrived{0};
 static_assert(std::atomic<int>::is_always_lock_free, "used in a signal handler");
 
-extern "C" void on_signal(int) {
+extern "C" {
+static void on_signal(int) {
     if (arrived.fetch_add(1) > 0) {
         _exit(static_cast<int>(ExitStatus::interrupted));
     }
+}
 }
 
 } // namespace

@@ -306,12 +306,12 @@ TEST_CASE("HDF5: arrays of many chunks, and rows of which nothing else is known"
     file.matrix = random_matrix(7000, true); // 140,000 entries: two whole chunks and a part
     REQUIRE(file.matrix.entries() > 2 * 65536);
     io::write_h5(folder / "a.h5", file);
-    run_h5py(
-        folder / "a.h5",
-        folder.write("expected.json", Json{{"size", 7000},
-                                           {"entries", entries_of(file.matrix)},
-                                           {"attributes", {{"schema", "hemi/factors-hdf5/1"}, {"repair", "none"}}}}
-                                          .dump()));
+    run_h5py(folder / "a.h5",
+             folder.write("expected.json",
+                          Json{{"size", 7000},
+                               {"entries", entries_of(file.matrix)},
+                               {"attributes", {{"schema", "hemi/factors-hdf5/1"}, {"repair", "none"}}}}
+                              .dump()));
 }
 
 TEST_CASE("HDF5: what cannot be written leaves no file", "[io]") {

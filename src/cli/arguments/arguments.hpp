@@ -150,7 +150,10 @@ struct DevicesArguments {
 
 using Arguments =
     std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments, RenderArguments,
-                 ViewArguments, BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+#ifdef HEMI_WITH_VIEWER
+                 ViewArguments,
+#endif
+                 BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
 
 /// Text that was asked for instead of work: help or the version.
 struct Answer {

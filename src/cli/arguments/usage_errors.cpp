@@ -22,6 +22,11 @@ std::vector<std::string> option_names(const CLI::App& app) {
 }
 
 void refuse_command(const CLI::App& app, const std::string& word) {
+#ifndef HEMI_WITH_VIEWER
+    if (word == "view") {
+        throw InvalidArgument("there is no command 'view': this hemi was built without a window");
+    }
+#endif
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands({})) {
         names.push_back(command->get_name());
