@@ -121,7 +121,7 @@ void Relighter::solve(Wish wish, const std::stop_token& stop) {
         if (wish.stepwise && settings.method == SolverMethod::automatic) {
             settings.method = SolverMethod::gauss_seidel;
         }
-        Clock::time_point told = began;
+        Clock::time_point shown = began;
         settings.watch = [&](std::uint32_t sweep, double residual, const auto& radiosity) {
             const Clock::time_point now = Clock::now();
             std::unique_lock lock(mutex_);
@@ -130,8 +130,8 @@ void Relighter::solve(Wish wish, const std::stop_token& stop) {
             }
             residuals_.push_back(residual);
             const bool waits = stepwise_ && steps_ == 0;
-            if (waits || now - told >= interval) {
-                told = now;
+            if (waits || now - shown >= interval) {
+                shown = now;
                 lock.unlock();
                 SolveUpdate so_far;
                 so_far.light = update.light;

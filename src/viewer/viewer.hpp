@@ -31,7 +31,7 @@ struct ViewerInput {
     /// How form factors are computed, beside the window. Empty: a stored solution, which has none.
     std::optional<FactorSettings> factor_settings;
     SolverSettings solver;              ///< for the radiosity
-    std::shared_ptr<Observer> observer; ///< is told of warnings and notes, on another thread; may be null
+    std::shared_ptr<Observer> observer; ///< gets warnings and notes, on another thread; may be null
     /// The stored solution, or, until there is one, the lamps alone: their exitance as radiosity, nothing
     /// known of rows.
     Solution solution;

@@ -91,7 +91,7 @@ double rms_difference(const FormFactorMatrix& a, const FormFactorMatrix& b) {
 
 } // namespace
 
-TEST_CASE("yardsticks: direct and contour have the exact factors of the catalogue", "[engine]") {
+TEST_CASE("baseline methods: direct and contour have the exact factors of the catalogue", "[engine]") {
     for (const ExactCase& exact : exact_cases()) {
         if (occluded(exact.name) || exact.name == "sphere_interior") {
             continue;
@@ -103,7 +103,7 @@ TEST_CASE("yardsticks: direct and contour have the exact factors of the catalogu
     }
 }
 
-TEST_CASE("yardsticks: rays have the exact factors of the catalogue, occluded or not", "[engine]") {
+TEST_CASE("baseline methods: rays have the exact factors of the catalogue, occluded or not", "[engine]") {
     for (const ExactCase& exact : exact_cases()) {
         if (exact.name == "sphere_interior") {
             continue;
@@ -116,7 +116,7 @@ TEST_CASE("yardsticks: rays have the exact factors of the catalogue, occluded or
     }
 }
 
-TEST_CASE("yardsticks: the hemisphere is as good as its one point a patch", "[engine]") {
+TEST_CASE("baseline methods: the hemisphere is as good as its one point a patch", "[engine]") {
     for (const ExactCase& exact : exact_cases()) {
         if (exact.name != "unit_cube" && exact.name != "perp_apart" && exact.name != "occluded_corner") {
             continue;
@@ -129,7 +129,7 @@ TEST_CASE("yardsticks: the hemisphere is as good as its one point a patch", "[en
     }
 }
 
-TEST_CASE("yardsticks: all methods see a sphere of facets from inside alike", "[engine][slow]") {
+TEST_CASE("baseline methods: all methods see a sphere of facets from inside alike", "[engine][slow]") {
     for (const ExactCase& exact : exact_cases()) {
         if (exact.name != "sphere_interior") {
             continue;
@@ -146,7 +146,7 @@ TEST_CASE("yardsticks: all methods see a sphere of facets from inside alike", "[
     }
 }
 
-TEST_CASE("yardsticks: a cylinder of facets comes near the round one", "[engine]") {
+TEST_CASE("baseline methods: a cylinder of facets comes near the round one", "[engine]") {
     // Howell, C-41: equal coaxial discs, radius = height.
     const double ends = 0.381966011250105;
     const PatchMesh mesh(cylinder(32));
@@ -162,7 +162,7 @@ TEST_CASE("yardsticks: a cylinder of facets comes near the round one", "[engine]
     }
 }
 
-TEST_CASE("yardsticks: direct, contour and exchange areas agree pair by pair", "[engine]") {
+TEST_CASE("baseline methods: direct, contour and exchange areas agree pair by pair", "[engine]") {
     const Scene scene = rotated(tapered_box(3));
     const PatchMesh mesh(scene);
     const FormFactorMatrix direct = matrix_of(mesh, settings_of(Method::direct));
@@ -180,7 +180,7 @@ TEST_CASE("yardsticks: direct, contour and exchange areas agree pair by pair", "
     CHECK(worst < 1e-6);
 }
 
-TEST_CASE("yardsticks: more rays come nearer to the exact factors", "[engine]") {
+TEST_CASE("baseline methods: more rays come nearer to the exact factors", "[engine]") {
     Scene cube = empty_scene();
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 2);
     const PatchMesh mesh(cube);
@@ -195,7 +195,7 @@ TEST_CASE("yardsticks: more rays come nearer to the exact factors", "[engine]") 
     CHECK(many < few / 10.0);
 }
 
-TEST_CASE("yardsticks: every row is balanced", "[engine]") {
+TEST_CASE("baseline methods: every row is balanced", "[engine]") {
     const PatchMesh mesh(room_with_blocks(2));
     for (const Method method : {Method::montecarlo, Method::hemisphere}) {
         BaselineSettings settings = settings_of(method);
@@ -218,7 +218,7 @@ TEST_CASE("yardsticks: every row is balanced", "[engine]") {
     }
 }
 
-TEST_CASE("yardsticks: two-sided sheets receive on the side that is met, others block", "[engine]") {
+TEST_CASE("baseline methods: two-sided sheets receive on the side that is met, others block", "[engine]") {
     for (const bool two_sided : {false, true}) {
         Scene scene = empty_scene();
         add_polygon(scene, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
@@ -240,7 +240,7 @@ TEST_CASE("yardsticks: two-sided sheets receive on the side that is met, others 
     }
 }
 
-TEST_CASE("yardsticks: seeds change rays, threads and places do not", "[engine]") {
+TEST_CASE("baseline methods: seeds change rays, threads and places do not", "[engine]") {
     Scene cube = empty_scene();
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 2);
     const PatchMesh mesh(cube);
@@ -255,7 +255,7 @@ TEST_CASE("yardsticks: seeds change rays, threads and places do not", "[engine]"
     CHECK(rms_difference(first, matrix_of(away, settings)) < 1e-3);
 }
 
-TEST_CASE("yardsticks: rows come in the order in which they are asked for", "[engine]") {
+TEST_CASE("baseline methods: rows come in the order in which they are asked for", "[engine]") {
     Scene cube = empty_scene();
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 4);
     const PatchMesh mesh(cube);
@@ -272,7 +272,7 @@ TEST_CASE("yardsticks: rows come in the order in which they are asked for", "[en
     }
 }
 
-TEST_CASE("yardsticks: what they cannot do is refused with a word why", "[engine]") {
+TEST_CASE("baseline methods: what they cannot do is refused with a word why", "[engine]") {
     Scene cube = empty_scene();
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 26);
     const PatchMesh large(cube);

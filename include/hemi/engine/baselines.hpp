@@ -19,7 +19,7 @@ struct BaselineSettings {
     std::uint64_t seed = 0;         ///< montecarlo, hemisphere
 };
 
-/// Patches above which yardsticks are refused: they would take hours.
+/// Patches above which baseline methods are refused: they would take hours.
 inline constexpr std::uint32_t max_baseline_patches = 4000;
 
 /// Rows by one of the field's other methods, to measure the hemicube against, on all cores; the same bits

@@ -11,7 +11,7 @@
 
 namespace hemi {
 
-/// Factor from a surface element at `at` with unit normal `normal` to a polygon, as if nothing lay between.
+/// Factor from a surface element at `at` with unit normal `normal` to a polygon, unoccluded.
 ///
 /// The part of the polygon below the element's horizon does not count. 0 if the element sees the polygon's
 /// back or lies in its plane.
@@ -24,7 +24,7 @@ namespace hemi {
 /// SIGGRAPH 1989.
 [[nodiscard]] double point_factor(const Vec3& at, const Vec3& normal, std::span<const Vec3> polygon);
 
-/// Exchange areas A_i F(i, j) of all pairs of patches, as if nothing lay between, in scene units squared.
+/// Exchange areas A_i F(i, j) of all pairs of patches, unoccluded, in scene units squared.
 ///
 /// Only the parts of two patches that lie in front of each other count. Far pairs are integrated over both
 /// areas, by products of Gauss rules; near ones over both contours, one integral in closed form, the other by

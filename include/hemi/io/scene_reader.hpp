@@ -58,7 +58,8 @@ struct SceneReaderOptions {
                                    Diagnostics& diagnostics);
 
 /// STL, ASCII or binary: every triangle a surface, in the file's order; groups are solids ("default" in
-/// binary files); reflectance 0.5, exitance 0. The front is told by the order of vertices, not by normals.
+/// binary files); reflectance 0.5, exitance 0. The order of vertices says which side is the front, not the
+/// normals.
 [[nodiscard]] Scene read_stl_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                    Diagnostics& diagnostics);
 

@@ -106,7 +106,7 @@ struct TargetResult {
 /// @param mesh      its patches
 /// @param base      device, jobs, seed, memory and repair
 /// @param target    largest error that will do
-/// @param observer  is told of progress and may cancel
+/// @param observer  gets progress and may cancel
 /// @throws TargetMissed; as compute_form_factors
 [[nodiscard]] TargetResult factors_to_target(const Scene& scene, const PatchMesh& mesh,
                                              const FactorSettings& base, double target,
@@ -119,7 +119,7 @@ struct TargetResult {
 /// @param base             device, jobs, seed, memory and repair
 /// @param solver           solver, tolerance
 /// @param target           largest error that will do
-/// @param observer         is told of progress and may cancel
+/// @param observer         gets progress and may cancel
 /// @param with_irradiance  see solve_radiosity()
 /// @throws TargetMissed; InvalidArgument if nothing reflects; as compute_form_factors and solve_radiosity
 [[nodiscard]] TargetResult solve_to_target(const Scene& scene, const PatchMesh& mesh,

@@ -19,7 +19,7 @@ namespace hemi {
 /// @param scene     gives the enclosure
 /// @param mesh      its patches
 /// @param preset    how much is done for them
-/// @param observer  is told of progress and may cancel
+/// @param observer  gets progress and may cancel
 /// @throws NoDevice, GlError; OutOfMemory with figures and advice; Cancelled
 [[nodiscard]] FormFactors compute_form_factors(const Scene& scene, const PatchMesh& mesh,
                                                Preset preset = Preset::standard,
@@ -36,7 +36,7 @@ namespace hemi {
 /// @param mesh        its patches
 /// @param patches     whose rows are wanted, ascending; all others stay unknown
 /// @param settings    how
-/// @param observer    is told of progress and may cancel
+/// @param observer    gets progress and may cancel
 /// @param checkpoint  where finished rows are kept, or null; only for all patches
 /// @throws as compute_form_factors
 [[nodiscard]] FormFactors compute_raw_form_factors(const Scene& scene, const PatchMesh& mesh,

@@ -29,7 +29,7 @@ struct PatchValues {
 /// @param mesh             its patches
 /// @param factors          prepared, see prepare_form_factors()
 /// @param settings         solver, tolerance
-/// @param observer         is told of progress and may cancel; is warned where nothing radiates
+/// @param observer         gets progress and may cancel; gets a warning where nothing radiates
 /// @param with_irradiance  finds the irradiance too
 /// @throws InputError if the row of a reflecting patch is not known; NotConverged; Cancelled
 [[nodiscard]] Solution solve_radiosity(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,

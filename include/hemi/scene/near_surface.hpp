@@ -19,8 +19,8 @@ struct NearSurface {
 inline constexpr double near_gap = 0.25;
 
 /// All patches that have one, ascending. A surface that stands on a patch, its border running through the
-/// patch's inside, has a gap of about 0: the patch is straddled. Distances are taken at 21 or 25 points of a
-/// patch.
+/// patch's inside, has a gap of about 0: the patch is partly buried. Distances are taken at 21 or 25 points
+/// of a patch.
 [[nodiscard]] std::vector<NearSurface> find_near_surfaces(const PatchMesh& mesh);
 
 } // namespace hemi

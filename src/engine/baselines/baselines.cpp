@@ -29,9 +29,9 @@ struct Row {
 };
 
 /// Computes a block's worth of rows in parallel, then delivers them in order.
-class YardstickRows : public RowProvider {
+class BaselineRows : public RowProvider {
 public:
-    explicit YardstickRows(const PatchMesh& mesh) : mesh_(mesh) {}
+    explicit BaselineRows(const PatchMesh& mesh) : mesh_(mesh) {}
 
     [[nodiscard]] std::uint32_t size() const final { return mesh_.size(); }
 
@@ -67,12 +67,12 @@ private:
 };
 
 /// Methods that know pairs only.
-class PairRows : public YardstickRows {
+class PairRows : public BaselineRows {
 public:
-    using YardstickRows::YardstickRows;
+    using BaselineRows::BaselineRows;
 
 private:
-    /// A_i F(i, j) as if nothing lay between.
+    /// A_i F(i, j), unoccluded.
     [[nodiscard]] virtual double exchange(std::uint32_t i, std::uint32_t j) const = 0;
 
     [[nodiscard]] Row row(std::uint32_t patch) const final {
@@ -198,10 +198,10 @@ private:
     std::uint64_t back_ = 0;
 };
 
-class MonteCarloRows final : public YardstickRows {
+class MonteCarloRows final : public BaselineRows {
 public:
     MonteCarloRows(const PatchMesh& mesh, const BaselineSettings& settings)
-        : YardstickRows(mesh), tracer_(mesh), settings_(settings) {}
+        : BaselineRows(mesh), tracer_(mesh), settings_(settings) {}
 
     [[nodiscard]] std::string renderer() const override {
         return fmt::format("montecarlo ({} Sobol rays a patch, seed {}; {})", settings_.rays, settings_.seed,
@@ -223,10 +223,10 @@ private:
     BaselineSettings settings_;
 };
 
-class HemisphereRows final : public YardstickRows {
+class HemisphereRows final : public BaselineRows {
 public:
     HemisphereRows(const PatchMesh& mesh, const BaselineSettings& settings)
-        : YardstickRows(mesh), tracer_(mesh), settings_(settings) {}
+        : BaselineRows(mesh), tracer_(mesh), settings_(settings) {}
 
     [[nodiscard]] std::string renderer() const override {
         return fmt::format("hemisphere (disc of {} x {} cells, seed {}; {})", settings_.resolution,

@@ -22,13 +22,13 @@ namespace hemi::io {
 
 namespace {
 
-constexpr ChunkFormat journal_format{"HEMIROW\n", 1, "rows of an unfinished run (.rows)"};
+constexpr ChunkFormat checkpoint_format{"HEMIROW\n", 1, "rows of an unfinished run (.rows)"};
 
-/// Whether a file starts as a journal does, as far as it goes.
-bool is_journal(int descriptor) {
-    std::string start(journal_format.magic.size(), '\0');
+/// Whether a file starts as a checkpoint does, as far as it goes.
+bool is_checkpoint(int descriptor) {
+    std::string start(checkpoint_format.magic.size(), '\0');
     const ssize_t got = ::pread(descriptor, start.data(), start.size(), 0);
-    return got >= 0 && journal_format.magic.starts_with(start.substr(0, static_cast<std::size_t>(got)));
+    return got >= 0 && checkpoint_format.magic.starts_with(start.substr(0, static_cast<std::size_t>(got)));
 }
 
 CheckpointKey read_key(ChunkReader& reader) {
@@ -94,7 +94,7 @@ CheckpointFile::CheckpointFile(const std::filesystem::path& output, bool resume)
         return;
     }
     struct stat status {};
-    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode) || !is_journal(descriptor_)) {
+    if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode) || !is_checkpoint(descriptor_)) {
         leave_alone("is there and holds no rows of an unfinished run");
     } else if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
         leave_alone("another run is writing to it");
@@ -120,7 +120,7 @@ void CheckpointFile::start(const CheckpointKey& key, std::uint32_t size,
     std::optional<ChunkReader> reader;
     std::optional<CheckpointKey> stored;
     try {
-        stored = read_key(reader.emplace(path_, journal_format));
+        stored = read_key(reader.emplace(path_, checkpoint_format));
     } catch (const InputError&) { // it was killed before there was a row
     }
     if (stored) {
@@ -174,7 +174,7 @@ void CheckpointFile::append(const RowBlock& block) {
             give_up(errno);
         }
         ::flock(descriptor_, LOCK_EX);
-        write_start(sink, journal_format);
+        write_start(sink, checkpoint_format);
         const std::string head = json_text(Json(key_));
         write_chunk(sink, "HEAD", {bytes_of(head)});
     }

@@ -10,7 +10,7 @@
 
 namespace hemi::io {
 
-/// What the rows of a journal belong to: names and values, all of which must be equal for rows to be used.
+/// What the rows of a checkpoint belong to: names and values, all of which must be equal for rows to be used.
 using CheckpointKey = std::map<std::string, std::string>;
 
 /// Finished blocks of raw rows, kept beside a file of form factors while that is not complete, so that a run
@@ -22,10 +22,10 @@ using CheckpointKey = std::map<std::string, std::string>;
 /// finished none leaves nothing behind.
 class CheckpointFile {
 public:
-    /// Looks for the journal of `output`. What another run is using, and files that are no journals, are left
-    /// alone; this one then keeps nothing.
+    /// Looks for the checkpoint of `output`. What another run is using, and files that are no checkpoints,
+    /// are left alone; this one then keeps nothing.
     /// @param resume  use what is there; else it is removed
-    /// @throws IoError with `resume` if it is in use or no journal
+    /// @throws IoError with `resume` if it is in use or no checkpoint
     CheckpointFile(const std::filesystem::path& output, bool resume);
     ~CheckpointFile();
     CheckpointFile(const CheckpointFile&) = delete;
@@ -41,13 +41,14 @@ public:
                const std::function<void(std::uint32_t, const RowView&)>& each);
 
     /// @param block  all of whose rows are known
-    /// @throws IoError, for example when the disk is full; the journal is then gone, and keeps nothing more.
+    /// @throws IoError, for example when the disk is full; the checkpoint is then gone, and keeps nothing
+    /// more.
     void append(const RowBlock& block);
 
     /// Rows in it.
     [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
 
-    /// The output is complete: removes the journal.
+    /// The output is complete: removes the checkpoint.
     void remove() noexcept;
 
 private:
@@ -56,7 +57,7 @@ private:
 
     std::filesystem::path path_;
     CheckpointKey key_;
-    int descriptor_ = -1; ///< locked; -1: there is no journal yet
+    int descriptor_ = -1; ///< locked; -1: there is no checkpoint yet
     bool usable_ = true;  ///< whether this run may keep rows
     std::uint64_t rows_ = 0;
 };

@@ -14,7 +14,7 @@ namespace hemi::io {
 namespace {
 
 constexpr std::size_t longest_name = 100; // EnergyPlus' own limit
-constexpr double complete = 1e-3;         // what a row may lose before it is told
+constexpr double complete = 1e-3;         // what a row may lose without a warning
 
 /// @param what  the name is of, for the message
 void check_name(const std::string& name, const std::string& what) {
