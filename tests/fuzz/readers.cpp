@@ -88,17 +88,18 @@ void seed_hff(const fs::path& folder) {
 void seed_hres(const fs::path& folder) {
     io::ResultFile result;
     result.scene = small_scene();
-    result.radiosity = {1.5, 1.25};
-    result.irradiance = {1.0, 0.5};
-    result.row_sum = result.environment = {0.5, 0.5};
-    result.blocked = {0.0, 0.0};
+    Solution& solution = result.solution;
+    solution.radiosity = {1.5, 1.25};
+    solution.irradiance = {1.0, 0.5};
+    solution.row_sum = solution.environment_share = {0.5, 0.5};
+    solution.back_face_share = {0.0, 0.0};
     io::write_hres(folder / "a.hres", result);
 }
 
 void seed_rows(const fs::path& folder) {
-    io::CheckpointFile journal(folder / "a", false);
-    journal.start({{"seed", "0"}}, 2, {});
-    journal.append(small_matrix(true).blocks().front());
+    io::CheckpointFile checkpoint(folder / "a", false);
+    checkpoint.start({{"seed", "0"}}, 2, {});
+    checkpoint.append(small_matrix(true).blocks().front());
 }
 
 void seed_glb(const fs::path& folder) {
@@ -220,8 +221,8 @@ const std::map<std::string, Reader> readers{
     {"rows",
      {"fuzzed.rows",
       [](const fs::path& path) {
-          io::CheckpointFile journal(path.parent_path() / "fuzzed", true);
-          journal.start({{"seed", "0"}}, 2, [](std::uint32_t, const RowView& row) { (void)row.sum(); });
+          io::CheckpointFile checkpoint(path.parent_path() / "fuzzed", true);
+          checkpoint.start({{"seed", "0"}}, 2, [](std::uint32_t, const RowView& row) { (void)row.sum(); });
       },
       seed_rows, true}},
     {"mtx",
