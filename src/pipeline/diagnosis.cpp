@@ -78,10 +78,11 @@ void examine_rows(Diagnosis& diagnosis, const FormFactorMatrix& factors, double 
 
 std::vector<bool> seen_patches(const FormFactorMatrix& factors) {
     std::vector<bool> seen(factors.size(), false);
-    for (const RowBlock& block : factors.blocks()) {
-        for (std::size_t k = 0; k < block.columns.size(); ++k) {
-            if (block.values[k] > 0.0f) {
-                seen[block.columns[k]] = true;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        const RowView row = factors.row(i);
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            if (row.values[k] > 0.0f) {
+                seen[row.columns[k]] = true;
             }
         }
     }

@@ -1,4 +1,4 @@
-#include "matrix/pair_product.hpp"
+#include "matrix/exchange_product.hpp"
 #include "solver/radiosity_system.hpp"
 
 #include <algorithm>
@@ -17,12 +17,11 @@ class GradientSolver {
 public:
     GradientSolver(const RadiositySystem& system, std::span<const double> areas)
         : system_(system), areas_(areas), stride_(system.source().stride()),
-          all_known_(system.factors().all_known()), pairs_(system.factors().blocks(), system.size(), stride_),
-          self_(system.size(), 0.0), lost_(system.size(), 1.0), arriving_(system.size(), system.channels()),
-          irradiance_(system.size(), system.channels()), residual_(system.size(), system.channels()),
-          direction_(system.size(), system.channels()), product_(system.size(), system.channels()),
-          preconditioned_squares_(system.channels(), 0.0), residual_squares_(system.channels(), 0.0),
-          done_(system.channels(), false) {
+          exchange_(system.factors(), areas, stride_), self_(system.size(), 0.0), lost_(system.size(), 1.0),
+          arriving_(system.size(), system.channels()), irradiance_(system.size(), system.channels()),
+          residual_(system.size(), system.channels()), direction_(system.size(), system.channels()),
+          product_(system.size(), system.channels()), preconditioned_squares_(system.channels(), 0.0),
+          residual_squares_(system.channels(), 0.0), done_(system.channels(), false) {
         balance_rows();
     }
 
@@ -63,7 +62,7 @@ public:
                 deviation.patch(i)[c] -= common[c];
             }
         }
-        multiply(deviation, arriving_, true);
+        exchange_.apply(self_, deviation.patch(0), arriving_.patch(0), true);
         for (std::uint32_t i = 0; i < system_.size(); ++i) {
             for (std::uint32_t c = 0; c < system_.channels(); ++c) {
                 const double rho = system_.reflectance().patch(i)[c];
@@ -86,7 +85,7 @@ private:
         for (std::uint32_t i = 0; i < system_.size(); ++i) {
             std::fill_n(ones.patch(i), stride_, 1.0);
         }
-        multiply(ones, arriving_, true);
+        exchange_.apply(self_, ones.patch(0), arriving_.patch(0), true);
         for (std::uint32_t i = 0; i < system_.size(); ++i) {
             if (system_.factors().known(i)) {
                 const RowView row = system_.factors().row(i);
@@ -95,33 +94,6 @@ private:
                     balance_row(arriving_.patch(i)[0] / areas_[i] + diagonal, row.environment, row.blocked);
                 self_[i] = diagonal + balance.defect;
                 lost_[i] = balance.lost;
-            }
-        }
-    }
-
-    /// y = X z, over the pairs that contain a known row.
-    /// @param with_unknown  z is not 0 in rows that are unknown
-    void multiply(const ChannelField& z, ChannelField& y, bool with_unknown) {
-        const std::span<const RowBlock> blocks = system_.factors().blocks();
-        pairs_.apply([this](std::uint32_t i) { return areas_[i]; },
-                     [](const RowBlock& block, std::uint32_t) {
-                         return [values = block.values.data()](std::uint64_t k) {
-                             return static_cast<double>(values[k]);
-                         };
-                     },
-                     z.patch(0), y.patch(0));
-        for (std::uint32_t i = 0; i < system_.size(); ++i) {
-            for (std::size_t c = 0; c < stride_; ++c) {
-                y.patch(i)[c] += areas_[i] * self_[i] * z.patch(i)[c];
-            }
-            if (with_unknown && !all_known_) {
-                const RowBlock& block = block_of(blocks, i);
-                visit_unknown_left(blocks, i, [&](std::uint64_t k) {
-                    const double exchange = areas_[i] * static_cast<double>(block.values[k]);
-                    for (std::size_t c = 0; c < stride_; ++c) {
-                        y.patch(i)[c] += exchange * z.patch(block.columns[k])[c];
-                    }
-                });
             }
         }
     }
@@ -144,7 +116,7 @@ private:
             p = residual_.patch(i)[c] / diagonal + beta[c] * p;
             scaled.patch(i)[c] = system_.reflectance().patch(i)[c] * p;
         });
-        multiply(scaled, arriving_, false);
+        exchange_.apply(self_, scaled.patch(0), arriving_.patch(0), false);
         std::vector<double> curvature(channels, 0.0);
         for_reflecting([&](std::uint32_t i, std::uint32_t c, double) {
             const double rho = system_.reflectance().patch(i)[c];
@@ -209,8 +181,7 @@ private:
     const RadiositySystem& system_;
     std::span<const double> areas_;
     std::size_t stride_;
-    bool all_known_;
-    PairProduct pairs_;
+    ExchangeProduct exchange_;
     std::vector<double> self_; // F(i, i) with the defect of the pairs' sums
     std::vector<double> lost_;
     ChannelField arriving_;
