@@ -173,6 +173,15 @@ std::unique_ptr<Context> make_context(const std::string& device) {
     return make_egl_context(*egl_number(device));
 }
 
+std::optional<std::string> find_gpu() {
+    static const std::optional<std::string> found = []() -> std::optional<std::string> {
+        std::vector<std::string> ignored;
+        const auto context = first_working_egl(ignored, true);
+        return context ? std::optional(context->name()) : std::nullopt;
+    }();
+    return found;
+}
+
 std::vector<std::string> device_names() {
     std::vector<std::string> names;
     const std::size_t count = egl_device_count();

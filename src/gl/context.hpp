@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,9 @@ private:
 /// osmesa. A named device never falls back to another.
 /// @throws InvalidArgument for another name; NoDevice with the reasons if it cannot be had.
 [[nodiscard]] std::unique_ptr<Context> make_context(const std::string& device);
+
+/// The name of the first hardware device that a context can be made on; none without a GPU.
+[[nodiscard]] std::optional<std::string> find_gpu();
 
 /// @throws InvalidArgument unless `device` is a name that make_context() knows.
 void check_device_name(const std::string& device);

@@ -1,6 +1,7 @@
 #include "hemi/pipeline/picture.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/engine/engine.hpp"
 #include "hemi/io/image_file.hpp"
 #include "hemi/io/paths.hpp"
 
@@ -48,7 +49,8 @@ DrawnPicture draw_solution(const Scene& scene, const PatchMesh& mesh, const Solu
             automatic_exposure(mesh, drawn, solution.back_face_share, solution.exitance, solution.channels);
     }
     const Camera camera = settings.camera ? *settings.camera : scene_camera(scene, mesh);
-    return {draw_picture(drawn, camera, picture, settings.device), picture.exposure};
+    const bool rows_only = settings.device == cpu_device;
+    return {draw_picture(drawn, camera, picture, rows_only ? "auto" : settings.device), picture.exposure};
 }
 
 void write_picture(const std::filesystem::path& path, const Picture& picture) {

@@ -28,18 +28,23 @@ struct HemicubeSettings {
 /// @throws InvalidArgument if `count` is not 1, 4, 9 … 64.
 void check_eye_points(std::uint32_t count);
 
+/// The device of hemi's own rasteriser: SIMD instructions in threads of this process, no OpenGL.
+inline constexpr const char* cpu_device = "cpu";
+
 /// Where and how rows are computed; none of it changes a bit of them on the same kind of device.
 struct EngineSettings {
-    std::string device = "auto"; ///< auto, egl, egl:N or osmesa
-    std::uint32_t jobs = 0; ///< worker processes on software OpenGL; 0: one per core. A GPU is served by one
+    std::string device = "auto"; ///< auto (a GPU if there is one, else cpu), cpu, egl, egl:N or osmesa
+    /// Threads on `cpu`, worker processes on software OpenGL; 0: one per core. A GPU is served by one.
+    std::uint32_t jobs = 0;
     /// Program that is started for every worker, see find_worker_program(). Empty: rows are computed in this
     /// process, by one context.
     std::filesystem::path worker_program;
 };
 
-/// Form factors by hemicubes, drawn as OpenGL item buffers. Contexts are made on the first call of rows() or
-/// renderer(). On software OpenGL with a worker program, rows come from `jobs` worker processes; on a GPU
-/// from one context of this process.
+/// Form factors by hemicubes, whose item buffers are drawn by OpenGL or by the CPU rasteriser. Contexts are
+/// made on the first call of rows() or renderer(). On `cpu`, rows come from `jobs` threads, in order; on
+/// software OpenGL with a worker program from `jobs` worker processes; on a GPU from one context of this
+/// process.
 /// @param mesh      must outlive the engine
 /// @param settings  what changes the rows
 /// @param engine    device and workers
@@ -72,16 +77,16 @@ make_visibility_engine(const PatchMesh& mesh, const HemicubeSettings& settings, 
 /// @throws InvalidArgument if there is no connection: the program was started by hand.
 int run_hemicube_worker();
 
-/// An OpenGL device that can be chosen by name.
+/// A device that can be chosen by name.
 struct DeviceInfo {
-    std::string name;     ///< "egl:0", "osmesa"
-    std::string renderer; ///< GL_RENDERER; empty if no context could be made
-    std::string version;  ///< GL_VERSION
+    std::string name;     ///< "egl:0", "osmesa", "cpu"
+    std::string renderer; ///< GL_RENDERER, empty if no context could be made; of `cpu` its instruction set
+    std::string version;  ///< GL_VERSION; empty of `cpu`
     std::string problem;  ///< why it cannot be used; empty if it can
     bool software = true; ///< rasterises on the CPU
     bool chosen = false;  ///< what `auto` takes
 };
-/// Everything that could be used here; makes and destroys a context on each.
+/// Everything that could be used here; makes and destroys a context on each OpenGL device.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
 /// What made the loader of OpenGL's functions: "glad 2.0.2".

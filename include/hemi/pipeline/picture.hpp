@@ -30,7 +30,8 @@ struct DrawSettings {
     std::optional<Camera> camera;   ///< empty: scene_camera()
     /// Channels shown as red, green, blue; empty: the only one, or all three.
     std::optional<std::array<std::uint32_t, 3>> show;
-    std::string device = "auto"; ///< auto, egl, egl:N, osmesa
+    std::string device =
+        "auto"; ///< auto, egl, egl:N or osmesa; cpu, which draws no pictures, stands for auto
 };
 
 /// A picture and the exposure that it was drawn with.

@@ -142,22 +142,27 @@ void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows, bool ch
         [&rows](const std::string& text) { rows.max_row_error = parse_positive("--max-row-error", text); });
 }
 
-void add_device(CLI::App& app, std::string& device) {
+/// @param rows  whether rows are computed on it, which `cpu` can do; pictures are drawn by OpenGL
+void add_device(CLI::App& app, std::string& device, bool rows) {
     Options(app, "Computing")
-        .value("--device", "NAME", "auto, egl, egl:N or osmesa; see `hemi devices`",
-               [&device](const std::string& text) {
+        .value("--device", "NAME",
+               rows ? "auto, cpu, egl, egl:N or osmesa; see `hemi devices`"
+                    : "auto, egl, egl:N or osmesa; see `hemi devices`",
+               [&device, rows](const std::string& text) {
                    const bool numbered = text.starts_with("egl:");
                    if (numbered) {
                        (void)parse_whole("--device egl:", text.substr(4), 0, 1000);
                    } else {
-                       (void)parse_choice("--device", text, Words{"auto", "egl", "egl:N", "osmesa"});
+                       (void)parse_choice("--device", text,
+                                          rows ? Words{"auto", "cpu", "egl", "egl:N", "osmesa"}
+                                               : Words{"auto", "egl", "egl:N", "osmesa"});
                        if (text == "egl:N") {
                            throw InvalidArgument("--device egl:N: N stands for a number, such as egl:0");
                        }
                    }
                    device = text;
                })
-        ->type_name("auto|egl|osmesa");
+        ->type_name(rows ? "auto|cpu|egl|osmesa" : "auto|egl|osmesa");
 }
 
 /// How hemicubes are drawn, whatever their settings.
@@ -168,9 +173,9 @@ void add_drawing(CLI::App& app, RowOptions& rows) {
         [&rows](const std::string& text) { rows.factors.seed = parse_whole("--seed", text, 0, any_whole); });
     options.flag("--no-merge", rows.factors.merge_lattices,
                  "draw every patch separately, even in coplanar lattices", false);
-    add_device(app, rows.factors.engine.device);
+    add_device(app, rows.factors.engine.device, true);
     Options(app, "Computing")
-        .value("--jobs", "N", "worker processes on software OpenGL (one per core)",
+        .value("--jobs", "N", "threads on cpu, worker processes on software OpenGL (one per core)",
                [&rows](const std::string& text) {
                    rows.factors.engine.jobs = to_index("--jobs", text, 1, 1024);
                });
@@ -443,7 +448,7 @@ void add_render(CLI::App& app, RenderArguments& a) {
     output.path("-o,--output", "PICTURE", a.picture.output,
                 "picture: .png or .hdr (RESULT's name with .png, here); - for .png on stdout");
     add_picture(app, a.picture, nullptr);
-    add_device(app, a.device);
+    add_device(app, a.device, false);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi render room.hres -o room.png --size 1600x900 --exposure 0.8\n"

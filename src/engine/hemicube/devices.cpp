@@ -1,3 +1,4 @@
+#include "engine/rasteriser/cpu_rows.hpp"
 #include "gl/context.hpp"
 
 #include "hemi/core/error.hpp"
@@ -20,9 +21,16 @@ std::vector<DeviceInfo> list_devices() {
         }
         devices.push_back(std::move(info));
     }
-    // As make_context("auto"): the first GPU, else OSMesa, which comes last.
+    DeviceInfo& cpu = devices.emplace_back();
+    cpu.name = cpu_device;
+    try {
+        cpu.renderer = cpu_renderer();
+    } catch (const InvalidArgument& error) { // HEMI_SIMD
+        cpu.problem = error.what();
+    }
+    // As make_hemicube_engine() takes "auto": the first GPU, else the CPU, which comes last.
     for (DeviceInfo& info : devices) {
-        if (info.problem.empty() && (!info.software || info.name == "osmesa")) {
+        if (info.problem.empty() && (!info.software || info.name == cpu_device)) {
             info.chosen = true;
             break;
         }

@@ -32,11 +32,6 @@ std::uint32_t batch_slots(std::uint32_t resolution, bool software) {
 
 } // namespace
 
-EngineGeometry make_engine_geometry(const PatchMesh& mesh, const HemicubeSettings& settings) {
-    return {make_draw_list(mesh, settings.merge_lattices),
-            make_eye_points(mesh, settings.eye_points, settings.near_eye_points)};
-}
-
 struct GlRows::State {
     /// What a batch in the item buffers is of, slot by slot.
     struct Hemicube {

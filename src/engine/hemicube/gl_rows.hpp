@@ -1,7 +1,6 @@
 #pragma once
 
-#include "engine/hemicube/draw_list.hpp"
-#include "engine/hemicube/eye.hpp"
+#include "engine/hemicube/engine_geometry.hpp"
 #include "engine/raw_row.hpp"
 #include "hemi/engine/engine.hpp"
 
@@ -17,13 +16,6 @@ class Context;
 }
 
 namespace hemi {
-
-/// All that an engine needs to know of a mesh: what to draw, and from where. Can be sent to a worker.
-struct EngineGeometry {
-    DrawList list;
-    EyePoints eyes;
-};
-[[nodiscard]] EngineGeometry make_engine_geometry(const PatchMesh& mesh, const HemicubeSettings& settings);
 
 /// Rows by item buffers on one context of this process and thread.
 class GlRows {

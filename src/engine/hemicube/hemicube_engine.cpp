@@ -1,9 +1,13 @@
 #include "engine/hemicube/gl_rows.hpp"
+#include "engine/rasteriser/cpu_rows.hpp"
 #include "engine/workers/worker_pool.hpp"
 #include "gl/context.hpp"
+#include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/engine/engine.hpp"
+
+#include <fmt/format.h>
 
 namespace hemi {
 
@@ -62,15 +66,32 @@ private:
     std::unique_ptr<RawRowProvider> engine_;
 };
 
+/// The device that `name` stands for: itself, or what `auto` chooses.
+std::string resolve_device(const std::string& name) {
+    if (name == cpu_device) {
+        return name;
+    }
+    if (name != "auto" && name != "egl" && name != "osmesa" && !name.starts_with("egl:")) {
+        throw InvalidArgument(fmt::format("device \"{}\"; must be auto, cpu, egl, egl:N or osmesa", name));
+    }
+    gl::check_device_name(name);
+    return name == "auto" ? gl::find_gpu().value_or(cpu_device) : name;
+}
+
 std::unique_ptr<RawRowProvider> make_raw_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
                                                 RowQuantity quantity, const EngineSettings& engine) {
     DeltaFormFactors::check_resolution(settings.resolution);
-    gl::check_device_name(engine.device);
+    const std::string device = resolve_device(engine.device);
     auto geometry = std::make_unique<const EngineGeometry>(make_engine_geometry(mesh, settings));
-    if (engine.worker_program.empty()) {
-        return std::make_unique<InProcessEngine>(std::move(geometry), settings, quantity, engine.device);
+    if (device == cpu_device) {
+        return make_cpu_engine(std::move(geometry), settings, quantity, engine.jobs);
     }
-    return make_worker_pool(std::move(geometry), settings, quantity, engine);
+    if (engine.worker_program.empty()) {
+        return std::make_unique<InProcessEngine>(std::move(geometry), settings, quantity, device);
+    }
+    EngineSettings resolved = engine;
+    resolved.device = device;
+    return make_worker_pool(std::move(geometry), settings, quantity, resolved);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine/hemicube/draw_list.hpp"
+#include "engine/rasteriser/texel_tiles.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 
@@ -21,6 +22,9 @@ public:
     /// must not sum to more than DeltaFormFactors::total.
     void add(const std::uint32_t* ids, const DeltaFormFactors& weights);
 
+    /// The same of draw ids in the order of TexelTiles.
+    void add_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights);
+
     /// The row so far, and starts the next one. The view is valid until the next call.
     /// Values are rounded to float32 so that their sum with e and b is 1 to about 1e-9.
     [[nodiscard]] RowView take();
@@ -28,6 +32,8 @@ public:
 private:
     template <bool identity>
     void add_rows(const std::uint32_t* ids, const DeltaFormFactors& weights);
+    template <bool identity>
+    void add_all_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights);
 
     std::span<const std::uint32_t> item_of_id_;
     bool identity_;                   ///< draw ids are items: no look-up is needed

@@ -60,34 +60,8 @@ VisibilityAccumulator::VisibilityAccumulator(const DrawList& list, std::uint32_t
             item_of_id_[id] = item_nothing;
         }
     }
-    for (std::size_t p = 0; p < list.polygons.size(); ++p) {
-        const DrawPolygon& polygon = list.polygons[p];
-        double largest = 0.0;
-        for (std::uint32_t t = 0; t < polygon.triangle_count; ++t) {
-            const auto corner = [&](std::size_t k) -> const OutlineCorner& {
-                return list.corners[polygon.first_corner + list.triangles[polygon.first_triangle + t][k]];
-            };
-            const Vec3& origin = list.vertices[corner(0).vertex];
-            const Vec3 a = list.vertices[corner(1).vertex] - origin;
-            const Vec3 b = list.vertices[corner(2).vertex] - origin;
-            const Vec3 cross = glm::cross(a, b);
-            const double square = glm::dot(cross, cross);
-            if (square <= largest) {
-                continue;
-            }
-            largest = square;
-            // Of the function with values 0, 1, 0 at the corners, and of the one with 0, 0, 1.
-            const Vec3 to_a = glm::cross(b, cross) / square;
-            const Vec3 to_b = glm::cross(cross, a) / square;
-            const double u = static_cast<double>(corner(0).grid_u);
-            const double v = static_cast<double>(corner(0).grid_v);
-            maps_[p] = {origin,
-                        (static_cast<double>(corner(1).grid_u) - u) * to_a +
-                            (static_cast<double>(corner(2).grid_u) - u) * to_b,
-                        (static_cast<double>(corner(1).grid_v) - v) * to_a +
-                            (static_cast<double>(corner(2).grid_v) - v) * to_b,
-                        u, v};
-        }
+    for (std::uint32_t p = 0; p < list.polygons.size(); ++p) {
+        maps_[p] = make_grid_map(list, p);
     }
 }
 
@@ -95,14 +69,71 @@ void VisibilityAccumulator::add(const std::uint32_t* ids, const DeltaFormFactors
                                 const FrontViews& views, const EyePoint& eye, const EyeFrame& frame) {
     add_visible(ids, weights);
     for (const FrontViews::View& view : views.views) {
-        const std::uint8_t bit = view.back ? 2 : 1;
-        if ((side_seen_[view.polygon] & bit) == 0) {
-            side_seen_[view.polygon] |= bit;
-            sides_.push_back({view.polygon, view.back});
-        }
+        note_side({view.polygon, view.back});
         add_hidden(ids, weights, views, view, eye, frame);
     }
     total_ += weights.sum();
+}
+
+void VisibilityAccumulator::note_side(const Side& side) {
+    const std::uint8_t bit = side.back ? 2 : 1;
+    if ((side_seen_[side.polygon] & bit) == 0) {
+        side_seen_[side.polygon] |= bit;
+        sides_.push_back(side);
+    }
+}
+
+void VisibilityAccumulator::add_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights) {
+    Tally* const visible = visible_.data();
+    for (std::size_t first = 0; first < ids.size(); first += TexelTiles::tile_size) {
+        const std::uint32_t* const tile = ids.data() + first;
+        std::uint32_t differing = 0;
+        for (std::size_t k = 1; k < TexelTiles::tile_size; ++k) {
+            differing |= tile[k] ^ tile[0];
+        }
+        if (differing == 0) {
+            visible[tile[0]] += weights.tile[first / TexelTiles::tile_size];
+            continue;
+        }
+        const Tally* const texel = weights.texel.data() + first;
+        for (std::size_t k = 0; k < TexelTiles::tile_size; ++k) {
+            visible[tile[k]] += texel[k];
+        }
+    }
+    total_ += weights.sum;
+}
+
+VisibilityRow VisibilityAccumulator::take(Coverage& coverage) {
+    for (const std::uint32_t id : coverage.single_ids) {
+        take_single(id, std::exchange(coverage.of_id[id], Tally{0}));
+    }
+    coverage.single_ids.clear();
+    for (const Side& side : coverage.sides) {
+        note_side(side);
+    }
+    coverage.sides.clear();
+    for (const Side& side : sides_) {
+        const DrawPolygon& polygon = list_.polygons[side.polygon];
+        const std::uint32_t first = side.back ? polygon.back_id : polygon.front_id;
+        const std::uint32_t end = first + (polygon.grid.u * polygon.grid.v << polygon.split);
+        for (std::uint32_t id = first; id < end; ++id) {
+            hidden_[id] = std::exchange(coverage.of_id[id], Tally{0}) - visible_[id];
+        }
+    }
+    return finish();
+}
+
+/// A polygon of one cell: there is nothing to pool.
+void VisibilityAccumulator::take_single(std::uint32_t id, Tally covered) {
+    const Tally visible = std::exchange(visible_[id], Tally{0});
+    const Tally hidden = covered - visible;
+    if (texels(hidden) > 0) {
+        set(id, visible, hidden);
+    } else if (item_of_id_[id] >= item_first_patch) {
+        const std::uint32_t patch = item_of_id_[id] - item_first_patch;
+        share_[patch] = 1.0f;
+        evidence_[patch] = visibility_clear;
+    }
 }
 
 void VisibilityAccumulator::add_visible(const std::uint32_t* ids, const DeltaFormFactors& weights) {
@@ -334,6 +365,10 @@ void VisibilityAccumulator::pool_cells(const DrawPolygon& polygon, std::uint32_t
 }
 
 VisibilityRow VisibilityAccumulator::take() {
+    return finish();
+}
+
+VisibilityRow VisibilityAccumulator::finish() {
     const double unit = 1.0 / std::exchange(total_, 0u);
     VisibilityRow row;
     row.environment = weight(std::exchange(visible_[item_nothing], 0)) * unit;

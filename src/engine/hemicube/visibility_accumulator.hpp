@@ -2,7 +2,9 @@
 
 #include "engine/hemicube/draw_list.hpp"
 #include "engine/hemicube/eye.hpp"
+#include "engine/hemicube/grid_map.hpp"
 #include "engine/hemicube/view_builder.hpp"
+#include "engine/rasteriser/rasteriser.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/engine/visibility_provider.hpp"
 
@@ -14,9 +16,9 @@
 namespace hemi {
 
 /// Makes rows of visibility: V = visible / (visible + hidden) delta form factors, on the same
-/// texels. What is visible is in the item buffers; what a polygon's front covers but others hide is found by
-/// scanning the spans of its outline, on the CPU.
-/// Memory: 16 bytes a draw id and 16 a cell of the largest polygon.
+/// texels. What is visible is in the item buffers; what a polygon's front covers but others hide is known
+/// from the CPU rasteriser's coverage, or found by scanning the spans of its outline. Memory: 16 bytes a draw
+/// id and 16 a cell of the largest polygon.
 class VisibilityAccumulator {
 public:
     /// @param list  must outlive this.
@@ -31,26 +33,23 @@ public:
     /// The row so far, and starts the next one. The view is valid until the next call.
     [[nodiscard]] VisibilityRow take();
 
-private:
-    /// A weight in the upper and the number of its texels in the lower half: both are summed at once.
-    using Tally = std::uint64_t;
+    /// Adds one hemicube of the CPU rasteriser, whose coverage is taken with the row.
+    /// @param ids  in the order of TexelTiles
+    void add_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights);
+    /// The row of hemicubes that add_tiles() added. The coverage is empty afterwards.
+    [[nodiscard]] VisibilityRow take(Coverage& coverage);
 
-    /// Grid coordinates of a polygon as an affine function of the position on its plane.
-    struct GridMap {
-        Vec3 origin{0.0};
-        Vec3 gradient_u{0.0}, gradient_v{0.0};
-        double u = 0.0, v = 0.0; ///< at the origin
-    };
-    /// One side of a polygon that some eye of the row saw.
-    struct Side {
-        std::uint32_t polygon;
-        bool back;
-    };
+private:
+    using Tally = TexelTally;
+    using Side = Coverage::Side; ///< one side of a polygon that some eye of the row saw
 
     void add_visible(const std::uint32_t* ids, const DeltaFormFactors& weights);
     void add_hidden(const std::uint32_t* ids, const DeltaFormFactors& weights, const FrontViews& views,
                     const FrontViews::View& view, const EyePoint& eye, const EyeFrame& frame);
     void spans(std::span<const FrontViews::Point> outline, std::uint32_t face, std::uint32_t resolution);
+    void note_side(const Side& side);
+    void take_single(std::uint32_t id, Tally covered);
+    [[nodiscard]] VisibilityRow finish();
     void pool(const Side& side);
     void pool_cells(const DrawPolygon& polygon, std::uint32_t first_id);
     void set(std::uint32_t id, Tally visible, Tally hidden);

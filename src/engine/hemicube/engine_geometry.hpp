@@ -1,0 +1,16 @@
+#pragma once
+
+#include "engine/hemicube/draw_list.hpp"
+#include "engine/hemicube/eye.hpp"
+#include "hemi/engine/engine.hpp"
+
+namespace hemi {
+
+/// All that an engine needs to know of a mesh: what to draw, and from where. Can be sent to a worker.
+struct EngineGeometry {
+    DrawList list;
+    EyePoints eyes;
+};
+[[nodiscard]] EngineGeometry make_engine_geometry(const PatchMesh& mesh, const HemicubeSettings& settings);
+
+} // namespace hemi

@@ -1,0 +1,94 @@
+#include "engine/rasteriser/cpu_rows.hpp"
+
+#include "engine/hemicube/row_accumulator.hpp"
+#include "engine/hemicube/visibility_accumulator.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+#include <utility>
+
+namespace hemi {
+
+struct CpuRows::State {
+    State(const EngineGeometry& the_geometry, const RasterScene& scene, const HemicubeSettings& the_settings,
+          RowQuantity quantity)
+        : geometry(the_geometry), settings(the_settings), delta(the_settings.resolution),
+          tiles(the_settings.resolution), rasteriser(make_rasteriser(scene, tiles)) {
+        if (quantity == RowQuantity::visibility) {
+            visibility.emplace(geometry.list, geometry.eyes.patches());
+            coverage.emplace(geometry.list.item_of_id.size());
+        } else {
+            accumulator.emplace(geometry.list.item_of_id, geometry.eyes.patches());
+        }
+    }
+
+    [[nodiscard]] EyeFrame frame(std::uint32_t patch, std::uint32_t eye) const {
+        return {geometry.eyes.of(patch)[eye].normal, patch, eye, settings.seed};
+    }
+
+    /// Weights for an eye point that stands for `share` of its patch; a rule has few different shares.
+    const TileWeights& weights_for(double share) {
+        constexpr std::size_t max_kept = 32;
+        const auto found = std::find_if(kept.begin(), kept.end(),
+                                        [share](const auto& entry) { return entry.first == share; });
+        if (found != kept.end()) {
+            return found->second;
+        }
+        if (kept.size() == max_kept) {
+            kept.pop_front();
+        }
+        return kept.emplace_back(share, TileWeights(tiles, share >= 1.0 ? delta : delta.scaled(share)))
+            .second;
+    }
+
+    const EngineGeometry& geometry;
+    HemicubeSettings settings;
+    DeltaFormFactors delta;
+    TexelTiles tiles;
+    std::unique_ptr<Rasteriser> rasteriser;
+    std::deque<std::pair<double, TileWeights>> kept;
+    std::optional<RowAccumulator> accumulator;       ///< of form factors
+    std::optional<VisibilityAccumulator> visibility; ///< or of visibility
+    std::optional<Coverage> coverage;                ///< with it
+};
+
+CpuRows::CpuRows(const EngineGeometry& geometry, const RasterScene& scene, const HemicubeSettings& settings,
+                 RowQuantity quantity)
+    : state_(std::make_unique<State>(geometry, scene, settings, quantity)) {}
+
+CpuRows::~CpuRows() = default;
+
+RawRow CpuRows::row(std::uint32_t patch) {
+    State& state = *state_;
+    const auto eyes = state.geometry.eyes.of(patch);
+    for (std::uint32_t eye = 0; eye < eyes.size(); ++eye) {
+        const TileWeights& weights = state.weights_for(eyes[eye].share);
+        const EyeFrame frame = state.frame(patch, eye);
+        if (state.visibility) {
+            state.rasteriser->draw(eyes[eye], frame, &weights, &*state.coverage);
+            state.visibility->add_tiles(state.rasteriser->ids(), weights);
+        } else {
+            state.rasteriser->draw(eyes[eye], frame, nullptr, nullptr);
+            state.accumulator->add_tiles(state.rasteriser->ids(), weights);
+        }
+    }
+    return state.visibility ? raw_row(state.visibility->take(*state.coverage)) : state.accumulator->take();
+}
+
+std::vector<std::uint32_t> CpuRows::items(std::uint32_t patch, std::uint32_t eye) {
+    State& state = *state_;
+    state.rasteriser->draw(state.geometry.eyes.of(patch)[eye], state.frame(patch, eye), nullptr, nullptr);
+    const std::span<const std::uint32_t> ids = state.rasteriser->ids();
+    std::vector<std::uint32_t> items;
+    for (int face = 0; face < hemicube_faces; ++face) {
+        for (std::uint32_t y = 0; y < state.tiles.height(face); ++y) {
+            for (std::uint32_t x = 0; x < state.tiles.resolution(); ++x) {
+                items.push_back(state.geometry.list.item_of_id[ids[state.tiles.at(face, x, y)]]);
+            }
+        }
+    }
+    return items;
+}
+
+} // namespace hemi

@@ -1,0 +1,82 @@
+#pragma once
+
+#include "engine/hemicube/draw_list.hpp"
+#include "engine/hemicube/grid_map.hpp"
+#include "hemi/core/geometry.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <vector>
+
+namespace hemi {
+
+/// Allocator of vectors that SIMD code loads whole cache lines of.
+template <class T>
+struct CacheLineAllocator {
+    using value_type = T;
+    static constexpr std::align_val_t alignment{64};
+
+    CacheLineAllocator() = default;
+    template <class U>
+    CacheLineAllocator(const CacheLineAllocator<U>& /*other*/) noexcept {}
+
+    [[nodiscard]] T* allocate(std::size_t count) {
+        return static_cast<T*>(::operator new(count * sizeof(T), alignment));
+    }
+    void deallocate(T* memory, std::size_t /*count*/) noexcept { ::operator delete(memory, alignment); }
+    bool operator==(const CacheLineAllocator&) const = default;
+};
+template <class T>
+using CacheLineVector = std::vector<T, CacheLineAllocator<T>>;
+
+/// Triangles that lie near one another: culled and transformed together.
+struct TriangleCluster {
+    std::array<float, 3> centre{}; ///< with `radius`: a sphere round it, in raster coordinates
+    float radius = 0.0f;
+    std::uint32_t triangles = 0; ///< in slots [64 c, 64 c + triangles) of cluster c
+    std::uint32_t vertices = 0;  ///< in slots [64 c, 64 c + vertices)
+};
+
+/// The draw list as the CPU rasteriser takes it, shared by all threads: polygons that show one draw id as
+/// clusters of triangles, and the polygons whose draw id depends on the texel.
+///
+/// Raster coordinates are (p - origin)·scale, of magnitude 1 and less. Vertices are kept as sums of two
+/// floats, so that their difference to a sample point has the relative precision of a float however close
+/// the two are.
+struct RasterScene {
+    explicit RasterScene(const DrawList& the_list);
+
+    static constexpr std::uint32_t cluster_size = 64; ///< most triangles, and most vertices, of a cluster
+
+    /// A position as two floats.
+    struct SplitPosition {
+        std::array<float, 3> high, low;
+    };
+    [[nodiscard]] SplitPosition split(const Vec3& position) const;
+
+    const DrawList& list;
+    Vec3 origin{0.0};
+    double scale = 1.0; ///< a power of two
+
+    std::vector<TriangleCluster> clusters;
+    std::array<CacheLineVector<float>, 3> vertex_high; ///< x, y, z; 64 slots a cluster
+    std::array<CacheLineVector<float>, 3> vertex_low;
+    CacheLineVector<std::uint8_t> corners; ///< 3·64 a cluster: vertices of its triangles, first corners first
+    /// Planes of the triangles, height(p) = normal · p - plane[3]; 64 slots a cluster.
+    std::array<CacheLineVector<float>, 4> plane;
+    CacheLineVector<std::uint32_t> front_id; ///< draw ids; 64 slots a cluster
+    CacheLineVector<std::uint32_t> back_id;
+    CacheLineVector<std::uint32_t> polygon; ///< into the draw list; 64 slots a cluster
+
+    /// A polygon of several cells.
+    struct GridPolygon {
+        std::uint32_t polygon; ///< into the draw list
+        GridMap map;
+    };
+    std::vector<GridPolygon> grid_polygons;
+};
+
+} // namespace hemi
