@@ -1,5 +1,7 @@
 #include "engine/baselines/reference_engine.hpp"
 #include "engine/hemicube/gl_rows.hpp"
+#include "support/device.hpp"
+#include "support/item_agreement.hpp"
 #include "support/scenes.hpp"
 
 #include "hemi/core/error.hpp"
@@ -30,7 +32,7 @@ std::vector<std::uint32_t> every(std::uint32_t step, std::uint32_t count) {
 }
 
 FormFactorMatrix compute(const PatchMesh& mesh, const HemicubeSettings& settings,
-                         const std::string& device = "osmesa", std::uint32_t jobs = 2) {
+                         const std::string& device = test_device(), std::uint32_t jobs = 2) {
     return compute_matrix(*make_hemicube_engine(mesh, settings, {device, jobs, find_worker_program()}));
 }
 
@@ -48,42 +50,6 @@ bool same_bytes(const FormFactorMatrix& a, const FormFactorMatrix& b) {
         }
     }
     return true;
-}
-
-/// Texels where the item buffer and the ray differ although the ray is further than `margin` texels from any
-/// change of item.
-std::size_t disagreements(const PatchMesh& mesh, const HemicubeSettings& settings, std::uint32_t patch,
-                          double margin, GlRows& engine) {
-    const ReferenceTracer tracer(mesh, settings);
-    const auto drawn = engine.items(patch);
-    const auto traced = tracer.items(patch);
-    REQUIRE(drawn.size() == traced.size());
-    const EyeFrame frame(mesh.normal(patch), patch, 0, settings.seed);
-    const std::uint32_t resolution = settings.resolution;
-    std::size_t wrong = 0;
-    for (std::size_t texel = 0; texel < drawn.size(); ++texel) {
-        if (drawn[texel] == traced[texel]) {
-            continue;
-        }
-        // What the texel shows must then be met by a ray within the margin.
-        const auto x = static_cast<std::uint32_t>(texel % resolution);
-        const auto row = static_cast<std::uint32_t>(texel / resolution);
-        const int face = row < resolution ? 0 : 1 + static_cast<int>((row - resolution) / (resolution / 2));
-        const std::uint32_t y = face == 0 ? row : (row - resolution) % (resolution / 2);
-        bool near_edge = false;
-        for (int dx = -1; dx <= 1 && !near_edge; ++dx) {
-            for (int dy = -1; dy <= 1 && !near_edge; ++dy) {
-                const double right = (2.0 * (x + 0.5 + dx * margin)) / resolution - 1.0;
-                const double up = (2.0 * (y + 0.5 + dy * margin)) / resolution - (face == 0 ? 1.0 : 0.0);
-                const Vec3 local = face_direction(face, right, up);
-                const auto hit = tracer.trace(patch, mesh.centres()[patch],
-                                              local.x * frame.x + local.y * frame.y + local.z * frame.z);
-                near_edge = hit.item == drawn[texel];
-            }
-        }
-        wrong += near_edge ? 0 : 1;
-    }
-    return wrong;
 }
 
 void check_against_rays(const PatchMesh& mesh, std::uint32_t resolution, std::uint32_t step) {
@@ -156,7 +122,7 @@ TEST_CASE("GlRows: a merged lattice shows the same items as its faces", "[engine
     }
 }
 
-TEST_CASE("hemicube rows: sum, environment and blocked share add up to one", "[engine][gl]") {
+TEST_CASE("hemicube rows: sum, environment and blocked share add up to one", "[engine][gl][every-device]") {
     for (const Scene& scene : {room_with_blocks(6), open_corner(), tapered_box(4)}) {
         const PatchMesh mesh(scene);
         const FormFactorMatrix factors = compute(mesh, {.resolution = 64});
@@ -167,7 +133,7 @@ TEST_CASE("hemicube rows: sum, environment and blocked share add up to one", "[e
     }
 }
 
-TEST_CASE("hemicube rows: nothing leaks out of closed scenes", "[engine][gl]") {
+TEST_CASE("hemicube rows: nothing leaks out of closed scenes", "[engine][gl][every-device]") {
     struct Named {
         const char* name;
         Scene scene;
@@ -199,7 +165,7 @@ TEST_CASE("hemicube rows: nothing leaks out of closed scenes", "[engine][gl]") {
     }
 }
 
-TEST_CASE("hemicube rows: a covered patch is blocked, not open", "[engine][gl]") {
+TEST_CASE("hemicube rows: a covered patch is blocked, not open", "[engine][gl][every-device]") {
     const PatchMesh mesh(room_with_blocks(8));
     const FormFactorMatrix factors = compute(mesh, {.resolution = 64});
     std::uint32_t covered = 0;
@@ -232,13 +198,14 @@ TEST_CASE("hemicube rows: the same bytes from two runs, one and two workers, EGL
     CHECK(software_egl);
 }
 
-TEST_CASE("hemicube rows: another seed turns the hemicubes", "[engine][gl]") {
+TEST_CASE("hemicube rows: another seed turns the hemicubes", "[engine][gl][every-device]") {
     const PatchMesh mesh(room_with_blocks(4));
     CHECK_FALSE(same_bytes(compute(mesh, {.resolution = 32, .seed = 1}),
                            compute(mesh, {.resolution = 32, .seed = 2})));
 }
 
-TEST_CASE("hemicube rows: the unit cube by group within 5e-4 of the closed form", "[engine][gl]") {
+TEST_CASE("hemicube rows: the unit cube by group within 5e-4 of the closed form",
+          "[engine][gl][every-device]") {
     const PatchMesh mesh(read_case("01_unit_cube.obj"), {.patch_size = {}, .patches_per_face = 256});
     const GroupTable table = by_group(mesh, compute(mesh, {.resolution = 256}));
     constexpr double opposite = 0.19982489569838738;
@@ -252,7 +219,8 @@ TEST_CASE("hemicube rows: the unit cube by group within 5e-4 of the closed form"
     }
 }
 
-TEST_CASE("hemicube rows: additive over targets, area-weighted mean over sources", "[engine][gl]") {
+TEST_CASE("hemicube rows: additive over targets, area-weighted mean over sources",
+          "[engine][gl][every-device]") {
     // The same wall as one polygon or as two halves: what arrives adds up, what leaves is a mean.
     const PatchMesh whole(two_plates(false), {.patch_size = 0.125, .patches_per_face = {}});
     const PatchMesh halves(two_plates(true), {.patch_size = 0.125, .patches_per_face = {}});
@@ -265,7 +233,8 @@ TEST_CASE("hemicube rows: additive over targets, area-weighted mean over sources
     CHECK(two.factor("left", "floor") > 0.9 * one.factor("wall", "floor"));
 }
 
-TEST_CASE("hemicube rows: two polygons with the same projection have the same factor", "[engine][gl]") {
+TEST_CASE("hemicube rows: two polygons with the same projection have the same factor",
+          "[engine][gl][every-device]") {
     const PatchMesh near_one(facing_square(1.0));
     const PatchMesh far_one(facing_square(3.0)); // three times as far, three times as large
     const double a = compute(near_one, {.resolution = 256}).row(0).sum();
@@ -273,7 +242,8 @@ TEST_CASE("hemicube rows: two polygons with the same projection have the same fa
     CHECK(a == Approx(b).margin(1e-12).epsilon(0));
 }
 
-TEST_CASE("hemicube rows: reciprocity of the unit cube to the one-point error", "[engine][gl]") {
+TEST_CASE("hemicube rows: reciprocity of the unit cube to the one-point error",
+          "[engine][gl][every-device]") {
     const PatchMesh mesh(read_case("01_unit_cube.obj"), {.patch_size = {}, .patches_per_face = 64});
     const Reciprocity result = reciprocity(compute(mesh, {.resolution = 128}), mesh.areas());
     CHECK(result.rms < 1e-3);
@@ -282,7 +252,7 @@ TEST_CASE("hemicube rows: reciprocity of the unit cube to the one-point error", 
 }
 
 TEST_CASE("hemicube rows: rotation, scale, translation and surface order do not change factors by group",
-          "[engine][gl]") {
+          "[engine][gl][every-device]") {
     const Scene scene = room_with_blocks(6);
     const PatchMesh mesh(scene);
     const HemicubeSettings settings{.resolution = 128};
@@ -309,14 +279,14 @@ TEST_CASE("hemicube rows: rotation, scale, translation and surface order do not 
     }
 }
 
-TEST_CASE("hemicube rows: scale by a power of two changes no bit", "[engine][gl]") {
+TEST_CASE("hemicube rows: scale by a power of two changes no bit", "[engine][gl][every-device]") {
     const Scene scene = room_with_blocks(5);
     const PatchMesh mesh(scene);
     const PatchMesh larger(scaled(scene, 1024.0));
     CHECK(same_bytes(compute(mesh, {.resolution = 64}), compute(larger, {.resolution = 64})));
 }
 
-TEST_CASE("hemicube rows: coincident opposite faces see their own sides only", "[engine][gl]") {
+TEST_CASE("hemicube rows: coincident opposite faces see their own sides only", "[engine][gl][every-device]") {
     const PatchMesh mesh(read_case("12_occluded_corner.obj"), {.patch_size = {}, .patches_per_face = 256});
     const GroupTable table = by_group(mesh, compute(mesh, {.resolution = 128}));
     CHECK(table.factor("a", "blocker_up") == 0.0);
@@ -327,7 +297,7 @@ TEST_CASE("hemicube rows: coincident opposite faces see their own sides only", "
     CHECK(table.factor("blocker_up", "b") == Approx(0.41525328357714675).margin(1e-3).epsilon(0));
 }
 
-TEST_CASE("hemicube rows: a two-sided sheet radiates on both sides", "[engine][gl]") {
+TEST_CASE("hemicube rows: a two-sided sheet radiates on both sides", "[engine][gl][every-device]") {
     Scene scene = read_case("12_occluded_corner.obj");
     Scene sheet = scene;
     sheet.surfaces.pop_back(); // blocker_down; the other becomes a sheet with two sides
@@ -346,7 +316,8 @@ TEST_CASE("hemicube rows: a two-sided sheet radiates on both sides", "[engine][g
     CHECK(b.factor("a", "b") == Approx(a.factor("a", "b")).margin(1e-3));
 }
 
-TEST_CASE("hemicube rows: the closed-form cases within what one eye point can reach", "[engine][gl]") {
+TEST_CASE("hemicube rows: the closed-form cases within what one eye point can reach",
+          "[engine][gl][every-device]") {
     for (const ExactCase& exact : exact_cases()) {
         const PatchMesh mesh(read_case(exact.file),
                              {.patch_size = {}, .patches_per_face = exact.patches_per_face});
@@ -419,7 +390,7 @@ TEST_CASE("providers: an interrupt stops them at the next row", "[engine][gl]") 
     CHECK(stopped_after(*make_baseline(mesh, {.method = Method::contour}), 3) == 3);
 }
 
-TEST_CASE("hemicube rows: one open patch sees the environment alone", "[engine][gl]") {
+TEST_CASE("hemicube rows: one open patch sees the environment alone", "[engine][gl][every-device]") {
     Scene scene = facing_square(1.0);
     scene.surfaces.resize(1);
     const PatchMesh mesh(scene);

@@ -1,0 +1,321 @@
+#include "engine/hemicube/gl_rows.hpp"
+#include "engine/rasteriser/cpu_rows.hpp"
+#include "support/item_agreement.hpp"
+#include "support/scenes.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/io/scene_reader.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <random>
+
+using namespace hemi;
+using namespace hemi::test;
+
+namespace {
+
+/// Sets HEMI_SIMD until it goes out of scope.
+class WithSimd {
+public:
+    explicit WithSimd(const char* name) { setenv("HEMI_SIMD", name, 1); }
+    ~WithSimd() { unsetenv("HEMI_SIMD"); }
+    WithSimd(const WithSimd&) = delete;
+    WithSimd& operator=(const WithSimd&) = delete;
+};
+
+/// The CPU rasteriser on a mesh.
+struct Drawn {
+    Drawn(const PatchMesh& mesh, const HemicubeSettings& the_settings,
+          RowQuantity quantity = RowQuantity::form_factors)
+        : settings(the_settings), geometry(make_engine_geometry(mesh, settings)), scene(geometry.list),
+          rows(geometry, scene, settings, quantity) {}
+
+    HemicubeSettings settings;
+    EngineGeometry geometry;
+    RasterScene scene;
+    CpuRows rows;
+};
+
+// What the rasteriser claims: texels' centres further than this from an edge are decided right.
+constexpr double edge_margin = 1e-3;
+
+void check_against_rays(const PatchMesh& mesh, const HemicubeSettings& settings, std::uint32_t step) {
+    Drawn drawn(mesh, settings);
+    for (std::uint32_t patch = 0; patch < mesh.size(); patch += step) {
+        INFO("patch " << patch);
+        CHECK(disagreements(mesh, settings, patch, edge_margin, drawn.rows) == 0);
+    }
+}
+
+/// A closed surface of triangles of which no two lie in one plane: a wavy sphere, seen from within, round a
+/// wavy body.
+Scene bumpy_cave(std::uint32_t n) {
+    Scene scene = empty_scene();
+    const auto add_ball = [&](const char* name, double radius, bool inward) {
+        const auto at = [&](std::uint32_t ring, std::uint32_t sector) {
+            const double theta = M_PI * ring / n;
+            const double phi = 2.0 * M_PI * (sector % (2 * n)) / (2 * n);
+            const Vec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+            return d * radius *
+                   (1.0 + 0.06 * std::sin(5.0 * d.x + 1.0) * std::sin(7.0 * d.y) +
+                    0.04 * std::sin(9.0 * d.z + d.x));
+        };
+        const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+            add_polygon(scene, name, inward ? std::vector{a, c, b} : std::vector{a, b, c});
+        };
+        for (std::uint32_t ring = 0; ring < n; ++ring) {
+            for (std::uint32_t sector = 0; sector < 2 * n; ++sector) {
+                const Vec3 a = at(ring, sector);
+                const Vec3 b = at(ring + 1, sector);
+                const Vec3 c = at(ring + 1, sector + 1);
+                const Vec3 d = at(ring, sector + 1);
+                if (ring + 1 < n) {
+                    add(a, b, c);
+                }
+                if (ring > 0) {
+                    add(a, c, d);
+                }
+            }
+        }
+    };
+    add_ball("cave", 1.0, true);
+    add_ball("body", 0.35, false);
+    return scene;
+}
+
+/// A room with needles on its floor and under its ceiling.
+Scene needle_room() {
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(2.0, 1.0, 1.0), 3);
+    for (int k = 0; k < 6; ++k) {
+        const double y = 0.1 + 0.15 * k;
+        add_polygon(scene, "needle",
+                    {Vec3(0.1, y, 0.3), Vec3(1.9, y + 0.02, 0.35), Vec3(1.9, y + 0.021, 0.35),
+                     Vec3(0.1, y + 0.001, 0.3)});
+        add_polygon(scene, "splinter",
+                    {Vec3(0.1, y, 0.6), Vec3(1.9, y + 0.07, 0.7), Vec3(1.0, y + 0.0355, 0.6505)});
+    }
+    return scene;
+}
+
+/// Two sheets that intersect and one that touches the floor, all seen from both sides.
+Scene sheets() {
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(1.0), 3);
+    const auto add = [&](const char* name, std::vector<Vec3> polygon) {
+        add_polygon(scene, name, std::move(polygon), {3, 2});
+        scene.surfaces.back().two_sided = true;
+    };
+    add("upright", {Vec3(0.5, 0.2, 0.0), Vec3(0.5, 0.8, 0.0), Vec3(0.5, 0.8, 0.6), Vec3(0.5, 0.2, 0.6)});
+    add("slanted", {Vec3(0.2, 0.3, 0.2), Vec3(0.8, 0.3, 0.5), Vec3(0.8, 0.7, 0.5), Vec3(0.2, 0.7, 0.2)});
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("Rasteriser: item buffers equal rays through the texel centres", "[engine]") {
+    const HemicubeSettings settings{.resolution = 64};
+    SECTION("a room with blocks") {
+        check_against_rays(PatchMesh(room_with_blocks(6)), settings, 17);
+    }
+    SECTION("other turns of the hemicubes") {
+        check_against_rays(PatchMesh(room_with_blocks(4)), {.resolution = 64, .seed = 77}, 29);
+    }
+    SECTION("general quadrilaterals") {
+        check_against_rays(PatchMesh(tapered_box(5)), settings, 13);
+    }
+    SECTION("T-junctions") {
+        check_against_rays(PatchMesh(t_junction_room()), settings, 7);
+    }
+    SECTION("a lattice, merged") {
+        check_against_rays(PatchMesh(lattice_room()), settings, 37);
+    }
+    SECTION("a lattice, face by face") {
+        check_against_rays(PatchMesh(lattice_room()), {.resolution = 64, .merge_lattices = false}, 37);
+    }
+    SECTION("two rooms on either side of two sheets") {
+        check_against_rays(PatchMesh(two_rooms()), settings, 5);
+    }
+    SECTION("an open corner") {
+        check_against_rays(PatchMesh(open_corner()), settings, 11);
+    }
+    SECTION("triangles cut n² ways") {
+        check_against_rays(
+            PatchMesh(read_case("14_sphere_interior.obj"), {.patch_size = {}, .patches_per_face = 9}),
+            {.resolution = 48}, 611);
+    }
+    SECTION("a bumpy cave") {
+        check_against_rays(PatchMesh(bumpy_cave(16)), settings, 101);
+    }
+    SECTION("needles") {
+        check_against_rays(PatchMesh(needle_room()), settings, 5);
+    }
+    SECTION("two-sided sheets that intersect") {
+        check_against_rays(PatchMesh(sheets()), settings, 7);
+    }
+    SECTION("a resolution that is no multiple of 8") {
+        check_against_rays(PatchMesh(room_with_blocks(4)), {.resolution = 50}, 41);
+    }
+    SECTION("a thousand times larger and far from the origin") {
+        check_against_rays(PatchMesh(moved(scaled(room_with_blocks(4), 1e3), Vec3(1e5, -1e5, 1e5))), settings,
+                           41);
+    }
+}
+
+TEST_CASE("Rasteriser: a merged lattice shows the same items as its faces", "[engine]") {
+    const PatchMesh mesh(lattice_room());
+    Drawn merged(mesh, {.resolution = 64});
+    Drawn plain(mesh, {.resolution = 64, .merge_lattices = false});
+    CHECK(merged.geometry.list.polygons.size() * 8 < plain.geometry.list.polygons.size());
+    for (std::uint32_t patch = 0; patch < mesh.size(); patch += 37) {
+        CHECK(merged.rows.items(patch) == plain.rows.items(patch));
+    }
+}
+
+TEST_CASE("Rasteriser: every instruction set draws the same items", "[engine]") {
+    for (const Scene& scene :
+         {room_with_blocks(5), tapered_box(4), bumpy_cave(12), sheets(), needle_room()}) {
+        const PatchMesh mesh(scene);
+        std::vector<std::vector<std::uint32_t>> expected;
+        for (const char* simd : {"scalar", "sse4", "avx2", "avx512"}) {
+            INFO(simd);
+            const WithSimd forced(simd);
+            std::optional<Drawn> drawn;
+            try {
+                drawn.emplace(mesh, HemicubeSettings{.resolution = 56});
+            } catch (const InvalidArgument&) { // this processor has it not
+                CHECK(std::string(simd) != "scalar");
+                continue;
+            }
+            std::size_t k = 0;
+            for (std::uint32_t patch = 0; patch < mesh.size(); patch += 1 + mesh.size() / 12, ++k) {
+                const auto items = drawn->rows.items(patch);
+                if (k == expected.size()) {
+                    expected.push_back(items);
+                }
+                CHECK(items == expected[k]);
+            }
+        }
+    }
+}
+
+TEST_CASE("Rasteriser: an unknown instruction set is refused with those that are there", "[engine]") {
+    const WithSimd forced("mmx");
+    CHECK_THROWS_WITH(cpu_renderer(), Catch::Contains("HEMI_SIMD=mmx") && Catch::Contains("scalar"));
+}
+
+TEST_CASE("Rasteriser: no texel is lost in closed scenes", "[engine][slow]") {
+    // Sums are integers: a row of a closed scene that sees no back face sums to exactly 1.
+    for (const Scene& scene : {bumpy_cave(40), lattice_room(), room_with_blocks(12)}) {
+        const PatchMesh mesh(scene);
+        std::uint32_t eyes = 0;
+        for (std::uint64_t seed = 0; eyes < 35000; ++seed) {
+            Drawn drawn(mesh, {.resolution = 32, .seed = seed});
+            for (std::uint32_t patch = 0; patch < mesh.size(); ++patch, ++eyes) {
+                const RawRow row = drawn.rows.row(patch);
+                if (row.environment != 0.0) {
+                    const auto items = drawn.rows.items(patch);
+                    // Bottoms of blocks that stand on the floor look out of the room.
+                    INFO("patch " << patch << ", seed " << seed);
+                    REQUIRE(row.environment == 1.0);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("CPU engine: the same rows from any number of threads, in order", "[engine]") {
+    const PatchMesh mesh(room_with_blocks(6));
+    for (const bool visibility : {false, true}) {
+        const auto rows_of = [&](std::uint32_t threads) {
+            std::vector<std::uint32_t> patches;
+            std::vector<std::uint32_t> columns;
+            std::vector<float> values;
+            const HemicubeSettings settings{.resolution = 32};
+            const auto engine = make_cpu_engine(
+                std::make_unique<const EngineGeometry>(make_engine_geometry(mesh, settings)), settings,
+                visibility ? RowQuantity::visibility : RowQuantity::form_factors, threads);
+            std::vector<std::uint32_t> all(mesh.size());
+            for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+                all[i] = i;
+            }
+            engine->rows(all, [&](std::uint32_t patch, const RawRow& row) {
+                patches.push_back(patch);
+                columns.insert(columns.end(), row.columns.begin(), row.columns.end());
+                values.insert(values.end(), row.values.begin(), row.values.end());
+            });
+            CHECK(patches == all);
+            return std::pair(columns, values);
+        };
+        const auto one = rows_of(1);
+        CHECK(rows_of(3) == one);
+        CHECK(rows_of(8) == one);
+    }
+}
+
+TEST_CASE("CPU engine: what a sink throws ends the threads and is passed on", "[engine]") {
+    const PatchMesh mesh(room_with_blocks(6));
+    const auto engine = make_hemicube_engine(mesh, {.resolution = 32}, {"cpu", 3, {}});
+    std::uint32_t rows = 0;
+    std::vector<std::uint32_t> all(mesh.size());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        all[i] = i;
+    }
+    CHECK_THROWS_AS(engine->rows(all,
+                                 [&](std::uint32_t, const RowView&) {
+                                     if (++rows == 100) {
+                                         throw Cancelled();
+                                     }
+                                 }),
+                    Cancelled);
+    CHECK(rows == 100);
+    // It is of use afterwards.
+    rows = 1000000;
+    engine->rows(all, [&](std::uint32_t, const RowView& row) {
+        ++rows;
+        CHECK(row.sum() + row.environment + row.blocked == Approx(1.0).margin(1e-9).epsilon(0));
+    });
+    CHECK(rows == 1000000 + mesh.size());
+}
+
+TEST_CASE("CPU engine: visibility is that of OpenGL up to texels at edges", "[engine][gl]") {
+    for (const Scene& scene : {room_with_blocks(5), sheets(), tapered_box(4)}) {
+        const PatchMesh mesh(scene);
+        const HemicubeSettings settings{.resolution = 64, .eye_points = 4};
+        std::vector<std::uint32_t> all(mesh.size());
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            all[i] = i;
+        }
+        const auto shares = [&](const char* device) {
+            std::vector<float> dense(std::size_t{mesh.size()} * mesh.size(), -1.0f);
+            make_visibility_engine(mesh, settings, {device, 2, find_worker_program()})
+                ->rows(all, [&](std::uint32_t patch, const VisibilityRow& row) {
+                    for (std::size_t k = 0; k < row.columns.size(); ++k) {
+                        dense[std::size_t{patch} * mesh.size() + row.columns[k]] = row.shares[k];
+                    }
+                });
+            return dense;
+        };
+        const auto gl = shares("osmesa");
+        const auto cpu = shares("cpu");
+        double squares = 0.0;
+        std::size_t both = 0;
+        std::size_t one = 0; // a patch whose only texels lie at edges
+        for (std::size_t k = 0; k < gl.size(); ++k) {
+            if (gl[k] >= 0.0f && cpu[k] >= 0.0f) {
+                squares += std::pow(static_cast<double>(gl[k] - cpu[k]), 2.0);
+                ++both;
+            } else {
+                one += (gl[k] >= 0.0f) != (cpu[k] >= 0.0f) ? 1 : 0;
+            }
+        }
+        CHECK(both > mesh.size() * 10);
+        CHECK(std::sqrt(squares / static_cast<double>(both)) < 0.01);
+        CHECK(one < both / 100);
+    }
+}
