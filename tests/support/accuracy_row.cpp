@@ -34,11 +34,11 @@ void AccuracyRow::check_below(const std::string& column, const std::string& quan
     append_to_report(table_ + '\t' + name_ + '\t' + column + '\t' + quantity, "<", limit, measured);
 }
 
-void AccuracyRow::check_at_least(const std::string& column, const std::string& quantity, double measured,
-                                 double limit) const {
+void AccuracyRow::check_above(const std::string& column, const std::string& quantity, double measured,
+                              double limit) const {
     INFO(table_ << ": " << name_ << ": " << column << " " << quantity);
-    CHECK(measured >= limit);
-    append_to_report(table_ + '\t' + name_ + '\t' + column + '\t' + quantity, ">=", limit, measured);
+    CHECK(measured > limit);
+    append_to_report(table_ + '\t' + name_ + '\t' + column + '\t' + quantity, ">", limit, measured);
 }
 
 } // namespace hemi::test

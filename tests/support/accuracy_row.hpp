@@ -21,9 +21,9 @@ public:
     /// @param quantity  what is measured, where a cell has several: "rms"; or empty
     void check_below(const std::string& column, const std::string& quantity, double measured,
                      double limit) const;
-    /// Asserts measured >= limit.
-    void check_at_least(const std::string& column, const std::string& quantity, double measured,
-                        double limit) const;
+    /// Asserts measured > limit.
+    void check_above(const std::string& column, const std::string& quantity, double measured,
+                     double limit) const;
 
 private:
     std::string table_;
