@@ -10,7 +10,6 @@
 #include "hemi/pipeline/form_factors.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace hemi::cli {
 
@@ -55,10 +54,8 @@ ExitStatus run(const CheckArguments& arguments, const Terminal& terminal) {
     const PatchNames names = loaded ? loaded->names() : PatchNames{factors.groups, factors.group_of, {}};
     const double limit = arguments.rows.max_row_error;
     const Diagnosis diagnosis = diagnose(factors, loaded ? &loaded->mesh : nullptr, limit);
-    if (arguments.common.json) {
-        print_json(diagnosis_json(diagnosis, factors, names, limit, repair_seconds));
-    } else if (!terminal.quiet()) {
-        print(diagnosis_text(diagnosis, factors, names, limit));
+    if (arguments.common.json || !terminal.quiet()) {
+        show(diagnosis_report(diagnosis, factors, names, limit, repair_seconds), arguments.common.json);
     }
     if (diagnosis.enclosure == EnclosureVerdict::nearly_closed) {
         terminal.warn(

@@ -1,9 +1,7 @@
 #include "cli/commands.hpp"
-#include "cli/report/text.hpp"
+#include "cli/report/report.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -11,10 +9,16 @@ namespace hemi::cli {
 
 namespace {
 
-Json to_json(const std::vector<DeviceInfo>& devices) {
+Report devices_report(const std::vector<DeviceInfo>& devices) {
+    Table table({"device", "auto", "kind", "renderer", "version"}, 5);
     Json list = Json::array();
     for (const DeviceInfo& device : devices) {
         const bool usable = device.problem.empty();
+        table.add({device.name, device.chosen ? "*" : "",
+                   !usable           ? "-"
+                   : device.software ? "software"
+                                     : "gpu",
+                   usable ? device.renderer : "not usable: " + device.problem, device.version});
         list.push_back({{"name", device.name},
                         {"renderer", device.renderer},
                         {"version", device.version},
@@ -23,31 +27,14 @@ Json to_json(const std::vector<DeviceInfo>& devices) {
                         {"software", device.software},
                         {"auto", device.chosen}});
     }
-    return {{"schema", "hemi/devices/1"}, {"devices", list}};
-}
-
-std::string to_table(const std::vector<DeviceInfo>& devices) {
-    Table table({"device", "auto", "kind", "renderer", "version"}, 5);
-    for (const DeviceInfo& device : devices) {
-        const bool usable = device.problem.empty();
-        table.add({device.name, device.chosen ? "*" : "",
-                   !usable           ? "-"
-                   : device.software ? "software"
-                                     : "gpu",
-                   usable ? device.renderer : "not usable: " + device.problem, device.version});
-    }
-    return table.text();
+    return {devices.empty() ? "" : table.text(), {{"schema", "hemi/devices/1"}, {"devices", list}}};
 }
 
 } // namespace
 
 ExitStatus run(const DevicesArguments& arguments, const Terminal& terminal) {
     const std::vector<DeviceInfo> devices = list_devices();
-    if (arguments.common.json) {
-        print_json(to_json(devices));
-    } else if (!devices.empty()) {
-        print(to_table(devices));
-    }
+    show(devices_report(devices), arguments.common.json);
     const bool usable = std::any_of(devices.begin(), devices.end(),
                                     [](const DeviceInfo& device) { return device.problem.empty(); });
     if (!usable) {

@@ -1,6 +1,7 @@
 #include "cli/factor_source.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/io/factor_file.hpp"
 
 #include <fmt/format.h>
 
@@ -25,8 +26,7 @@ std::string preset_word(const std::optional<Preset>& preset) {
     return preset ? std::string(to_word(*preset)) : "none";
 }
 
-} // namespace
-
+/// Raw form factors from a file.
 FormFactors reuse_rows(const std::filesystem::path& path, const LoadedScene& loaded,
                        const FactorSettings& settings, const CommonOptions& common) {
     FormFactors factors = read_form_factors(path, loaded.scene, loaded.mesh);
@@ -37,6 +37,43 @@ FormFactors reuse_rows(const std::filesystem::path& path, const LoadedScene& loa
     check_setting(common, path, "--method", to_word(settings.method), to_word(made.method));
     check_setting(common, path, "--eye-points", settings.eye_points.value_or(0), made.eye_points);
     check_setting(common, path, "--shadow-rays", settings.shadow_rays.value_or(0), made.shadow_rays);
+    return factors;
+}
+
+} // namespace
+
+bool has_rows(const SolveArguments& arguments) {
+    std::error_code ignored; // a name that no file can have
+    return arguments.factors && std::filesystem::is_regular_file(*arguments.factors, ignored);
+}
+
+void store_rows(const SolveArguments& arguments, FormFactors& raw, const Terminal& terminal) {
+    if (arguments.factors) {
+        estimate_error(raw);
+        io::write_hff(*arguments.factors, raw);
+        terminal.detail(fmt::format("form factors written to {}", arguments.factors->string()));
+    }
+}
+
+FormFactors find_rows(const SolveArguments& arguments, const LoadedScene& loaded,
+                      std::span<const std::uint32_t> patches, Observer& observer, const Terminal& terminal,
+                      RowCheckpoint* checkpoint) {
+    FormFactors factors;
+    if (has_rows(arguments)) {
+        factors = reuse_rows(*arguments.factors, loaded, arguments.rows.factors, arguments.common);
+        terminal.detail(fmt::format("form factors from {}: no rows to compute", arguments.factors->string()));
+        if (arguments.with_irradiance() && !factors.matrix.all_known()) {
+            throw InputError(fmt::format("{}: rows are missing that --result and --radiosity need",
+                                         arguments.factors->string()));
+        }
+    } else {
+        factors = compute_raw_form_factors(loaded.scene, loaded.mesh, patches, arguments.rows.factors,
+                                           observer, checkpoint);
+        store_rows(arguments, factors, terminal);
+    }
+    if (checkpoint != nullptr) { // also that of a run which was killed when the file was complete
+        checkpoint->discard();
+    }
     return factors;
 }
 

@@ -4,18 +4,27 @@
 #include "cli/loaded_scene.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 
 /// Form factors from a file or from the engine, kept while they are computed.
 namespace hemi::cli {
 
-/// Raw form factors from a `.hff` that belongs to the scene.
-/// @throws InputError if it belongs to another geometry; InvalidArgument if a setting that was given on the
-///   command line is not the file's.
-[[nodiscard]] FormFactors reuse_rows(const std::filesystem::path& path, const LoadedScene& loaded,
-                                     const FactorSettings& settings, const CommonOptions& common);
+/// Whether `--factors` names rows that are there.
+[[nodiscard]] bool has_rows(const SolveArguments& arguments);
+/// Raw form factors: those of the `--factors` file if it is there, else computed and stored in it.
+/// @param patches     whose rows are computed
+/// @param checkpoint  discarded when the rows are complete; may be null
+/// @throws InputError if the file belongs to another geometry or rows are missing; InvalidArgument if a
+///   setting that was given on the command line is not the file's.
+[[nodiscard]] FormFactors find_rows(const SolveArguments& arguments, const LoadedScene& loaded,
+                                    std::span<const std::uint32_t> patches, Observer& observer,
+                                    const Terminal& terminal, RowCheckpoint* checkpoint);
+/// Writes raw form factors to the `--factors` file, if there is to be one.
+void store_rows(const SolveArguments& arguments, FormFactors& raw, const Terminal& terminal);
 
 /// Says what rows a failed run kept, if any, and how to resume from them.
 void report_checkpoint(const RowCheckpoint* checkpoint, const Terminal& terminal);

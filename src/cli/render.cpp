@@ -12,7 +12,7 @@
 namespace hemi::cli {
 
 ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
-    const Stopwatch total;
+    Seconds seconds({"load", "render"});
     PictureOptions options = arguments.picture;
     if (!options.output) {
         options.output = arguments.input.filename().replace_extension(".png");
@@ -26,22 +26,23 @@ ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
                         "FILE.hres` makes one, `hemi solve SCENE -o PICTURE` draws at once",
                         arguments.input.string()));
     }
-    Seconds seconds({"load", "render", "total"});
+    const Stopwatch load_watch;
     io::ResultFile result = io::read_hres(arguments.input);
     const PatchMesh mesh(result.scene, result.subdivision);
     result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
-    seconds["load"] = total.seconds();
+    seconds["load"] = load_watch.seconds();
+    const Stopwatch render_watch;
     const WrittenPicture picture =
         write_picture(result.scene, mesh, result.solution, options, arguments.device);
-    seconds["total"] = total.seconds();
-    seconds["render"] = seconds["total"] - seconds["load"];
+    seconds["render"] = render_watch.seconds();
     if (arguments.common.json) {
-        print_json({{"schema", "hemi/render/1"},
+        Json object{{"schema", "hemi/render/1"},
                     {"picture", options.output->string()},
                     {"width", options.size[0]},
                     {"height", options.size[1]},
-                    {"exposure", picture.exposure},
-                    {"seconds", seconds.json()}});
+                    {"exposure", picture.exposure}};
+        object.update(seconds.report().json);
+        print_json(object);
     } else {
         outputs.print_summary(summary_line("picture", picture.text), terminal);
     }

@@ -8,25 +8,17 @@
 #include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
-#include "hemi/io/factor_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/pipeline/accuracy.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace hemi::cli {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Whether `--factors` names rows that are there.
-bool has_rows(const SolveArguments& arguments) {
-    std::error_code ignored; // a name that no file can have
-    return arguments.factors && fs::is_regular_file(*arguments.factors, ignored);
-}
 
 Outputs check_outputs(const SolveArguments& arguments) {
     Outputs outputs;
@@ -59,151 +51,108 @@ void check_input(const SolveArguments& arguments) {
     }
 }
 
-/// One run of the command.
-class Solve {
-public:
-    Solve(const SolveArguments& arguments, const Terminal& terminal)
-        : arguments_(arguments), terminal_(terminal), observer_(terminal), outputs_(check_outputs(arguments)),
-          seconds_({"load", "factors", "repair", "solve", "estimate", "search", "render", "total"}),
-          loaded_(load_scene(arguments.scene, terminal)) {
-        seconds_["load"] = loaded_.seconds;
-        if (arguments.picture.output) { // tested before the work
-            (void)channels_to_show(loaded_.scene.channels, arguments.picture.show);
-            (void)choose_camera(loaded_.scene, loaded_.mesh, arguments.picture);
-        }
-    }
+std::vector<std::uint32_t> needed_patches(const SolveArguments& arguments, const LoadedScene& loaded) {
+    return arguments.factors || arguments.with_irradiance() ? all_patches(loaded.mesh.size())
+                                                            : reflecting_patches(loaded.scene, loaded.mesh);
+}
 
-    ExitStatus run() {
-        if (arguments_.rows.error_target) {
-            solve_to_target();
-        } else {
-            solve();
-        }
-        const RowSums sums = row_sums(factors_.matrix);
-        const EnclosureFinding enclosure = find_leaks(factors_, arguments_.rows.max_row_error);
-        report_buried(sums, terminal_);
-        write_files();
-        const std::string picture = draw();
-        seconds_["total"] = total_.seconds();
-        report_savings(loaded_, factors_, solution_, arguments_.rows.factors.merge_lattices, terminal_);
-        if (arguments_.common.json) {
-            print_json(solution_json(loaded_, factors_, sums, solution_, seconds_));
-        } else {
-            outputs_.print_summary(scene_summary(loaded_.mesh) + rows_summary(factors_, sums, enclosure) +
-                                       repair_summary(*factors_.repair) + solution_summary(solution_) +
-                                       seconds_.summary() + picture,
-                                   terminal_);
-        }
-        report_leaks(enclosure, factors_.matrix, loaded_.names(), &loaded_.mesh,
-                     arguments_.rows.max_row_error, terminal_);
-        return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
-    }
-
-private:
-    [[nodiscard]] bool with_irradiance() const { return arguments_.result || arguments_.radiosity; }
-
-    [[nodiscard]] std::vector<std::uint32_t> needed_patches() const {
-        return arguments_.factors || with_irradiance() ? all_patches(loaded_.mesh.size())
-                                                       : reflecting_patches(loaded_.scene, loaded_.mesh);
-    }
-
-    void store(FormFactors& raw) const {
-        if (arguments_.factors) {
-            estimate_error(raw);
-            io::write_hff(*arguments_.factors, raw);
-            terminal_.detail(fmt::format("form factors written to {}", arguments_.factors->string()));
-        }
-    }
-
-    void find_rows(RowCheckpoint* checkpoint) {
-        if (has_rows(arguments_)) {
-            factors_ = reuse_rows(*arguments_.factors, loaded_, arguments_.rows.factors, arguments_.common);
-            terminal_.detail(
-                fmt::format("form factors from {}: no rows to compute", arguments_.factors->string()));
-            if (with_irradiance() && !factors_.matrix.all_known()) {
-                throw InputError(fmt::format("{}: rows are missing that --result and --radiosity need",
-                                             arguments_.factors->string()));
-            }
-        } else {
-            factors_ = compute_raw_form_factors(loaded_.scene, loaded_.mesh, needed_patches(),
-                                                arguments_.rows.factors, observer_, checkpoint);
-            store(factors_);
-        }
-        if (checkpoint != nullptr) { // also that of a run which was killed when the file was complete
-            checkpoint->discard();
-        }
-    }
-
-    void solve() {
-        const Stopwatch rows_watch;
-        with_checkpoint(arguments_.factors, arguments_.rows.resume, terminal_,
-                        [this](RowCheckpoint* checkpoint) { find_rows(checkpoint); });
-        seconds_["estimate"] = factors_.work.reference_seconds;
-        seconds_["factors"] = rows_watch.seconds() - factors_.work.reference_seconds;
-        const Stopwatch prepare_watch;
-        prepare_form_factors(factors_, arguments_.rows.factors.repair);
-        seconds_["repair"] = prepare_watch.seconds();
-        const Stopwatch solve_watch;
-        solution_ = solve_radiosity(loaded_.scene, loaded_.mesh, factors_, arguments_.solver, observer_,
-                                    with_irradiance());
-        seconds_["solve"] = solution_.seconds;
-        seconds_["estimate"] += solve_watch.seconds() - solution_.seconds;
-    }
-
-    void solve_to_target() {
-        TargetResult found = hemi::solve_to_target(
-            loaded_.scene, loaded_.mesh, needed_patches(), arguments_.rows.factors, arguments_.solver,
-            *arguments_.rows.error_target, observer_, with_irradiance());
-        store(found.raw);
-        factors_ = std::move(found.factors);
-        solution_ = std::move(found.solution);
-        seconds_["search"] = found.search_seconds;
-        seconds_["factors"] = found.factor_seconds;
-        seconds_["solve"] = solution_.seconds;
-    }
-
-    void write_files() const {
-        if (arguments_.patches) {
-            io::write_patches_csv(*arguments_.patches, loaded_.mesh);
-        }
-        if (arguments_.result) {
-            io::write_hres(*arguments_.result, {loaded_.scene, arguments_.scene.subdivision, solution_});
-        }
-        if (arguments_.radiosity) {
-            io::write_radiosity_csv(*arguments_.radiosity, loaded_.mesh, loaded_.scene.channels,
-                                    solution_.exitance, solution_.irradiance, solution_.radiosity);
-        }
-    }
-
-    /// @return the line that says so; empty where no picture was asked for
-    std::string draw() {
-        if (!arguments_.picture.output) {
-            return "";
-        }
-        const Stopwatch watch;
-        const WrittenPicture picture =
-            write_picture(loaded_.scene, loaded_.mesh, solution_, arguments_.picture,
-                          arguments_.rows.factors.engine.device);
-        seconds_["render"] = watch.seconds();
-        return summary_line("picture", picture.text);
-    }
-
-    const SolveArguments& arguments_;
-    const Terminal& terminal_;
-    TerminalObserver observer_;
-    Stopwatch total_;
-    Outputs outputs_;
-    Seconds seconds_;
-    LoadedScene loaded_;
-    FormFactors factors_;
-    Solution solution_;
+/// Form factors, prepared, and the radiosity by them.
+struct Solved {
+    FormFactors factors;
+    Solution solution;
 };
+
+Solved solve(const SolveArguments& arguments, const LoadedScene& loaded, Observer& observer,
+             const Terminal& terminal, Seconds& seconds) {
+    const Stopwatch rows_watch;
+    const std::vector<std::uint32_t> patches = needed_patches(arguments, loaded);
+    FormFactors factors =
+        with_checkpoint(arguments.factors, arguments.rows.resume, terminal, [&](RowCheckpoint* checkpoint) {
+            return find_rows(arguments, loaded, patches, observer, terminal, checkpoint);
+        });
+    seconds["estimate"] = factors.work.reference_seconds;
+    seconds["factors"] = rows_watch.seconds() - factors.work.reference_seconds;
+    const Stopwatch repair_watch;
+    prepare_form_factors(factors, arguments.rows.factors.repair);
+    seconds["repair"] = repair_watch.seconds();
+    const Stopwatch solve_watch;
+    Solution solution = solve_radiosity(loaded.scene, loaded.mesh, factors, arguments.solver, observer,
+                                        arguments.with_irradiance());
+    seconds["solve"] = solution.seconds;
+    seconds["estimate"] += solve_watch.seconds() - solution.seconds;
+    return {std::move(factors), std::move(solution)};
+}
+
+Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loaded, Observer& observer,
+                       const Terminal& terminal, Seconds& seconds) {
+    TargetResult found = hemi::solve_to_target(
+        loaded.scene, loaded.mesh, needed_patches(arguments, loaded), arguments.rows.factors,
+        arguments.solver, *arguments.rows.error_target, observer, arguments.with_irradiance());
+    store_rows(arguments, found.raw, terminal);
+    seconds["search"] = found.search_seconds;
+    seconds["factors"] = found.factor_seconds;
+    seconds["solve"] = found.solution.seconds;
+    return {std::move(found.factors), std::move(found.solution)};
+}
+
+void write_files(const SolveArguments& arguments, const LoadedScene& loaded, const Solution& solution) {
+    if (arguments.patches) {
+        io::write_patches_csv(*arguments.patches, loaded.mesh);
+    }
+    if (arguments.result) {
+        io::write_hres(*arguments.result, {loaded.scene, arguments.scene.subdivision, solution});
+    }
+    if (arguments.radiosity) {
+        io::write_radiosity_csv(*arguments.radiosity, loaded.mesh, loaded.scene.channels, solution.exitance,
+                                solution.irradiance, solution.radiosity);
+    }
+}
+
+/// @return the line that says so; empty where no picture was asked for
+std::string draw(const SolveArguments& arguments, const LoadedScene& loaded, const Solution& solution,
+                 Seconds& seconds) {
+    if (!arguments.picture.output) {
+        return "";
+    }
+    const Stopwatch watch;
+    const WrittenPicture picture = write_picture(loaded.scene, loaded.mesh, solution, arguments.picture,
+                                                 arguments.rows.factors.engine.device);
+    seconds["render"] = watch.seconds();
+    return summary_line("picture", picture.text);
+}
 
 } // namespace
 
 ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     check_input(arguments);
-    return Solve(arguments, terminal).run();
+    const Outputs outputs = check_outputs(arguments);
+    Seconds seconds({"load", "factors", "repair", "solve", "estimate", "search", "render"});
+    const LoadedScene loaded = load_scene(arguments.scene, terminal);
+    seconds["load"] = loaded.seconds;
+    if (arguments.picture.output) { // tested before the work
+        (void)channels_to_show(loaded.scene.channels, arguments.picture.show);
+        (void)choose_camera(loaded.scene, loaded.mesh, arguments.picture);
+    }
+    TerminalObserver observer(terminal);
+    const auto [factors, solution] = arguments.rows.error_target
+                                         ? solve_to_target(arguments, loaded, observer, terminal, seconds)
+                                         : solve(arguments, loaded, observer, terminal, seconds);
+    const double max_row_error = arguments.rows.max_row_error;
+    const RowSums sums = row_sums(factors.matrix);
+    const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
+    report_buried(sums, terminal);
+    write_files(arguments, loaded, solution);
+    const std::string picture = draw(arguments, loaded, solution, seconds);
+    report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
+    const Report report =
+        solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, seconds);
+    if (arguments.common.json) {
+        print_json(report.json);
+    } else {
+        outputs.print_summary(report.text + picture, terminal);
+    }
+    report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
+    return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }
 
 } // namespace hemi::cli

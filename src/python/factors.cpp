@@ -10,7 +10,6 @@
 #include "python/work.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace hemi::python {
 
@@ -168,21 +167,6 @@ py::object load(const py::object& path, const ScenePointer& scene, const std::op
     return py::cast(run([&] { return read_form_factors_of(file, scene, wanted); }));
 }
 
-/// 1 - reflectance of every patch, the mean of all channels; empty where the scene is not known.
-std::vector<double> emissivities(const FactorsOfScene& self) {
-    std::vector<double> result;
-    if (self.scene) {
-        const auto channels = static_cast<std::ptrdiff_t>(self.scene->scene.channels.size());
-        const std::vector<double> reflectance =
-            patch_values(self.scene->mesh, self.scene->scene.materials, &Material::reflectance);
-        for (auto first = reflectance.begin(); first != reflectance.end(); first += channels) {
-            result.push_back(1.0 -
-                             std::accumulate(first, first + channels, 0.0) / static_cast<double>(channels));
-        }
-    }
-    return result;
-}
-
 void save(FactorsOfScene& self, const py::object& path) {
     const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
     const std::string extension = io::extension_of(file);
@@ -204,7 +188,10 @@ void save(FactorsOfScene& self, const py::object& path) {
             estimate_error(*self.raw);
             io::write_hff(file, *self.raw);
         } else {
-            io::write_factors(file, self.factors, {emissivities(self)}, diagnostics);
+            const std::vector<double> emissivity =
+                self.scene ? emissivities(self.scene->mesh, self.scene->scene.materials)
+                           : std::vector<double>{};
+            io::write_factors(file, self.factors, {emissivity}, diagnostics);
         }
     });
     warn(diagnostics);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace hemi {
 
@@ -276,6 +277,21 @@ std::vector<double> patch_values(const PatchMesh& mesh, std::span<const Material
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         const std::vector<double>& of_material = materials[mesh.material(i)].*property;
         values.insert(values.end(), of_material.begin(), of_material.end());
+    }
+    return values;
+}
+
+std::vector<double> emissivities(const PatchMesh& mesh, std::span<const Material> materials) {
+    std::vector<double> of_material;
+    for (const Material& material : materials) {
+        const std::vector<double>& reflectance = material.reflectance;
+        const double sum = std::accumulate(reflectance.begin(), reflectance.end(), 0.0);
+        of_material.push_back(1.0 - sum / static_cast<double>(reflectance.size()));
+    }
+    std::vector<double> values;
+    values.reserve(mesh.size());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        values.push_back(of_material[mesh.material(i)]);
     }
     return values;
 }

@@ -3,6 +3,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/engine/touching_faces.hpp"
+#include "support/accuracy_row.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -48,6 +49,14 @@ double worst_error(const ExactCase& exact, const PatchMesh& mesh, const Baseline
     return worst;
 }
 
+void check_unoccluded_methods(const ExactCase& exact, const PatchMesh& mesh) {
+    for (const Method method : unoccluded_methods) {
+        AccuracyRow("other limits", "baseline method `" + std::string(to_word(method)) +
+                                        "`, unoccluded cases of `tests/data/cases`")
+            .check_below("limit", "", worst_error(exact, mesh, settings_of(method)), 1e-6);
+    }
+}
+
 bool occluded(const std::string& name) {
     return name == "concentric_spheres" || name == "occluded_corner";
 }
@@ -91,15 +100,14 @@ double rms_difference(const FormFactorMatrix& a, const FormFactorMatrix& b) {
 
 } // namespace
 
-TEST_CASE("baseline methods: direct and contour have the exact factors of the catalogue", "[engine]") {
+TEST_CASE("baseline methods: direct and contour have the exact factors of the catalogue",
+          "[engine][accuracy]") {
     for (const ExactCase& exact : exact_cases()) {
         if (occluded(exact.name) || exact.name == "sphere_interior") {
             continue;
         }
         CAPTURE(exact.name);
-        const PatchMesh mesh = cut(read_case(exact.file), 1);
-        CHECK(worst_error(exact, mesh, settings_of(Method::direct)) < 1e-6);
-        CHECK(worst_error(exact, mesh, settings_of(Method::contour)) < 1e-6);
+        check_unoccluded_methods(exact, cut(read_case(exact.file), 1));
     }
 }
 
@@ -129,14 +137,14 @@ TEST_CASE("baseline methods: the hemisphere is as good as its one point a patch"
     }
 }
 
-TEST_CASE("baseline methods: all methods see a sphere of facets from inside alike", "[engine][slow]") {
+TEST_CASE("baseline methods: all methods see a sphere of facets from inside alike",
+          "[engine][slow][accuracy]") {
     for (const ExactCase& exact : exact_cases()) {
         if (exact.name != "sphere_interior") {
             continue;
         }
         const PatchMesh mesh = cut(read_case(exact.file), 1);
-        CHECK(worst_error(exact, mesh, settings_of(Method::direct)) < 1e-6);
-        CHECK(worst_error(exact, mesh, settings_of(Method::contour)) < 1e-6);
+        check_unoccluded_methods(exact, mesh);
         BaselineSettings settings = settings_of(Method::montecarlo);
         settings.rays = 4096;
         CHECK(worst_error(exact, mesh, settings) < 1e-3);

@@ -1,5 +1,6 @@
 #include "engine/baselines/reference_engine.hpp"
 #include "engine/hemicube/gl_rows.hpp"
+#include "support/accuracy_row.hpp"
 #include "support/device.hpp"
 #include "support/item_agreement.hpp"
 #include "support/scenes.hpp"
@@ -122,13 +123,15 @@ TEST_CASE("GlRows: a merged lattice shows the same items as its faces", "[engine
     }
 }
 
-TEST_CASE("hemicube rows: sum, environment and blocked share add up to one", "[engine][gl][every-device]") {
+TEST_CASE("hemicube rows: sum, environment and blocked share add up to one",
+          "[engine][gl][accuracy][every-device]") {
     for (const Scene& scene : {room_with_blocks(6), open_corner(), tapered_box(4)}) {
         const PatchMesh mesh(scene);
         const FormFactorMatrix factors = compute(mesh, {.resolution = 64});
         for (std::uint32_t i = 0; i < mesh.size(); ++i) {
             const RowView row = factors.row(i);
-            REQUIRE(row.sum() + row.environment + row.blocked == Approx(1.0).margin(1e-9).epsilon(0));
+            AccuracyRow("other limits", "row balance of plain rows")
+                .check_below("limit", "", std::abs(row.sum() + row.environment + row.blocked - 1.0), 1e-9);
         }
     }
 }
@@ -243,12 +246,14 @@ TEST_CASE("hemicube rows: two polygons with the same projection have the same fa
 }
 
 TEST_CASE("hemicube rows: reciprocity of the unit cube to the one-point error",
-          "[engine][gl][every-device]") {
+          "[engine][gl][accuracy][every-device]") {
     const PatchMesh mesh(read_case("01_unit_cube.obj"), {.patch_size = {}, .patches_per_face = 64});
     const Reciprocity result = reciprocity(compute(mesh, {.resolution = 128}), mesh.areas());
-    CHECK(result.rms < 1e-3);
     CHECK(result.rms > 0.0);
-    CHECK(result.max < 2e-2); // one point a patch is off by 1e-2 where patches share an edge
+    const AccuracyRow row("plain hemicubes",
+                          "unit cube: F(i, j) against F(j, i) A_j / A_i of single patches");
+    row.check_below("error", "rms", result.rms, 1e-3);
+    row.check_below("error", "max", result.max, 2e-2); // patches that share an edge are off by 1e-2
 }
 
 TEST_CASE("hemicube rows: rotation, scale, translation and surface order do not change factors by group",
@@ -317,7 +322,7 @@ TEST_CASE("hemicube rows: a two-sided sheet radiates on both sides", "[engine][g
 }
 
 TEST_CASE("hemicube rows: the closed-form cases within what one eye point can reach",
-          "[engine][gl][every-device]") {
+          "[engine][gl][accuracy][every-device]") {
     for (const ExactCase& exact : exact_cases()) {
         const PatchMesh mesh(read_case(exact.file),
                              {.patch_size = {}, .patches_per_face = exact.patches_per_face});
@@ -325,7 +330,9 @@ TEST_CASE("hemicube rows: the closed-form cases within what one eye point can re
         for (const auto& pair : exact.pairs) {
             INFO(exact.name << ": " << pair.from << " to " << pair.to << " is "
                             << table.factor(pair.from, pair.to) << ", exactly " << pair.factor);
-            CHECK(std::abs(table.factor(pair.from, pair.to) - pair.factor) < exact.one_point_limit);
+            AccuracyRow("plain hemicubes", exact.title)
+                .check_below("error", "", std::abs(table.factor(pair.from, pair.to) - pair.factor),
+                             exact.one_point_limit);
         }
     }
 }

@@ -1,5 +1,6 @@
 #include "hemi/engine/exchange_area.hpp"
 
+#include "support/accuracy_row.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -100,9 +101,29 @@ double area_of_pair(const Corners& a, const Corners& b, ExchangeRule rule) {
 }
 
 constexpr std::array both{ExchangeRule::standard, ExchangeRule::exact};
-/// Relative accuracy of each rule.
+/// Heading of a rule's column.
+std::string column(ExchangeRule rule) {
+    return rule == ExchangeRule::standard ? "standard rule" : "exact rule";
+}
+/// Limit of each rule.
 double accuracy(ExchangeRule rule, double standard, double exact) {
     return rule == ExchangeRule::standard ? standard : exact;
+}
+
+/// A row of the page's table of unoccluded factors.
+AccuracyRow unoccluded(const std::string& name) {
+    return AccuracyRow("unoccluded factors", name);
+}
+
+double relative_error(double found, double expected) {
+    return std::abs(found - expected) / expected;
+}
+
+/// The exchange area of the unit floor and a rectangle opposite or above it.
+void check_at_any_distance(ExchangeRule rule, const Corners& other, double expected) {
+    unoccluded("parallel or perpendicular rectangles at any distance, relative")
+        .check_below(column(rule), "", relative_error(area_of_pair(unit_floor, other, rule), expected),
+                     accuracy(rule, 2e-5, 1e-9));
 }
 
 /// A_i F_ij by midpoints in both directions on the parallelogram i, graded towards its edges.
@@ -174,49 +195,55 @@ TEST_CASE("point_factor: what lies below the horizon does not count", "[engine]"
     CHECK(point_factor({1, 0, 0}, {0, 0, 1}, upright(-1e6, 1e6, -1, 1e6)) == Approx(0.5).epsilon(1e-5));
 }
 
-TEST_CASE("ExchangeAreas: parallel squares have Howell's factors at any gap", "[engine]") {
+TEST_CASE("ExchangeAreas: parallel squares have Howell's factors at any gap", "[engine][accuracy]") {
     for (const ExchangeRule rule : both) {
         for (const double gap : {1e-4, 1e-3, 0.01, 0.05, 0.1, 0.3, 1.0, 2.0, 4.0, 7.0, 12.0, 20.0}) {
             CAPTURE(gap);
             const double expected = parallel_rectangles({0, 1}, {0, 1}, {0, 1}, {0, 1}, gap);
-            CHECK(area_of_pair(unit_floor, level(0, 1, 0, 1, gap, false), rule) ==
-                  Approx(expected).epsilon(accuracy(rule, 2e-5, 1e-9)));
+            check_at_any_distance(rule, level(0, 1, 0, 1, gap, false), expected);
             const double aside = parallel_rectangles({0, 1}, {0, 1}, {0.3, 1.8}, {-0.4, 0.4}, gap);
-            CHECK(area_of_pair(unit_floor, level(0.3, 1.8, -0.4, 0.4, gap, false), rule) ==
-                  Approx(aside).epsilon(accuracy(rule, 2e-5, 1e-9)));
+            check_at_any_distance(rule, level(0.3, 1.8, -0.4, 0.4, gap, false), aside);
         }
     }
 }
 
-TEST_CASE("ExchangeAreas: perpendicular squares have Howell's factors, touching or apart", "[engine]") {
+TEST_CASE("ExchangeAreas: perpendicular squares have Howell's factors, touching or apart",
+          "[engine][accuracy]") {
     for (const ExchangeRule rule : both) {
-        CHECK(area_of_pair(unit_floor, upright(0, 1, 0, 1), rule) ==
-              Approx(0.20004377607540316).epsilon(accuracy(rule, 1e-8, 1e-12)));
+        unoccluded("perpendicular squares with a common edge, relative")
+            .check_below(
+                column(rule), "",
+                relative_error(area_of_pair(unit_floor, upright(0, 1, 0, 1), rule), 0.20004377607540316),
+                accuracy(rule, 1e-8, 1e-12));
         for (const double gap : {0.0, 1e-4, 0.01, 0.1, 0.5, 1.0, 3.0, 8.0}) {
             CAPTURE(gap);
             const double above = perpendicular_rectangles({0, 1}, {0, 1}, {gap, gap + 1}, {0, 1});
-            CHECK(area_of_pair(unit_floor, upright(0, 1, gap, gap + 1), rule) ==
-                  Approx(above).epsilon(accuracy(rule, 2e-5, 1e-9)));
+            check_at_any_distance(rule, upright(0, 1, gap, gap + 1), above);
             const double beside = perpendicular_rectangles({0, 1}, {0, 1}, {0, 0.25}, {1 + gap, 1.5L + gap});
-            CHECK(area_of_pair(unit_floor, upright(1 + gap, 1.5 + gap, 0, 0.25), rule) ==
-                  Approx(beside).epsilon(accuracy(rule, 1e-4, 1e-8)));
+            unoccluded("perpendicular rectangles, one beside the other, relative")
+                .check_below(
+                    column(rule), "",
+                    relative_error(area_of_pair(unit_floor, upright(1 + gap, 1.5 + gap, 0, 0.25), rule),
+                                   beside),
+                    accuracy(rule, 1e-4, 1e-8));
             const double overlapping = perpendicular_rectangles({0, 1}, {0, 1}, {gap, 2}, {-0.5, 0.25});
             if (gap < 2.0) {
-                CHECK(area_of_pair(unit_floor, upright(-0.5, 0.25, gap, 2), rule) ==
-                      Approx(overlapping).epsilon(accuracy(rule, 2e-5, 1e-9)));
+                check_at_any_distance(rule, upright(-0.5, 0.25, gap, 2), overlapping);
             }
         }
     }
 }
 
-TEST_CASE("ExchangeAreas: only the part in front of the other's plane counts", "[engine]") {
+TEST_CASE("ExchangeAreas: only the part in front of the other's plane counts", "[engine][accuracy]") {
     for (const ExchangeRule rule : both) {
         const double whole = area_of_pair(unit_floor, upright(0, 1, 0, 1), rule);
         CHECK(area_of_pair(unit_floor, upright(0, 1, -1, 1), rule) ==
               Approx(whole).epsilon(accuracy(rule, 1e-8, 1e-12)));
         const double far = area_of_pair(unit_floor, upright(30, 31, 0, 1), rule);
-        CHECK(area_of_pair(unit_floor, upright(30, 31, -1, 1), rule) ==
-              Approx(far).epsilon(accuracy(rule, 1e-4, 1e-8)));
+        unoccluded("squares at distance 30, one partly behind the other's plane, relative")
+            .check_below(column(rule), "",
+                         relative_error(area_of_pair(unit_floor, upright(30, 31, -1, 1), rule), far),
+                         accuracy(rule, 1e-4, 1e-8));
         CHECK(area_of_pair(unit_floor, upright(0, 1, -1, 0), rule) == 0.0);
         CHECK(area_of_pair(unit_floor, level(0, 1, 0, 1, 1, true), rule) == 0.0);
         CHECK(area_of_pair(unit_floor, level(1, 2, 0, 1, 0, true), rule) == 0.0);
@@ -307,7 +334,7 @@ TEST_CASE("ExchangeAreas: turned plates a hair apart exchange what their quarter
     }
 }
 
-TEST_CASE("ExchangeAreas: unoccluded exact cases are met, whatever their scale", "[engine]") {
+TEST_CASE("ExchangeAreas: unoccluded exact cases are met, whatever their scale", "[engine][accuracy]") {
     for (const ExactCase& exact : exact_cases()) {
         if (exact.name == "concentric_spheres" || exact.name == "occluded_corner") {
             continue;
@@ -328,7 +355,9 @@ TEST_CASE("ExchangeAreas: unoccluded exact cases are met, whatever their scale",
                         sum += mesh.groups()[mesh.group(j)] == pair.to ? areas(i, j) : 0.0;
                     }
                 }
-                CHECK(sum / from_area == Approx(pair.factor).margin(accuracy(rule, 1e-7, 1e-11)));
+                unoccluded("unoccluded cases of `tests/data/cases`, absolute")
+                    .check_below(column(rule), "", std::abs(sum / from_area - pair.factor),
+                                 accuracy(rule, 2e-7, 1e-11));
             }
         }
     }
@@ -349,20 +378,22 @@ TEST_CASE("ExchangeAreas: both orders of a pair give the same bits", "[engine]")
     }
 }
 
-TEST_CASE("ExchangeAreas: rows of closed convex scenes sum to one", "[engine]") {
+TEST_CASE("ExchangeAreas: rows of closed convex scenes sum to one", "[engine][accuracy]") {
     Scene cube = empty_scene();
     add_room(cube, {0, 0, 0}, {1, 1, 1}, 8);
-    CHECK(worst_row(PatchMesh(cube), ExchangeRule::standard) < 1e-6);
-    CHECK(worst_row(PatchMesh(cube), ExchangeRule::exact) < 1e-10);
-    CHECK(worst_row(PatchMesh(rotated(cube)), ExchangeRule::standard) < 1e-6);
-    CHECK(worst_row(PatchMesh(tapered_box(5)), ExchangeRule::standard) < 2e-6);
-    CHECK(worst_row(PatchMesh(tapered_box(5)), ExchangeRule::exact) < 1e-8);
-    CHECK(worst_row(PatchMesh(lattice_room()), ExchangeRule::standard) < 2e-6);
-    CHECK(worst_row(PatchMesh(lattice_room()), ExchangeRule::exact) < 1e-8);
-    CHECK(worst_row(PatchMesh(t_junction_room()), ExchangeRule::exact) < 1e-8);
+    const AccuracyRow cubes = unoccluded("rows of the unit cube sum to 1 within");
+    cubes.check_below("standard rule", "", worst_row(PatchMesh(cube), ExchangeRule::standard), 1e-6);
+    cubes.check_below("exact rule", "", worst_row(PatchMesh(cube), ExchangeRule::exact), 1e-10);
+    cubes.check_below("standard rule", "", worst_row(PatchMesh(rotated(cube)), ExchangeRule::standard), 1e-6);
+    const AccuracyRow rooms = unoccluded("rows of a tapered box and of rooms of many faces");
+    for (const Scene& scene : {tapered_box(5), lattice_room()}) {
+        rooms.check_below("standard rule", "", worst_row(PatchMesh(scene), ExchangeRule::standard), 2e-6);
+        rooms.check_below("exact rule", "", worst_row(PatchMesh(scene), ExchangeRule::exact), 1e-8);
+    }
+    rooms.check_below("exact rule", "", worst_row(PatchMesh(t_junction_room()), ExchangeRule::exact), 1e-8);
 }
 
-TEST_CASE("ExchangeAreas: rows of a closed hull of slanted triangles sum to one", "[engine]") {
+TEST_CASE("ExchangeAreas: rows of a closed hull of slanted triangles sum to one", "[engine][accuracy]") {
     // An irregular octahedron, faces inward.
     const std::array<Vec3, 6> tip{Vec3(1.1, 0.1, 0.0),  Vec3(-0.9, 0.2, 0.1), Vec3(0.1, 1.3, 0.2),
                                   Vec3(0.0, -0.8, 0.3), Vec3(0.1, 0.1, 0.7),  Vec3(0.2, 0.0, -1.0)};
@@ -377,8 +408,9 @@ TEST_CASE("ExchangeAreas: rows of a closed hull of slanted triangles sum to one"
                                                   {0, 5, 3}}) {
         add_polygon(scene, "hull", {tip[face[0]], tip[face[1]], tip[face[2]]}, {3, 3});
     }
-    CHECK(worst_row(PatchMesh(scene), ExchangeRule::standard) < 3e-6);
-    CHECK(worst_row(PatchMesh(scene), ExchangeRule::exact) < 1e-9);
+    const AccuracyRow row = unoccluded("rows of a closed hull of slanted triangles");
+    row.check_below("standard rule", "", worst_row(PatchMesh(scene), ExchangeRule::standard), 3e-6);
+    row.check_below("exact rule", "", worst_row(PatchMesh(scene), ExchangeRule::exact), 1e-9);
 }
 
 TEST_CASE("ExchangeAreas: scale and place do not matter", "[engine]") {

@@ -1,3 +1,4 @@
+#include "support/accuracy_row.hpp"
 #include "support/occluded_reference.hpp"
 #include "support/scenes.hpp"
 
@@ -49,6 +50,11 @@ std::string describe(std::string_view preset, const RowErrors& errors, double se
            std::to_string(errors.worst_j) + "), " + std::to_string(seconds) + " s";
 }
 
+/// Heading of a preset's column.
+std::string column(Preset preset) {
+    return "`" + std::string(to_word(preset)) + "`";
+}
+
 std::vector<std::uint32_t> floor_patches(const PatchMesh& mesh) {
     std::vector<std::uint32_t> patches;
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
@@ -61,7 +67,7 @@ std::vector<std::uint32_t> floor_patches(const PatchMesh& mesh) {
 
 } // namespace
 
-TEST_CASE("presets: the unit cube of 24 x 24 patches a face", "[pipeline][gl][slow]") {
+TEST_CASE("presets: the unit cube of 24 x 24 patches a face", "[pipeline][gl][slow][accuracy]") {
     Scene scene = empty_scene();
     add_room(scene, Vec3(0.0), Vec3(1.0), 24);
     scene.enclosure = Enclosure::closed;
@@ -74,11 +80,12 @@ TEST_CASE("presets: the unit cube of 24 x 24 patches a face", "[pipeline][gl][sl
     patches.insert(patches.end(), spread.begin(), spread.end());
     const RowErrors errors = compare(computed.factors, reference, patches);
     INFO(describe("default", errors, computed.seconds));
-    CHECK(errors.max <= 1e-5);
-    CHECK(errors.rms <= 2e-7);
+    const AccuracyRow row("single factors", "unit cube, 24 x 24 patches a face");
+    row.check_below(column(Preset::standard), "rms", errors.rms, 2e-7);
+    row.check_below(column(Preset::standard), "max", errors.max, 1e-5);
 }
 
-TEST_CASE("presets: a room with two turned boxes, 1,110 patches", "[pipeline][gl]") {
+TEST_CASE("presets: a room with two turned boxes, 1,110 patches", "[pipeline][gl][accuracy]") {
     const Scene scene = coarse_room_with_turned_boxes();
     const PatchMesh mesh(scene);
     const OccludedReference reference(mesh, {"first", "second"}, 20);
@@ -89,12 +96,13 @@ TEST_CASE("presets: a room with two turned boxes, 1,110 patches", "[pipeline][gl
     const RowErrors exact_errors = compare(best.factors, reference, patches);
     INFO(describe("default", default_errors, fair.seconds)
          << "; " << describe("exact", exact_errors, best.seconds));
-    CHECK(default_errors.rms <= 2e-5);
-    CHECK(default_errors.max <= 1e-3);
-    CHECK(exact_errors.rms <= 5e-6);
+    const AccuracyRow row("single factors", "closed room with two rotated boxes, 1,110 patches");
+    row.check_below(column(Preset::standard), "rms", default_errors.rms, 2e-5);
+    row.check_below(column(Preset::standard), "max", default_errors.max, 1e-3);
+    row.check_below(column(Preset::exact), "rms", exact_errors.rms, 5e-6);
 }
 
-TEST_CASE("presets: a room with two turned boxes, 5,790 patches", "[pipeline][gl][slow]") {
+TEST_CASE("presets: a room with two turned boxes, 5,790 patches", "[pipeline][gl][slow][accuracy]") {
     const Scene scene = fine_room_with_turned_boxes();
     const PatchMesh mesh(scene);
     const OccludedReference reference(mesh, {"first", "second"}, 14);
@@ -108,12 +116,14 @@ TEST_CASE("presets: a room with two turned boxes, 5,790 patches", "[pipeline][gl
     INFO(describe("default", default_errors, fair.seconds)
          << "; " << describe("exact", exact_errors, best.seconds) << "; "
          << describe("no rays", errors_without, without.seconds));
-    CHECK(default_errors.rms <= 8e-6);
-    CHECK(default_errors.rms <= 0.8 * errors_without.rms); // what shadow rays are for
-    CHECK(exact_errors.rms <= 3e-6);
+    const AccuracyRow row("single factors", "the same room, 5,790 patches");
+    row.check_below(column(Preset::standard), "rms", default_errors.rms, 8e-6);
+    row.check_below(column(Preset::exact), "rms", exact_errors.rms, 3e-6);
+    AccuracyRow("other limits", "rms of single factors with shadow rays / without them, 5,790 patches")
+        .check_below("limit", "", default_errors.rms / errors_without.rms, 0.8);
 }
 
-TEST_CASE("presets: triangles cut into patches behind a sphere", "[pipeline][gl]") {
+TEST_CASE("presets: triangles cut into patches behind a sphere", "[pipeline][gl][accuracy]") {
     Scene scene = read_case("10_concentric_spheres.obj");
     for (Surface& surface : scene.surfaces) {
         surface.patches = Grid{2, 2};
@@ -124,13 +134,15 @@ TEST_CASE("presets: triangles cut into patches behind a sphere", "[pipeline][gl]
     const Computed computed = compute(scene, Preset::exact);
     const RowErrors errors = compare(computed.factors, reference, sampled_patches(mesh, 30));
     INFO(describe("exact", errors, computed.seconds));
-    CHECK(errors.rms <= 1.2e-5);
+    AccuracyRow("single factors", "facets between concentric spheres")
+        .check_below(column(Preset::exact), "rms", errors.rms, 1.2e-5);
 }
 
-TEST_CASE("presets: the shared cases of 16 patches a face", "[pipeline][gl][slow]") {
+TEST_CASE("presets: the shared cases of 16 patches a face", "[pipeline][gl][slow][accuracy]") {
     const std::set<std::string> occluded{"occluded_corner", "concentric_spheres"};
     for (const ExactCase& exact : exact_cases()) {
         const bool hidden = occluded.contains(exact.name);
+        const AccuracyRow row("group factors", hidden ? "occluded" : "unoccluded");
         struct Limit {
             Preset preset;
             double error;
@@ -154,20 +166,23 @@ TEST_CASE("presets: the shared cases of 16 patches a face", "[pipeline][gl][slow
             for (const auto& pair : exact.pairs) {
                 const double factor = groups.factors[index(pair.from) * groups.groups + index(pair.to)];
                 INFO(pair.from << " to " << pair.to << ": " << factor << " for " << pair.factor);
-                CHECK(std::abs(factor - pair.factor) <= limit.error);
+                const double error = std::abs(factor - pair.factor);
+                row.check_below(column(limit.preset), "absolute", error, limit.error);
                 if (!hidden && pair.factor > 0.0) { // a factor of 3e-7 has digits of its own
-                    CHECK(factor == Approx(pair.factor).epsilon(1e-3));
+                    row.check_below(column(limit.preset), "relative", error / pair.factor, 1e-3);
                 }
             }
         }
     }
 }
 
-TEST_CASE("presets: a patch half under a block keeps what its other half sees", "[pipeline][gl]") {
+TEST_CASE("presets: a patch half under a block keeps what its other half sees", "[pipeline][gl][accuracy]") {
     struct Limit {
         Preset preset;
         double row, element;
     };
+    const AccuracyRow factor_row("difficult geometry", "patches buried by 10 % to 90 %: single factor");
+    const AccuracyRow sum_row("difficult geometry", "the same: row sum");
     for (const Limit& limit : {Limit{Preset::standard, 0.04, 3e-3}, Limit{Preset::exact, 0.02, 1.2e-3}}) {
         for (const double buried : {0.1, 0.4, 0.6, 0.9}) {
             const StraddledRoom room = straddled_room(buried);
@@ -188,8 +203,8 @@ TEST_CASE("presets: a patch half under a block keeps what its other half sees", 
                      << ", buried " << buried << ", patch " << i << " at " << whole.centres()[i].x << " "
                      << whole.centres()[i].y << ": sum " << row.sum() << " for " << sum << "; "
                      << describe("", errors, 0.0));
-                CHECK(std::abs(row.sum() - sum) <= limit.row);
-                CHECK(errors.max <= limit.element);
+                factor_row.check_below(column(limit.preset), "", errors.max, limit.element);
+                sum_row.check_below(column(limit.preset), "", std::abs(row.sum() - sum), limit.row);
                 if (sum == 0.0) { // all of it buried
                     CHECK(row.sum() <= 1e-4);
                 }
@@ -198,7 +213,7 @@ TEST_CASE("presets: a patch half under a block keeps what its other half sees", 
     }
 }
 
-TEST_CASE("presets: a sheet close above a patch", "[pipeline][gl]") {
+TEST_CASE("presets: a sheet close above a patch", "[pipeline][gl][accuracy]") {
     struct Limit {
         Preset preset;
         double element;
@@ -214,7 +229,8 @@ TEST_CASE("presets: a sheet close above a patch", "[pipeline][gl]") {
             patches.insert(patches.end(), floor.begin(), floor.end());
             const RowErrors errors = compare(computed.factors, reference, patches);
             INFO("gap " << gap << ", " << describe(to_word(limit.preset), errors, computed.seconds));
-            CHECK(errors.max <= limit.element);
+            AccuracyRow("difficult geometry", "a sheet 0.05 to 0.5 patch sizes above a patch: single factor")
+                .check_below(column(limit.preset), "", errors.max, limit.element);
         }
     }
 }

@@ -459,3 +459,16 @@ TEST_CASE("PatchMesh: the geometry hash stays what stored files hold", "[scene]"
     }
     CHECK(hash_of(one_polygon(rectangle(1, 1), Grid{2, 3})) == expected);
 }
+
+TEST_CASE("emissivities: 1 less the mean reflectance over the channels, for every patch", "[scene]") {
+    Scene scene = one_polygon(rectangle(1, 1), Grid{1, 2});
+    add_polygon(scene, "b", rectangle(1, 1, 2.0));
+    scene.channels = {"red", "green"};
+    scene.materials = {{"grey", {0.25, 0.75}, {0, 0}}, {"black", {0, 0}, {1, 1}}};
+    scene.environment = {0, 0};
+    scene.surfaces[0].material = 0;
+    scene.surfaces[1].material = 1;
+    const PatchMesh mesh(scene);
+    REQUIRE(mesh.size() == 3);
+    CHECK(emissivities(mesh, scene.materials) == std::vector<double>{0.5, 0.5, 1.0});
+}

@@ -7,10 +7,8 @@
 #include <algorithm>
 #include <functional>
 
-// The reference was made by
-//     hemi solve scenes/cornell-box.json --device osmesa --size 200x200 -o
-//     tests/data/pictures/cornell-box.png
-// Make it anew only when the picture is meant to change, and look at it.
+// The reference is made by `tools/figures --renew picture`, by the preset exact. Make it anew only when the
+// picture is meant to change, and look at it.
 //
 // The limits are two to three times what another seed, another resolution (64 or 256 instead of 128) and so
 // any other sound rasteriser change, and far below what the faults further down do.

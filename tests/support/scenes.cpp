@@ -244,22 +244,32 @@ std::vector<ExactCase> exact_cases() {
     std::ifstream file(data_path("cases/cases.json"));
     const nlohmann::json cases = nlohmann::json::parse(file).at("cases");
     struct Limit {
+        std::string title;
         std::uint32_t patches_per_face;
         double error;
     };
     // About 1.5 times the measured error; it comes of the one eye point a patch and falls with the
     // square of the patches' edges.
     const std::map<std::string, Limit> limits{
-        {"unit_cube", {256, 2e-4}},        {"parallel_d0.1", {256, 5e-3}},   {"parallel_d1", {256, 2e-4}},
-        {"perp_1_1", {256, 1e-4}},         {"perp_apart", {256, 2e-5}},      {"discs_64gon", {4, 3e-3}},
-        {"concentric_spheres", {4, 4e-3}}, {"occluded_corner", {256, 2e-4}}, {"sphere_interior", {4, 1e-3}},
-        {"needle_triangle", {256, 1e-3}},  {"far_patch", {256, 5e-6}},       {"box_scale1e-6", {256, 4e-3}},
-        {"box_scale1e6", {256, 4e-3}}};
+        {"unit_cube", {"unit cube", 256, 2e-4}},
+        {"parallel_d0.1", {"parallel squares at distance 0.1", 256, 5e-3}},
+        {"parallel_d1", {"parallel squares at distance 1", 256, 2e-4}},
+        {"perp_1_1", {"squares with a common edge", 256, 1e-4}},
+        {"perp_apart", {"perpendicular plates, apart", 256, 2e-5}},
+        {"discs_64gon", {"discs (64-gons)", 4, 3e-3}},
+        {"concentric_spheres", {"concentric spheres", 4, 4e-3}},
+        {"occluded_corner", {"a square behind an obstacle", 256, 2e-4}},
+        {"sphere_interior", {"inside of a sphere", 4, 1e-3}},
+        {"needle_triangle", {"needle triangle, 1000 : 1, above a plate", 256, 1e-3}},
+        {"far_patch", {"patch of solid angle 1e-6 sr", 256, 5e-6}},
+        {"box_scale1e-6", {"closed box 1 x 0.7 x 0.1 in micrometres", 256, 4e-3}},
+        {"box_scale1e6", {"the same box in megametres", 256, 4e-3}}};
     std::vector<ExactCase> result;
     for (const auto& entry : cases) {
         ExactCase exact;
         exact.name = entry.at("name");
         exact.file = entry.at("file");
+        exact.title = limits.at(exact.name).title;
         exact.patches_per_face = limits.at(exact.name).patches_per_face;
         exact.one_point_limit = limits.at(exact.name).error;
         for (const auto& pair : entry.at("pairs")) {

@@ -58,6 +58,7 @@ struct ExactCase {
         double factor;
     };
     std::vector<Pair> pairs;
+    std::string title;              ///< for tables
     std::uint32_t patches_per_face; ///< 256; 4 for polyhedra of many faces
     /// What plain hemicubes stay within at that subdivision and resolution 256: each patch is sampled at one
     /// point, which costs accuracy where surfaces are near.

@@ -109,4 +109,10 @@ private:
 [[nodiscard]] std::vector<double> patch_values(const PatchMesh& mesh, std::span<const Material> materials,
                                                std::vector<double> Material::*property);
 
+/// Emissivity of every patch: 1 - reflectance, the mean over the channels; N values.
+/// @param mesh       N patches
+/// @param materials  those of the scene, by the index that the mesh knows; all of as many channels, at least
+/// 1
+[[nodiscard]] std::vector<double> emissivities(const PatchMesh& mesh, std::span<const Material> materials);
+
 } // namespace hemi

@@ -76,6 +76,9 @@ struct SolveArguments {
     std::optional<std::filesystem::path> result;
     std::optional<std::filesystem::path> radiosity;
     std::optional<std::filesystem::path> patches;
+
+    /// Whether an output holds the irradiance, which takes the rows of all patches.
+    [[nodiscard]] bool with_irradiance() const { return result || radiosity; }
 };
 
 struct FactorsArguments {

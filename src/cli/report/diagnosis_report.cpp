@@ -1,9 +1,8 @@
 #include "cli/report/diagnosis_report.hpp"
 
-#include "cli/report/factor_report.hpp"
+#include "cli/report/balance_report.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -11,7 +10,7 @@ namespace hemi::cli {
 
 namespace {
 
-/// A kind of finding, as text and JSON have it.
+/// A kind of finding.
 struct Section {
     const char* key;   ///< in JSON
     const char* title; ///< in text
@@ -55,160 +54,148 @@ std::vector<Section> sections(const Diagnosis& diagnosis) {
          true}};
 }
 
-std::string section_text(const Section& section, const PatchNames& names) {
+/// A line, the worst patches below it, and the section's key.
+Report section_report(const Section& section, const PatchNames& names) {
     const std::vector<PatchFinding>& findings = *section.findings;
-    if (findings.empty()) {
-        return summary_line(section.title, "none");
-    }
     std::string text =
-        summary_line(section.title,
-                     fmt::format("{}: {}", plural(findings.size(), "patch", "patches"), section.explanation));
-    for (std::size_t k = 0; k < std::min(Diagnosis::shown, findings.size()); ++k) {
-        text += "    " + names.describe(findings[k].patch);
-        text += section.with_share ? ": " + number_text(findings[k].share) : "";
-        text += towards_text(findings[k].towards) + "\n";
-    }
-    if (findings.size() > Diagnosis::shown) {
-        text += fmt::format("    and {} more\n", count_text(findings.size() - Diagnosis::shown));
-    }
-    return text;
-}
-
-Json section_json(const Section& section, const PatchNames& names) {
-    const std::vector<PatchFinding>& findings = *section.findings;
+        findings.empty()
+            ? summary_line(section.title, "none")
+            : summary_line(section.title, fmt::format("{}: {}", plural(findings.size(), "patch", "patches"),
+                                                      section.explanation));
     Json worst = Json::array();
     for (std::size_t k = 0; k < std::min(Diagnosis::shown, findings.size()); ++k) {
-        Json patch = names.json(findings[k].patch);
+        const PatchFinding& finding = findings[k];
+        Json patch = names.json(finding.patch);
+        text += fmt::format("    {}", names.describe(finding.patch));
         if (section.with_share) {
-            patch["share"] = findings[k].share;
+            text += fmt::format(": {}", number_text(finding.share));
+            patch["share"] = finding.share;
         }
-        if (const auto& towards = findings[k].towards) {
+        text += towards_text(finding.towards) + "\n";
+        if (const auto& towards = finding.towards) {
             patch["towards"] = {towards->x, towards->y, towards->z};
         }
         worst.push_back(patch);
     }
-    return {{"count", findings.size()}, {"worst", worst}};
+    if (findings.size() > Diagnosis::shown) {
+        text += fmt::format("    and {} more\n", count_text(findings.size() - Diagnosis::shown));
+    }
+    return {text, {{section.key, {{"count", findings.size()}, {"worst", worst}}}}};
 }
 
-Section never_visible_section(const Diagnosis& diagnosis) {
-    return {"unseen", "never visible", &diagnosis.never_visible, "no patch sees them", false};
-}
-
-std::string enclosure_text(const Diagnosis& diagnosis) {
+Report enclosure_report(const Diagnosis& diagnosis) {
+    const RowSums& sums = diagnosis.sums;
     std::string text(to_word(diagnosis.enclosure));
     text += diagnosis.declared ? " (declared)" : " (from the rows)";
-    if (diagnosis.sums.leaking > 0) {
-        text += fmt::format(": {} of {} the environment", count_text(diagnosis.sums.leaking),
-                            diagnosis.sums.known == 1 ? "1 patch sees"
-                                                      : count_text(diagnosis.sums.known) + " patches see");
+    if (sums.leaking > 0) {
+        text += fmt::format(": {} of {} the environment", count_text(sums.leaking),
+                            sums.known == 1 ? "1 patch sees" : count_text(sums.known) + " patches see");
     }
-    return text;
+    Report report;
+    report.add("enclosure", text,
+               {{"enclosure", to_word(diagnosis.enclosure)},
+                {"declared", diagnosis.declared},
+                {"leaking", sums.leaking}});
+    return report;
 }
 
-std::string reversed_text(const Diagnosis& diagnosis, const PatchNames& names) {
-    constexpr const char* title = "reversed";
-    if (diagnosis.reversed.empty()) {
-        return summary_line(title, "none");
+/// Groups with reversed normals; the text needs all rows.
+Report reversed_report(const Diagnosis& diagnosis, const PatchNames& names) {
+    const std::vector<ReversedGroup>& reversed = diagnosis.reversed;
+    std::string text = summary_line(
+        "reversed", reversed.empty() ? "none"
+                                     : "reversed normals: no patch sees the front of these surfaces, but "
+                                       "others meet their backs: reverse the vertex order, or set two_sided");
+    Json list = Json::array();
+    for (std::size_t k = 0; k < reversed.size(); ++k) {
+        const ReversedGroup& group = reversed[k];
+        const std::string& name = names.groups[group.group];
+        const std::uint32_t surfaces = group.surfaces;
+        list.push_back({{"group", name},
+                        {"surfaces", surfaces > 0 ? Json(surfaces) : Json(nullptr)},
+                        {"patches", group.patches}});
+        if (k < Diagnosis::shown) {
+            text += fmt::format("    {}: {}{}\n", name,
+                                surfaces > 0 ? plural(surfaces, "surface", "surfaces") + ", " : "",
+                                plural(group.patches, "patch", "patches"));
+        }
     }
-    std::string text =
-        summary_line(title, "reversed normals: no patch sees the front of these surfaces, but others "
-                            "meet their backs: reverse the vertex order, or set two_sided");
-    for (std::size_t k = 0; k < std::min(Diagnosis::shown, diagnosis.reversed.size()); ++k) {
-        const ReversedGroup& group = diagnosis.reversed[k];
-        text += fmt::format("    {}: {}{}\n", names.groups[group.group],
-                            group.surfaces > 0 ? plural(group.surfaces, "surface", "surfaces") + ", " : "",
-                            plural(group.patches, "patch", "patches"));
+    if (reversed.size() > Diagnosis::shown) {
+        text += fmt::format("    and {} more groups\n", count_text(reversed.size() - Diagnosis::shown));
     }
-    if (diagnosis.reversed.size() > Diagnosis::shown) {
-        text +=
-            fmt::format("    and {} more groups\n", count_text(diagnosis.reversed.size() - Diagnosis::shown));
-    }
-    return text;
+    return {diagnosis.all_known ? text : "", {{"turned", list}}};
 }
 
-std::string pairs_text(const Reciprocity& pairs, const PatchNames& names) {
+Report never_visible_report(const Diagnosis& diagnosis, const PatchNames& names) {
+    const Section section{"unseen", "never visible", &diagnosis.never_visible, "no patch sees them", false};
+    if (diagnosis.all_known) {
+        return section_report(section, names);
+    }
+    Report report;
+    report.add(section.title, "not known: some rows were not computed", {{section.key, nullptr}});
+    return report;
+}
+
+Report pairs_report(const Reciprocity& pairs, const PatchNames& names) {
+    Report report;
     if (pairs.pairs == 0) {
-        return summary_line("reciprocity", "no pairs");
+        report.add("reciprocity", "no pairs", {{"reciprocity", nullptr}});
+        return report;
     }
-    return summary_line("reciprocity",
-                        fmt::format("rms {:.3g}, relative rms {:.3g}, over {}", pairs.rms, pairs.relative_rms,
-                                    plural(pairs.pairs, "pair", "pairs"))) +
-           summary_line("", fmt::format("worst {:.3g}: {} and {}", pairs.max, names.describe(pairs.worst_i),
-                                        names.describe(pairs.worst_j)));
+    report.add("reciprocity",
+               fmt::format("rms {:.3g}, relative rms {:.3g}, over {}", pairs.rms, pairs.relative_rms,
+                           plural(pairs.pairs, "pair", "pairs")),
+               {{"reciprocity", reciprocity_json(pairs)}});
+    report.add("", fmt::format("worst {:.3g}: {} and {}", pairs.max, names.describe(pairs.worst_i),
+                               names.describe(pairs.worst_j)));
+    return report;
 }
 
 } // namespace
 
-std::string diagnosis_text(const Diagnosis& diagnosis, const FormFactors& factors, const PatchNames& names,
-                           double max_row_error) {
+Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, const PatchNames& names,
+                        double max_row_error, double repair_seconds) {
     const RowSums& sums = diagnosis.sums;
-    std::string text = summary_line(
-        "rows", fmt::format("{} of {} computed", count_text(sums.known), count_text(names.group_of.size())));
-    text += summary_line("row sums", row_sum_text(sums));
-    text += summary_line(
-        "row balance",
-        fmt::format("row sum + environment share + back-face share differs from 1 by up to {:.3g}",
-                    sums.balance_error_max));
-    text += repair_summary(*factors.repair);
-    text += summary_line(
+    const Report repair = repair_report(*factors.repair, repair_seconds);
+    Report report;
+    report.json = {{"schema", "hemi/check/1"}, {"renderer", factors.provenance.renderer}};
+    report.add("rows",
+               fmt::format("{} of {} computed", count_text(sums.known), count_text(names.group_of.size())),
+               {{"patches", factors.matrix.size()}, {"rows", sums.known}});
+    report.add(row_sum_report(sums));
+    report.json.update({{"environment_max", sums.environment_max}, {"blocked_max", sums.blocked_max}});
+    report.add("row balance",
+               fmt::format("row sum + environment share + back-face share differs from 1 by up to {:.3g}",
+                           sums.balance_error_max),
+               {{"balance_error", sums.balance_error_max}});
+    report.text += repair.text;
+    report.add(
         "bounds",
         fmt::format("largest factor {}, {} above 1", number_text(diagnosis.largest_factor),
                     diagnosis.outside_bounds == 0
                         ? std::string("none")
-                        : plural(diagnosis.outside_bounds, "factor or row sum", "factors or row sums")));
-    text += pairs_text(diagnosis.reciprocity, names);
-    text += summary_line("enclosure", enclosure_text(diagnosis));
+                        : plural(diagnosis.outside_bounds, "factor or row sum", "factors or row sums")),
+        {{"largest_factor", diagnosis.largest_factor}, {"above_one", diagnosis.outside_bounds}});
+    report.add(pairs_report(diagnosis.reciprocity, names));
+    report.json.update(repair.json);
+    report.add(enclosure_report(diagnosis));
     for (const Section& section : sections(diagnosis)) {
         const bool applies =
             section.findings != &diagnosis.leaks || diagnosis.enclosure != EnclosureVerdict::open;
-        text += applies ? section_text(section, names) : "";
+        const Report found = section_report(section, names);
+        report.text += applies ? found.text : "";
+        report.json.update(found.json);
     }
-    if (diagnosis.all_known) {
-        text += reversed_text(diagnosis, names) + section_text(never_visible_section(diagnosis), names);
-    } else {
-        text += summary_line("never visible", "not known: some rows were not computed");
-    }
-    return text + summary_line("result", diagnosis.failures.empty()
-                                             ? fmt::format("within {}", max_row_error)
-                                             : fmt::format("out of tolerance ({}): {}", max_row_error,
-                                                           fmt::join(diagnosis.failures, "; ")));
-}
-
-Json diagnosis_json(const Diagnosis& diagnosis, const FormFactors& factors, const PatchNames& names,
-                    double max_row_error, double repair_seconds) {
-    Json reversed = Json::array();
-    for (const ReversedGroup& group : diagnosis.reversed) {
-        reversed.push_back({{"group", names.groups[group.group]},
-                            {"surfaces", group.surfaces > 0 ? Json(group.surfaces) : Json(nullptr)},
-                            {"patches", group.patches}});
-    }
-    const RowSums& sums = diagnosis.sums;
-    Json json{{"schema", "hemi/check/1"},
-              {"renderer", factors.provenance.renderer},
-              {"patches", factors.matrix.size()},
-              {"rows", sums.known},
-              {"row_sum", row_sum_json(sums)},
-              {"environment_max", sums.environment_max},
-              {"blocked_max", sums.blocked_max},
-              {"balance_error", sums.balance_error_max},
-              {"largest_factor", diagnosis.largest_factor},
-              {"above_one", diagnosis.outside_bounds},
-              {"reciprocity",
-               diagnosis.reciprocity.pairs > 0 ? reciprocity_json(diagnosis.reciprocity) : Json(nullptr)},
-              {"repair", repair_json(*factors.repair, repair_seconds)},
-              {"enclosure", to_word(diagnosis.enclosure)},
-              {"declared", diagnosis.declared},
-              {"leaking", sums.leaking}};
-    for (const Section& section : sections(diagnosis)) {
-        json[section.key] = section_json(section, names);
-    }
-    json["turned"] = reversed;
-    const Section never_visible = never_visible_section(diagnosis);
-    json[never_visible.key] = diagnosis.all_known ? section_json(never_visible, names) : Json(nullptr);
-    json["max_row_error"] = max_row_error;
-    json["failures"] = diagnosis.failures;
-    json["ok"] = diagnosis.failures.empty();
-    return json;
+    report.add(reversed_report(diagnosis, names));
+    report.add(never_visible_report(diagnosis, names));
+    report.add("result",
+               diagnosis.failures.empty() ? fmt::format("within {}", max_row_error)
+                                          : fmt::format("out of tolerance ({}): {}", max_row_error,
+                                                        fmt::join(diagnosis.failures, "; ")),
+               {{"max_row_error", max_row_error},
+                {"failures", diagnosis.failures},
+                {"ok", diagnosis.failures.empty()}});
+    return report;
 }
 
 } // namespace hemi::cli

@@ -1,20 +1,15 @@
 #include "cli/report/factor_report.hpp"
 
+#include "cli/report/balance_report.hpp"
 #include "hemi/engine/leaks.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
 namespace hemi::cli {
 
 namespace {
-
-Json imbalance_json(const RowImbalance& rows, const Reciprocity& pairs) {
-    return {{"row_error", {{"max", rows.max}, {"rms", rows.rms}}},
-            {"reciprocity", pairs.pairs > 0 ? reciprocity_json(pairs) : Json(nullptr)}};
-}
 
 std::string hemicubes_text(const FormFactors& factors) {
     const Provenance& made = factors.provenance;
@@ -33,101 +28,127 @@ std::string hemicubes_text(const FormFactors& factors) {
     return text;
 }
 
+Report entries_report(const FormFactorMatrix& matrix, const std::string& remark = "") {
+    Report report;
+    report.add(
+        "entries",
+        fmt::format("{}{}, {}", count_text(matrix.entries()), remark, memory_text(matrix.memory_bytes())),
+        {{"entries", matrix.entries()}, {"memory", matrix.memory_bytes()}});
+    return report;
+}
+
+/// What made rows that a file holds.
+Report provenance_report(const Provenance& made) {
+    const std::string_view preset = made.preset ? to_word(*made.preset) : "none";
+    Report report;
+    report.add("made by",
+               fmt::format("{}, preset {}, resolution {}, {}, {}, seed {}", to_word(made.method), preset,
+                           made.resolution, plural(made.eye_points, "sample point", "sample points"),
+                           plural(made.shadow_rays, "shadow ray", "shadow rays"), made.seed),
+               {{"preset", preset},
+                {"method", to_word(made.method)},
+                {"resolution", made.resolution},
+                {"eye_points", made.eye_points},
+                {"shadow_rays", made.shadow_rays},
+                {"seed", made.seed}});
+    report.add("renderer", made.renderer, {{"renderer", made.renderer}});
+    return report;
+}
+
+/// Patches and area of every group of a file.
+Report groups_report(const FormFactors& file) {
+    std::vector<double> areas(file.groups.size(), 0.0);
+    std::vector<std::uint64_t> patches(file.groups.size(), 0);
+    for (std::size_t i = 0; i < file.group_of.size(); ++i) {
+        areas[file.group_of[i]] += file.areas[i];
+        ++patches[file.group_of[i]];
+    }
+    Table table({"group", "patches", "area"});
+    Json list = Json::array();
+    for (std::size_t g = 0; g < areas.size(); ++g) {
+        table.add({file.groups[g], count_text(patches[g]), number_text(areas[g])});
+        list.push_back({{"name", file.groups[g]}, {"patches", patches[g]}, {"area", areas[g]}});
+    }
+    return {fmt::format("\n{}", table.text()), {{"groups", list}}};
+}
+
 } // namespace
 
-std::string scene_summary(const PatchMesh& mesh) {
-    return summary_line("scene", fmt::format("{}, {}, {}", plural(mesh.size(), "patch", "patches"),
-                                             plural(mesh.surfaces().size(), "surface", "surfaces"),
-                                             plural(mesh.groups().size(), "group", "groups")));
-}
-
-std::string rows_summary(const FormFactors& factors, const RowSums& sums, const EnclosureFinding& enclosure) {
+Report rows_report(const FormFactors& factors, const RowSums& sums, const EnclosureFinding& enclosure) {
     const FormFactorMatrix& matrix = factors.matrix;
     const double per_row = static_cast<double>(matrix.entries()) / std::max<double>(sums.known, 1.0);
-    std::string text = summary_line("renderer", factors.provenance.renderer);
-    text += summary_line("hemicubes", hemicubes_text(factors));
-    text += summary_line("entries", fmt::format("{} ({:.0f} a row), {}", count_text(matrix.entries()),
-                                                per_row, memory_text(matrix.memory_bytes())));
-    text += summary_line("row sums", row_sum_text(sums));
-    text += summary_line("", fmt::format("share to the environment up to {}, to back faces up to {}{}",
-                                         number_text(sums.environment_max), number_text(sums.blocked_max),
-                                         sums.covered > 0
-                                             ? ", " + plural(sums.covered, "patch buried", "patches buried")
-                                             : std::string()));
-    return text + summary_line("enclosure", std::string(enclosure.closed ? "closed" : "open") +
-                                                (enclosure.declared ? " (declared)" : ""));
+    const std::string buried =
+        sums.covered > 0 ? ", " + plural(sums.covered, "patch buried", "patches buried") : std::string();
+    Report report;
+    report.add("renderer", factors.provenance.renderer, {{"renderer", factors.provenance.renderer}});
+    report.add("hemicubes", hemicubes_text(factors));
+    report.add(entries_report(matrix, fmt::format(" ({:.0f} a row)", per_row)));
+    report.add(row_sum_report(sums));
+    report.add("",
+               fmt::format("share to the environment up to {}, to back faces up to {}{}",
+                           number_text(sums.environment_max), number_text(sums.blocked_max), buried),
+               {{"environment_max", sums.environment_max}, {"blocked_max", sums.blocked_max}});
+    report.add("enclosure",
+               std::string(enclosure.closed ? "closed" : "open") + (enclosure.declared ? " (declared)" : ""));
+    return report;
 }
 
-std::string repair_summary(const RepairReport& report) {
-    if (report.repair == Repair::none) {
-        return summary_line("repair",
-                            fmt::format("none; largest row imbalance {:.2g}, reciprocity error {:.2g} "
-                                        "(relative, rms)",
-                                        report.row_error_before.max, report.reciprocity_before.relative_rms));
+Report prepared_rows_report(const FormFactors& factors, const RowSums& sums,
+                            const EnclosureFinding& enclosure, double repair_seconds) {
+    Report report = rows_report(factors, sums, enclosure);
+    report.add(repair_report(*factors.repair, repair_seconds));
+    report.add(chosen_report(factors.provenance.chosen_for));
+    report.add(error_report(factors.error));
+    return report;
+}
+
+Report stored_factors_report(const FormFactors& file) {
+    const std::string hash = fmt::format("{:016x}", file.geometry_hash);
+    const RowSums sums = row_sums(file.matrix);
+    Report report;
+    report.add("patches", count_text(file.matrix.size()), {{"patches", file.matrix.size()}});
+    report.add("rows", fmt::format("{} computed", count_text(sums.known)), {{"rows", sums.known}});
+    report.add(entries_report(file.matrix));
+    report.add(provenance_report(file.provenance));
+    report.add("enclosure", to_word(file.enclosure), {{"enclosure", to_word(file.enclosure)}});
+    report.add("geometry", hash, {{"geometry_hash", hash}});
+    report.add(row_sum_report(sums));
+    report.add(chosen_report(file.provenance.chosen_for));
+    report.json["chosen_for"] = file.provenance.chosen_for; // "" rather than null, as the file has it
+    report.add(error_report(file.error));
+    report.add(groups_report(file));
+    return report;
+}
+
+Report matrix_report(const FormFactorMatrix& factors) {
+    Report report;
+    report.add("patches", count_text(factors.size()), {{"patches", factors.size()}});
+    report.add(entries_report(factors));
+    report.add(row_sum_report(row_sums(factors)));
+    return report;
+}
+
+Report chosen_report(const std::string& chosen_for) {
+    Report report;
+    if (chosen_for.empty()) {
+        report.json["chosen_for"] = nullptr;
+    } else {
+        report.add("chosen", chosen_for, {{"chosen_for", chosen_for}});
     }
-    std::string what(to_word(report.repair));
-    if (report.repair == Repair::closure) {
-        what += fmt::format(", {}; largest relative change of a factor {:.2g}",
-                            plural(report.iterations, "iteration", "iterations"), report.largest_change);
-        if (report.at_zero + report.at_unoccluded > 0) {
-            what += fmt::format("; {} limited at 0, {} at the unoccluded factor",
-                                plural(report.at_zero, "pair", "pairs"), count_text(report.at_unoccluded));
-        }
-    }
-    if (report.added > 0) {
-        what += fmt::format("; {} added", plural(report.added, "entry", "entries"));
-    }
-    return summary_line("repair", what) +
-           summary_line("",
-                        fmt::format("largest row imbalance {:.2g} (before {:.2g}), reciprocity error {:.2g} "
-                                    "(before {:.2g})",
-                                    report.row_error_after.max, report.row_error_before.max,
-                                    report.reciprocity_after.relative_rms,
-                                    report.reciprocity_before.relative_rms));
+    return report;
 }
 
-Json repair_json(const RepairReport& report, double seconds) {
-    return {{"name", to_word(report.repair)},
-            {"before", imbalance_json(report.row_error_before, report.reciprocity_before)},
-            {"after", imbalance_json(report.row_error_after, report.reciprocity_after)},
-            {"iterations", report.iterations},
-            {"passes", report.passes},
-            {"at_zero", report.at_zero},
-            {"at_unoccluded", report.at_unoccluded},
-            {"added", report.added},
-            {"largest_change", report.largest_change},
-            {"seconds", seconds}};
-}
-
-std::string chosen_summary(const std::string& chosen_for) {
-    return chosen_for.empty() ? "" : summary_line("chosen", chosen_for);
-}
-
-std::string error_summary(const std::optional<FactorErrorEstimate>& factors,
-                          const std::optional<RadiosityErrorEstimate>& radiosity) {
+Report error_report(const std::optional<FactorErrorEstimate>& factors,
+                    const std::optional<RadiosityErrorEstimate>& radiosity) {
+    Report report;
+    report.json["error_estimate"] = nullptr;
     if (!factors) {
-        return "";
+        return report;
     }
-    std::string text;
     if (radiosity) {
-        text += summary_line("error",
-                             fmt::format("reflected radiosity: {:.2g} % rms, due to form factors (the size "
-                                         "of the patches is not included)",
-                                         100.0 * radiosity->rms));
-    }
-    text += summary_line(
-        radiosity ? "" : "error",
-        fmt::format("form factors, estimated from {}: {:.2g} rms, {:.2g} max; row (2-norm) {:.2g} rms, "
-                    "{:.2g} max",
-                    plural(factors->sampled, "row", "rows"), factors->rms, factors->max, factors->row_rms,
-                    factors->row_max));
-    return text;
-}
-
-Json error_json(const std::optional<FactorErrorEstimate>& factors,
-                const std::optional<RadiosityErrorEstimate>& radiosity) {
-    if (!factors) {
-        return nullptr;
+        report.add("error", fmt::format("reflected radiosity: {:.2g} % rms, due to form factors (the size "
+                                        "of the patches is not included)",
+                                        100.0 * radiosity->rms));
     }
     Json json{{"rows_compared", factors->sampled},
               {"factor", {{"rms", factors->rms}, {"max", factors->max}}},
@@ -135,7 +156,14 @@ Json error_json(const std::optional<FactorErrorEstimate>& factors,
     if (radiosity) {
         json["radiosity"] = {{"rms", radiosity->rms}};
     }
-    return json;
+    report.add(
+        radiosity ? "" : "error",
+        fmt::format("form factors, estimated from {}: {:.2g} rms, {:.2g} max; row (2-norm) {:.2g} rms, "
+                    "{:.2g} max",
+                    plural(factors->sampled, "row", "rows"), factors->rms, factors->max, factors->row_rms,
+                    factors->row_max),
+        {{"error_estimate", json}});
+    return report;
 }
 
 void report_leaks(const EnclosureFinding& finding, const FormFactorMatrix& factors, const PatchNames& names,

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "cli/report/text.hpp"
+#include "cli/report/report.hpp"
 #include "cli/terminal.hpp"
+#include "hemi/matrix/balance.hpp"
 #include "hemi/matrix/form_factors.hpp"
 #include "hemi/pipeline/diagnosis.hpp"
 #include "hemi/scene/patch_mesh.hpp"
@@ -9,29 +10,25 @@
 #include <optional>
 #include <string>
 
-/// What is said of form factors: lines of a summary for people, and the same values as JSON.
+/// What is said of form factors.
 namespace hemi::cli {
 
-/// Lines on a scene's size.
-[[nodiscard]] std::string scene_summary(const PatchMesh& mesh);
-/// Lines on the rows: renderer, hemicubes/s, entries and memory, row sums, enclosure.
-[[nodiscard]] std::string rows_summary(const FormFactors& factors, const RowSums& sums,
-                                       const EnclosureFinding& enclosure);
+/// The rows just computed or read: renderer, hemicubes/s, entries and memory, row sums, shares, enclosure.
+[[nodiscard]] Report rows_report(const FormFactors& factors, const RowSums& sums,
+                                 const EnclosureFinding& enclosure);
+/// The same of rows that are prepared, and repair and errors.
+[[nodiscard]] Report prepared_rows_report(const FormFactors& factors, const RowSums& sums,
+                                          const EnclosureFinding& enclosure, double repair_seconds);
+/// What a `.hff` holds.
+[[nodiscard]] Report stored_factors_report(const FormFactors& file);
+/// What a file of F alone holds.
+[[nodiscard]] Report matrix_report(const FormFactorMatrix& factors);
 
-/// Lines on what was enforced, and how far the rows were and are from it.
-[[nodiscard]] std::string repair_summary(const RepairReport& report);
-/// {"name", "before", "after", …}.
-[[nodiscard]] Json repair_json(const RepairReport& report, double seconds);
-
-/// A line on settings that the program chose; none where the user did.
-[[nodiscard]] std::string chosen_summary(const std::string& chosen_for);
-/// Lines on estimated errors; none where nothing is known.
-[[nodiscard]] std::string error_summary(const std::optional<FactorErrorEstimate>& factors,
-                                        const std::optional<RadiosityErrorEstimate>& radiosity = {});
-/// {"rows_compared", "factor": {"rms", "max"}, "row": {"rms", "max"}, "radiosity"}; null where nothing is
-/// known, "radiosity" only where it is.
-[[nodiscard]] Json error_json(const std::optional<FactorErrorEstimate>& factors,
-                              const std::optional<RadiosityErrorEstimate>& radiosity = {});
+/// A line on settings that the program chose; none, and null under the key "chosen_for", where the user did.
+[[nodiscard]] Report chosen_report(const std::string& chosen_for);
+/// Lines and key "error_estimate": estimated errors. No line, and null, where nothing is known.
+[[nodiscard]] Report error_report(const std::optional<FactorErrorEstimate>& factors,
+                                  const std::optional<RadiosityErrorEstimate>& radiosity = {});
 
 /// Errors on stderr about leaks: how many and the worst few, with the direction in which they go. Says
 /// nothing if there are none.

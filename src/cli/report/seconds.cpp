@@ -3,7 +3,6 @@
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -18,20 +17,18 @@ double& Seconds::operator[](std::string_view stage) {
     return found->second;
 }
 
-std::string Seconds::summary() const {
+Report Seconds::report() const {
     std::string text;
-    for (const auto& [stage, seconds] : stages_) {
-        text += fmt::format("{}{} {:.3f}", text.empty() ? "" : ", ", stage, seconds);
-    }
-    return summary_line("seconds", text);
-}
-
-Json Seconds::json() const {
     Json object = Json::object();
     for (const auto& [stage, seconds] : stages_) {
+        text += fmt::format("{} {:.3f}, ", stage, seconds);
         object[stage] = seconds;
     }
-    return object;
+    const double total = total_.seconds();
+    object["total"] = total;
+    Report report;
+    report.add("seconds", fmt::format("{}total {:.3f}", text, total), {{"seconds", object}});
+    return report;
 }
 
 } // namespace hemi::cli

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "cli/report/text.hpp"
+#include "cli/report/report.hpp"
+#include "hemi/core/stopwatch.hpp"
 
 #include <string>
 #include <utility>
@@ -8,8 +9,7 @@
 
 namespace hemi::cli {
 
-/// Wall times by stage, in the order in which they are reported: one line for people, one JSON object for
-/// programs.
+/// Wall times by stage, in the order in which they are reported; the last is "total", all since it was made.
 class Seconds {
 public:
     /// @param stages  names of the stages, such as "load"
@@ -21,10 +21,11 @@ public:
 
     /// The time of a stage that was named.
     [[nodiscard]] double& operator[](std::string_view stage);
-    [[nodiscard]] std::string summary() const;
-    [[nodiscard]] Json json() const;
+    /// The line and the key "seconds".
+    [[nodiscard]] Report report() const;
 
 private:
+    Stopwatch total_;
     std::vector<std::pair<std::string, double>> stages_;
 };
 

@@ -1,10 +1,11 @@
 #include "cli/report/solution_report.hpp"
 
+#include "cli/report/balance_report.hpp"
 #include "cli/report/factor_report.hpp"
+#include "cli/report/scene_report.hpp"
 #include "hemi/engine/engine.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace hemi::cli {
 
@@ -49,47 +50,73 @@ Json share_json(const LoadedScene& loaded, const std::vector<double>& areas, con
     return json;
 }
 
-} // namespace
-
-std::string solution_summary(const Solution& solution) {
-    const bool gradients = solution.method == SolverMethod::conjugate_gradient;
-    return summary_line("dominance", fmt::format("{:.6g} (largest reflectance x row sum; converges below 1)",
-                                                 solution.dominance)) +
-           summary_line("solver", fmt::format("{}, {}, residual {:.3g}", to_word(solution.method),
-                                              gradients ? plural(solution.sweeps, "iteration", "iterations")
-                                                        : plural(solution.sweeps, "sweep", "sweeps"),
-                                              solution.residual)) +
-           summary_line("", solution.reason) + chosen_summary(solution.chosen_for) +
-           error_summary(solution.factor_error, solution.error);
+/// @param steps  how many of what
+Report solver_report(const Solution& solution, const std::string& steps) {
+    Report report;
+    report.add("solver",
+               fmt::format("{}, {}, residual {:.3g}", to_word(solution.method), steps, solution.residual),
+               {{"solver",
+                 {{"name", to_word(solution.method)},
+                  {"sweeps", solution.sweeps},
+                  {"residual", solution.residual}}}});
+    return report;
 }
 
-Json solution_json(const LoadedScene& loaded, const FormFactors& factors, const RowSums& sums,
-                   const Solution& solution, const Seconds& seconds) {
+/// The solver and how it went, settings that the program chose, estimated errors.
+Report solution_report(const Solution& solution) {
+    const bool gradients = solution.method == SolverMethod::conjugate_gradient;
+    Report report;
+    report.add("dominance",
+               fmt::format("{:.6g} (largest reflectance x row sum; converges below 1)", solution.dominance));
+    report.add(solver_report(solution, gradients ? plural(solution.sweeps, "iteration", "iterations")
+                                                 : plural(solution.sweeps, "sweep", "sweeps")));
+    report.add("", solution.reason);
+    report.json["solver"]["why"] = solution.reason;
+    report.add(chosen_report(solution.chosen_for));
+    report.add(error_report(solution.factor_error, solution.error));
+    return report;
+}
+
+/// Means over the groups.
+Json group_means_json(const LoadedScene& loaded, const FormFactorMatrix& factors, const Solution& solution) {
     const std::uint32_t channels = solution.channels;
     const std::vector<double> areas = group_areas(loaded);
-    const RepairReport& repair = *factors.repair;
-    return {{"schema", "hemi/solve/1"},
-            {"renderer", solution.renderer},
-            {"patches", loaded.mesh.size()},
-            {"channels", loaded.scene.channels},
-            {"groups", loaded.mesh.groups()},
+    return {{"channels", loaded.scene.channels},
             {"areas", areas},
             {"radiosity", rows_json(group_means(loaded, areas, solution.radiosity, channels), channels)},
             {"exitance", rows_json(group_means(loaded, areas, solution.exitance, channels), channels)},
-            {"environment", share_json(loaded, areas, factors.matrix, solution.environment_share)},
-            {"blocked", share_json(loaded, areas, factors.matrix, solution.back_face_share)},
-            {"solver",
-             {{"name", to_word(solution.method)},
-              {"sweeps", solution.sweeps},
-              {"residual", solution.residual},
-              {"why", solution.reason}}},
-            {"row_sum", row_sum_json(sums)},
-            {"reciprocity",
-             factors.matrix.all_known() ? reciprocity_json(repair.reciprocity_after) : Json(nullptr)},
-            {"repair", repair_json(repair, seconds.json()["repair"])},
-            {"chosen_for", solution.chosen_for.empty() ? Json(nullptr) : Json(solution.chosen_for)},
-            {"error_estimate", error_json(solution.factor_error, solution.error)},
-            {"seconds", seconds.json()}};
+            {"environment", share_json(loaded, areas, factors, solution.environment_share)},
+            {"blocked", share_json(loaded, areas, factors, solution.back_face_share)}};
+}
+
+} // namespace
+
+Report stored_solution_report(const Solution& solution) {
+    Report report;
+    report.add("renderer", solution.renderer, {{"renderer", solution.renderer}});
+    report.add(solver_report(solution, plural(solution.sweeps, "sweep", "sweeps")));
+    report.add(chosen_report(solution.chosen_for));
+    report.json["chosen_for"] = solution.chosen_for; // "" rather than null, as the file has it
+    report.add(error_report(solution.factor_error, solution.error));
+    return report;
+}
+
+Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
+                    const Solution& solution, Seconds& seconds) {
+    const RepairReport& repair = *factors.repair;
+    Report report = scene_size_report(loaded.mesh);
+    report.add(rows);
+    report.add(repair_report(repair, seconds["repair"]));
+    report.add(solution_report(solution));
+    report.add(seconds.report());
+    report.json.update(group_means_json(loaded, factors.matrix, solution));
+    report.json["reciprocity"] =
+        factors.matrix.all_known() ? reciprocity_json(repair.reciprocity_after) : Json(nullptr);
+    report.json =
+        report.select("hemi/solve/1", {"renderer", "patches", "channels", "groups", "areas", "radiosity",
+                                       "exitance", "environment", "blocked", "solver", "row_sum",
+                                       "reciprocity", "repair", "chosen_for", "error_estimate", "seconds"});
+    return report;
 }
 
 void report_savings(const LoadedScene& loaded, const FormFactors& factors, const Solution& solution,

@@ -94,29 +94,6 @@ std::string towards_text(const std::optional<Vec3>& direction) {
                : std::string();
 }
 
-std::string row_sum_text(const RowSums& sums) {
-    if (sums.known == 0) {
-        return "no rows computed";
-    }
-    return fmt::format("min {:.6f}, mean {:.6f}, max {:.6f}", sums.min, sums.mean, sums.max);
-}
-
-Json row_sum_json(const RowSums& sums) {
-    if (sums.known == 0) {
-        return {{"min", nullptr}, {"max", nullptr}, {"mean", nullptr}};
-    }
-    return {{"min", sums.min}, {"max", sums.max}, {"mean", sums.mean}};
-}
-
-Json reciprocity_json(const Reciprocity& reciprocity) {
-    return {{"rms", reciprocity.rms},
-            {"max", reciprocity.max},
-            {"relative_rms", reciprocity.relative_rms},
-            {"relative_max", reciprocity.relative_max},
-            {"worst", reciprocity.pairs > 0 ? Json{reciprocity.worst_i, reciprocity.worst_j} : Json()},
-            {"pairs", reciprocity.pairs}};
-}
-
 Json rows_json(std::span<const double> values, std::size_t columns) {
     Json rows = Json::array();
     for (std::size_t begin = 0; begin < values.size(); begin += columns) {

@@ -2,7 +2,6 @@
 
 #include "hemi/core/geometry.hpp"
 #include "hemi/core/text.hpp"
-#include "hemi/matrix/balance.hpp"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -55,10 +54,6 @@ struct PatchNames {
 /// ", towards 0 0.71 0.71" for a direction; empty where there is none.
 [[nodiscard]] std::string towards_text(const std::optional<Vec3>& direction);
 
-/// min, mean and max of the row sums, as one line.
-[[nodiscard]] std::string row_sum_text(const RowSums& sums);
-[[nodiscard]] Json row_sum_json(const RowSums& sums);
-[[nodiscard]] Json reciprocity_json(const Reciprocity& reciprocity);
 /// `values` as arrays of `columns`.
 [[nodiscard]] Json rows_json(std::span<const double> values, std::size_t columns);
 

@@ -1,10 +1,9 @@
-#include "cli/factor_tables.hpp"
+#include "cli/report/factor_tables.hpp"
 
 #include "hemi/core/error.hpp"
 #include "hemi/engine/baselines.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -32,52 +31,44 @@ struct FactorList {
         *this = std::move(sorted);
     }
 
-    [[nodiscard]] std::string table(const PatchNames& names) const {
-        Table table({"group", "patch", "F"});
-        for (std::size_t k = 0; k < patches.size(); ++k) {
-            table.add(
-                {names.group(patches[k]), std::to_string(patches[k]), fmt::format("{:.9f}", factors[k])});
-        }
-        return table.text();
-    }
-
+    /// A table, and the key "entries".
     /// @param single  whether the factors are 32-bit numbers, written as such
-    [[nodiscard]] Json json(const PatchNames& names, bool single) const {
+    [[nodiscard]] Report report(const PatchNames& names, bool single) const {
+        Table table({"group", "patch", "F"});
         Json entries = Json::array();
         for (std::size_t k = 0; k < patches.size(); ++k) {
+            const std::string& group = names.group(patches[k]);
+            table.add({group, std::to_string(patches[k]), fmt::format("{:.9f}", factors[k])});
             entries.push_back({{"patch", patches[k]},
-                               {"group", names.group(patches[k])},
+                               {"group", group},
                                {"factor", single ? Json(static_cast<float>(factors[k])) : Json(factors[k])}});
         }
-        return entries;
+        return {table.text(), {{"entries", entries}}};
     }
 };
 
 } // namespace
 
-void show_row(const FormFactors& factors, std::uint32_t index, const PatchNames& names, bool json) {
+Report row_report(const FormFactors& factors, std::uint32_t index, const PatchNames& names) {
     const RowView row = factors.matrix.row(index);
     FactorList list{{row.columns.begin(), row.columns.end()}, {row.values.begin(), row.values.end()}};
     list.sort();
-    if (json) {
-        print_json({{"schema", "hemi/factors-row/1"},
-                    {"renderer", factors.provenance.renderer},
-                    {"patches", factors.matrix.size()},
-                    {"row", index},
-                    {"group", names.group(index)},
-                    {"entries", list.json(names, true)},
-                    {"sum", row.sum()},
-                    {"environment", row.environment},
-                    {"blocked", row.blocked}});
-        return;
-    }
-    print(fmt::format(
-              "row {}: what leaves {}\nsum {:.9f}, environment share {:.9f}, back-face share {:.9f}\n\n",
-              index, names.describe(index), row.sum(), row.environment, row.blocked) +
-          list.table(names));
+    Report report{fmt::format("row {}: what leaves {}\n", index, names.describe(index)),
+                  {{"schema", "hemi/factors-row/1"},
+                   {"renderer", factors.provenance.renderer},
+                   {"patches", factors.matrix.size()},
+                   {"row", index},
+                   {"group", names.group(index)}}};
+    const Report entries = list.report(names, true);
+    report.text += fmt::format("sum {:.9f}, environment share {:.9f}, back-face share {:.9f}\n\n", row.sum(),
+                               row.environment, row.blocked) +
+                   entries.text;
+    report.json.update(entries.json);
+    report.json.update({{"sum", row.sum()}, {"environment", row.environment}, {"blocked", row.blocked}});
+    return report;
 }
 
-void show_point(const PatchMesh& mesh, const std::array<double, 6>& at, const PatchNames& names, bool json) {
+Report point_report(const PatchMesh& mesh, const std::array<double, 6>& at, const PatchNames& names) {
     const Vec3 point(at[0], at[1], at[2]);
     const Vec3 normal(at[3], at[4], at[5]);
     const double length = glm::length(normal);
@@ -94,21 +85,20 @@ void show_point(const PatchMesh& mesh, const std::array<double, 6>& at, const Pa
     }
     list.sort();
     const double sum = std::accumulate(list.factors.begin(), list.factors.end(), 0.0);
-    if (json) {
-        print_json({{"schema", "hemi/factors-from-point/1"},
-                    {"patches", factors.size()},
-                    {"point", {point.x, point.y, point.z}},
-                    {"normal", {normal.x / length, normal.y / length, normal.z / length}},
-                    {"entries", list.json(names, false)},
-                    {"sum", sum}});
-        return;
-    }
-    print(fmt::format("what leaves a surface element at {} {} {}\nsum {:.9f}\n\n", number_text(point.x),
-                      number_text(point.y), number_text(point.z), sum) +
-          list.table(names));
+    Report report{fmt::format("what leaves a surface element at {} {} {}\n", number_text(point.x),
+                              number_text(point.y), number_text(point.z)),
+                  {{"schema", "hemi/factors-from-point/1"},
+                   {"patches", factors.size()},
+                   {"point", {point.x, point.y, point.z}},
+                   {"normal", {normal.x / length, normal.y / length, normal.z / length}}}};
+    const Report entries = list.report(names, false);
+    report.text += fmt::format("sum {:.9f}\n\n", sum) + entries.text;
+    report.json.update(entries.json);
+    report.json["sum"] = sum;
+    return report;
 }
 
-std::string groups_table(const std::vector<std::string>& names, const GroupFactors& groups) {
+std::string group_factors_text(const std::vector<std::string>& names, const GroupFactors& groups) {
     constexpr std::uint32_t max_columns = 10;
     if (groups.groups > max_columns) {
         Table table({"from", "to", "F"}, 2);
@@ -143,6 +133,14 @@ std::string groups_table(const std::vector<std::string>& names, const GroupFacto
         table.add(line);
     }
     return table.text();
+}
+
+Json group_factors_json(const std::vector<std::string>& names, const GroupFactors& groups) {
+    return {{"groups", names},
+            {"areas", groups.areas},
+            {"factors", rows_json(groups.factors, groups.groups)},
+            {"environment", groups.environment},
+            {"blocked", groups.blocked}};
 }
 
 } // namespace hemi::cli

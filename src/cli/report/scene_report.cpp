@@ -1,0 +1,139 @@
+#include "cli/report/scene_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace hemi::cli {
+
+namespace {
+
+struct GroupCounts {
+    std::uint32_t surfaces = 0;
+    std::uint32_t patches = 0;
+    double area = 0.0;
+};
+
+std::vector<GroupCounts> count_groups(const PatchMesh& mesh) {
+    std::vector<GroupCounts> groups(mesh.groups().size());
+    for (const Surface& surface : mesh.surfaces()) {
+        ++groups[surface.group].surfaces;
+    }
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        GroupCounts& group = groups[mesh.group(i)];
+        ++group.patches;
+        group.area += mesh.areas()[i];
+    }
+    return groups;
+}
+
+std::string values_text(const std::vector<double>& values) {
+    std::vector<std::string> words;
+    for (const double value : values) {
+        words.push_back(number_text(value));
+    }
+    return fmt::format("{}", fmt::join(words, " "));
+}
+
+std::string point_text(const Vec3& point) {
+    return fmt::format("{} {} {}", number_text(point.x), number_text(point.y), number_text(point.z));
+}
+
+Json point_json(const Vec3& point) {
+    return {point.x, point.y, point.z};
+}
+
+Report surfaces_report(const PatchMesh& mesh) {
+    const std::span<const Surface> surfaces = mesh.surfaces();
+    const auto triangles = static_cast<std::size_t>(std::count_if(
+        surfaces.begin(), surfaces.end(), [](const Surface& surface) { return surface.vertex_count == 3; }));
+    const std::size_t quads = surfaces.size() - triangles;
+    Report report;
+    report.add("surfaces",
+               fmt::format("{} ({}, {})", count_text(surfaces.size()),
+                           plural(triangles, "triangle", "triangles"),
+                           plural(quads, "quadrilateral", "quadrilaterals")),
+               {{"surfaces", surfaces.size()}, {"triangles", triangles}, {"quadrilaterals", quads}});
+    return report;
+}
+
+Report groups_report(const PatchMesh& mesh) {
+    Table table({"group", "surfaces", "patches", "area"});
+    Json list = Json::array();
+    const std::vector<GroupCounts> counts = count_groups(mesh);
+    double area = 0.0;
+    for (std::size_t g = 0; g < counts.size(); ++g) {
+        const auto& [surfaces, patches, group_area] = counts[g];
+        const std::string& name = mesh.groups()[g];
+        table.add({name, count_text(surfaces), count_text(patches), number_text(group_area)});
+        list.push_back({{"name", name}, {"surfaces", surfaces}, {"patches", patches}, {"area", group_area}});
+        area += group_area;
+    }
+    table.add({"(all)", count_text(mesh.surfaces().size()), count_text(mesh.size()), number_text(area)});
+    return {fmt::format("\n{}", table.text()), {{"groups", list}}};
+}
+
+Report materials_report(const Scene& scene) {
+    Table table({"material", "reflectance", "exitance"}, 3);
+    Json list = Json::array();
+    for (const auto& [name, reflectance, exitance] : scene.materials) {
+        table.add({name, values_text(reflectance), values_text(exitance)});
+        list.push_back({{"name", name}, {"reflectance", reflectance}, {"exitance", exitance}});
+    }
+    return {fmt::format("\n{}", table.text()), {{"materials", list}}};
+}
+
+} // namespace
+
+Report scene_size_report(const PatchMesh& mesh) {
+    Report report;
+    report.add("scene",
+               fmt::format("{}, {}, {}", plural(mesh.size(), "patch", "patches"),
+                           plural(mesh.surfaces().size(), "surface", "surfaces"),
+                           plural(mesh.groups().size(), "group", "groups")),
+               {{"patches", mesh.size()}, {"groups", mesh.groups()}});
+    return report;
+}
+
+Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& more) {
+    const auto& [lower, upper] = mesh.bounds();
+    Report report;
+    report.add("name", scene.name.empty() ? "-" : scene.name, {{"name", scene.name}});
+    report.add(surfaces_report(mesh));
+    report.add("patches", count_text(mesh.size()), {{"patches", mesh.size()}});
+    report.add("channels", fmt::format("{}", fmt::join(scene.channels, ", ")),
+               {{"channels", scene.channels}});
+    report.add("bounds", fmt::format("{} to {}", point_text(lower), point_text(upper)),
+               {{"bounds", {{"lower", point_json(lower)}, {"upper", point_json(upper)}}}});
+    report.add("enclosure", to_word(scene.enclosure), {{"enclosure", to_word(scene.enclosure)}});
+    report.add("environment", values_text(scene.environment), {{"environment", scene.environment}});
+    report.add("camera", scene.camera ? "yes" : "no", {{"camera", scene.camera.has_value()}});
+    const Report groups = groups_report(mesh);
+    const Report materials = materials_report(scene);
+    report.text += more.text + groups.text + materials.text;
+    report.json.update(groups.json);
+    report.json.update(materials.json);
+    report.json.update(more.json);
+    return report;
+}
+
+Report cost_report(const FactorCost& cost, const PatchMesh& mesh, bool measured) {
+    const std::string cores = cost.cores == 1 ? "1 core" : fmt::format("{} cores", cost.cores);
+    const std::string basis =
+        cost.renderer.empty()
+            ? fmt::format("rule of thumb for software OpenGL on {}; --measure times 64 rows", cores)
+            : fmt::format("measured on {}", cost.renderer);
+    Report report;
+    report.add("memory", fmt::format("about {} for {} rows of {:.0f} entries", memory_text(cost.memory),
+                                     count_text(mesh.size()), cost.entries_per_row));
+    report.add("time", fmt::format("about {} ({})", seconds_text(cost.seconds), basis));
+    report.json["estimate"] = {{"measured", measured},
+                               {"renderer", measured ? Json(cost.renderer) : Json(nullptr)},
+                               {"entries_per_row", cost.entries_per_row},
+                               {"memory", cost.memory},
+                               {"seconds", cost.seconds}};
+    return report;
+}
+
+} // namespace hemi::cli

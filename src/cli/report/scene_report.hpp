@@ -1,0 +1,18 @@
+#pragma once
+
+#include "cli/report/report.hpp"
+#include "hemi/pipeline/cost.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+/// What is said of a scene.
+namespace hemi::cli {
+
+/// One line on its size.
+[[nodiscard]] Report scene_size_report(const PatchMesh& mesh);
+/// What a scene consists of, and `more` of it; tables of groups and materials are at the end of the text.
+[[nodiscard]] Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& more);
+/// Memory and time that its form factors will need.
+/// @param measured  whether rows were timed
+[[nodiscard]] Report cost_report(const FactorCost& cost, const PatchMesh& mesh, bool measured);
+
+} // namespace hemi::cli

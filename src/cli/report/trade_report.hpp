@@ -1,0 +1,19 @@
+#pragma once
+
+#include "cli/loaded_scene.hpp"
+#include "cli/report/report.hpp"
+#include "hemi/pipeline/accuracy.hpp"
+
+#include <string>
+
+namespace hemi::cli {
+
+/// What `hemi trade` says of its measurements.
+/// @param budget   seconds that were allowed
+/// @param seconds  that it took
+[[nodiscard]] Report trade_report(const Trade& trade, const LoadedScene& loaded, double budget,
+                                  double seconds);
+/// The measurements as an SVG, see trade_plot().
+[[nodiscard]] std::string trade_drawing(const Trade& trade, const LoadedScene& loaded);
+
+} // namespace hemi::cli
