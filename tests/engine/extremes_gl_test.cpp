@@ -1,3 +1,4 @@
+#include "support/device.hpp"
 #include "support/polygon_factors.hpp"
 #include "support/scenes.hpp"
 
@@ -20,7 +21,7 @@ namespace {
 
 FormFactorMatrix compute(const PatchMesh& mesh, std::uint32_t resolution) {
     return compute_matrix(
-        *make_hemicube_engine(mesh, {.resolution = resolution}, {"osmesa", 2, find_worker_program()}));
+        *make_hemicube_engine(mesh, {.resolution = resolution}, {test_device(), 2, find_worker_program()}));
 }
 
 /// Exact factor of one surface to another, unoccluded.
@@ -119,7 +120,7 @@ Scene fold(double degrees, std::uint32_t cells) {
 } // namespace
 
 TEST_CASE("extremes: a scene of a millimetre and far away has the factors of the room it is a copy of",
-          "[engine][gl]") {
+          "[engine][gl][every-device]") {
     const Scene room = room_with_blocks(5);
     const PatchMesh base(room);
     for (const double distance : {1e5, 1e8}) {
@@ -136,7 +137,7 @@ TEST_CASE("extremes: a scene of a millimetre and far away has the factors of the
     CHECK_THROWS_AS(PatchMesh(moved(scaled(room, 1e-3), Vec3(1e10, 0.0, 0.0))), InputError);
 }
 
-TEST_CASE("extremes: any scale is right or refused", "[engine][gl]") {
+TEST_CASE("extremes: any scale is right or refused", "[engine][gl][every-device]") {
     const Scene room = room_with_blocks(4);
     const PatchMesh base(room);
     for (const double scale : {1e-68, 1e-20, 1e20, 1e68}) {
@@ -149,7 +150,7 @@ TEST_CASE("extremes: any scale is right or refused", "[engine][gl]") {
     }
 }
 
-TEST_CASE("extremes: strips of 1 : 1000", "[engine][gl]") {
+TEST_CASE("extremes: strips of 1 : 1000", "[engine][gl][every-device]") {
     // Each wall of the duct is 1 x 1000, cut into 16 strips of 16 pieces, 1/16 x 62.5.
     const PatchMesh duct(box_of(Vec3(1, 1, 1000), 16));
     const FormFactorMatrix factors = compute(duct, 128);
@@ -162,7 +163,7 @@ TEST_CASE("extremes: strips of 1 : 1000", "[engine][gl]") {
     CHECK(largest_point_error(coarse, rows) < 1e-3);
 }
 
-TEST_CASE("extremes: a gap of 1e-4 of the patch size", "[engine][gl]") {
+TEST_CASE("extremes: a gap of 1e-4 of the patch size", "[engine][gl][every-device]") {
     const PatchMesh flat(box_of(Vec3(1, 1, 1e-4), 8));
     const FormFactorMatrix factors = compute(flat, 64);
     CHECK(largest_leak(factors) < 1e-8);
@@ -175,7 +176,7 @@ TEST_CASE("extremes: a gap of 1e-4 of the patch size", "[engine][gl]") {
     CHECK(largest_error(plates, two) < 3e-4);
 }
 
-TEST_CASE("extremes: patches that touch at edges of 1 and 179 degrees", "[engine][gl]") {
+TEST_CASE("extremes: patches that touch at edges of 1 and 179 degrees", "[engine][gl][every-device]") {
     struct Limit {
         double degrees;
         double point; ///< by texels: a wall of 1 degree is half a texel high
@@ -191,7 +192,7 @@ TEST_CASE("extremes: patches that touch at edges of 1 and 179 degrees", "[engine
     }
 }
 
-TEST_CASE("extremes: a needle between two halves of a ceiling", "[engine][gl]") {
+TEST_CASE("extremes: a needle between two halves of a ceiling", "[engine][gl][every-device]") {
     const auto room = [](double width) {
         Scene scene = empty_scene();
         add_room(scene, Vec3(0.0), Vec3(1.0), 4);
@@ -215,7 +216,7 @@ TEST_CASE("extremes: a needle between two halves of a ceiling", "[engine][gl]") 
     CHECK_THROWS_WITH(PatchMesh(room(1e-10)), Catch::Contains("needle") && Catch::Contains("zero area"));
 }
 
-TEST_CASE("extremes: factors of 3e-7", "[engine][gl]") {
+TEST_CASE("extremes: factors of 3e-7", "[engine][gl][every-device]") {
     const PatchMesh mesh(read_case("18_far_patch.obj"));
     const GroupTable table = by_group(mesh, compute(mesh, 1024));
     CHECK(table.factor("tiny", "big") == Approx(0.0031695610043893825).epsilon(1e-2));
@@ -225,7 +226,8 @@ TEST_CASE("extremes: factors of 3e-7", "[engine][gl]") {
     CHECK(std::abs(table.factor("big", "tiny") - 3.169561004389383e-07) < texel);
 }
 
-TEST_CASE("extremes: one patch sees nothing, two see each other from their centres", "[engine][gl]") {
+TEST_CASE("extremes: one patch sees nothing, two see each other from their centres",
+          "[engine][gl][every-device]") {
     Scene single = facing_plates(1.0);
     single.surfaces.resize(1);
     const PatchMesh one(single);
@@ -238,7 +240,8 @@ TEST_CASE("extremes: one patch sees nothing, two see each other from their centr
     }
 }
 
-TEST_CASE("extremes: the smallest and the largest resolution lose nothing of a closed box", "[engine][gl]") {
+TEST_CASE("extremes: the smallest and the largest resolution lose nothing of a closed box",
+          "[engine][gl][every-device]") {
     const PatchMesh mesh(box_of(Vec3(1.0, 1.3, 0.7), 1));
     for (const std::uint32_t resolution : {2u, 4u, 4096u}) {
         INFO("resolution " << resolution);
@@ -248,7 +251,7 @@ TEST_CASE("extremes: the smallest and the largest resolution lose nothing of a c
     }
 }
 
-TEST_CASE("extremes: a sealed box within a box", "[engine][gl]") {
+TEST_CASE("extremes: a sealed box within a box", "[engine][gl][every-device]") {
     Scene scene = empty_scene();
     add_room(scene, Vec3(0.0), Vec3(1.0), 4);
     add_block(scene, "outside", Vec3(0.3), Vec3(0.7), 3);
@@ -286,14 +289,15 @@ TEST_CASE("extremes: a sealed box within a box", "[engine][gl]") {
     }
 }
 
-TEST_CASE("extremes: 100,000 patches", "[engine][gl]") {
+TEST_CASE("extremes: 100,000 patches", "[engine][gl][every-device]") {
     const PatchMesh mesh(box_of(Vec3(1.0, 1.3, 0.7), 130));
     REQUIRE(mesh.size() == 101400);
     std::vector<std::uint32_t> patches;
     for (std::uint32_t i = 17; i < mesh.size(); i += 401) {
         patches.push_back(i);
     }
-    const auto engine = make_hemicube_engine(mesh, {.resolution = 32}, {"osmesa", 2, find_worker_program()});
+    const auto engine =
+        make_hemicube_engine(mesh, {.resolution = 32}, {test_device(), 2, find_worker_program()});
     const FormFactorMatrix factors = compute_matrix(*engine, patches);
     CHECK(largest_leak(factors) < 1e-8);
     // A texel holds a dozen patches: single factors are samples, sums over a wall are right to a few texels

@@ -3,6 +3,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/engine/engine.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
+#include "support/device.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -40,11 +41,12 @@ std::vector<double> by_the_book(const RowView& row, const std::vector<double>& l
 
 } // namespace
 
-TEST_CASE("Gathering: a row of form factors gives what its factors bring", "[engine][gl]") {
+TEST_CASE("Gathering: a row of form factors gives what its factors bring", "[engine][gl][every-device]") {
     const PatchMesh mesh(open_corner());
     const std::vector<double> light = some_light(mesh.size());
     const Gathering gathering(mesh, 2, light, sky);
-    const auto engine = make_hemicube_engine(mesh, {.resolution = 32}, {"osmesa", 1, find_worker_program()});
+    const auto engine =
+        make_hemicube_engine(mesh, {.resolution = 32}, {test_device(), 1, find_worker_program()});
     const FormFactorMatrix factors = compute_matrix(*engine);
     std::vector<double> gathered(2);
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
@@ -56,12 +58,13 @@ TEST_CASE("Gathering: a row of form factors gives what its factors bring", "[eng
     }
 }
 
-TEST_CASE("Gathering: a row of visibility gives about what the hybrid's factors bring", "[engine][gl]") {
+TEST_CASE("Gathering: a row of visibility gives about what the hybrid's factors bring",
+          "[engine][gl][every-device]") {
     const PatchMesh mesh(room_with_blocks(8));
     const std::vector<double> light = some_light(mesh.size());
     const Gathering gathering(mesh, 2, light, sky);
     const HemicubeSettings settings{.resolution = 64, .eye_points = 4};
-    const auto engine = make_visibility_engine(mesh, settings, {"osmesa", 2, find_worker_program()});
+    const auto engine = make_visibility_engine(mesh, settings, {test_device(), 2, find_worker_program()});
     std::vector<std::uint32_t> patches(mesh.size());
     std::iota(patches.begin(), patches.end(), 0U);
     const FormFactorMatrix factors =

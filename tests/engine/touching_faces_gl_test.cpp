@@ -1,6 +1,7 @@
 #include "hemi/engine/touching_faces.hpp"
 
 #include "hemi/engine/engine.hpp"
+#include "support/device.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -12,13 +13,13 @@ namespace {
 
 FormFactorMatrix rows_of(const PatchMesh& mesh) {
     return compute_matrix(
-        *make_hemicube_engine(mesh, {.resolution = 32}, {"osmesa", 1, find_worker_program()}));
+        *make_hemicube_engine(mesh, {.resolution = 32}, {test_device(), 1, find_worker_program()}));
 }
 
 } // namespace
 
 TEST_CASE("mark_touching_faces_buried: the bottom of a block on the floor of a closed room is covered",
-          "[engine][gl]") {
+          "[engine][gl][every-device]") {
     const PatchMesh mesh(room_with_blocks(4));
     FormFactorMatrix factors = rows_of(mesh);
     const auto contacts = find_touching_faces(factors, mesh);
@@ -41,7 +42,7 @@ TEST_CASE("mark_touching_faces_buried: the bottom of a block on the floor of a c
 }
 
 TEST_CASE("mark_touching_faces_buried: back-to-back sheets in the open keep their view of the sky",
-          "[engine][gl]") {
+          "[engine][gl][every-device]") {
     const PatchMesh mesh(read_case("12_occluded_corner.obj"));
     FormFactorMatrix factors = rows_of(mesh);
     const RowView before = factors.row(0);

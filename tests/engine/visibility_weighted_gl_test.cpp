@@ -1,6 +1,7 @@
 #include "engine/baselines/reference_engine.hpp"
 #include "engine/hemicube/eye.hpp"
 #include "support/accuracy_row.hpp"
+#include "support/device.hpp"
 #include "support/scenes.hpp"
 
 #include "hemi/core/error.hpp"
@@ -44,7 +45,7 @@ Scene sheet_above_floor() {
 FormFactorMatrix hybrid(const PatchMesh& mesh, const HemicubeSettings& settings,
                         std::span<const std::uint32_t> patches, Enclosure enclosure = Enclosure::automatic,
                         std::uint32_t jobs = 2) {
-    const auto engine = make_visibility_engine(mesh, settings, {"osmesa", jobs, find_worker_program()});
+    const auto engine = make_visibility_engine(mesh, settings, {test_device(), jobs, find_worker_program()});
     return compute_visibility_weighted(*engine, mesh, patches, VisibilityWeightedSettings{}, enclosure);
 }
 
@@ -146,13 +147,14 @@ TEST_CASE("make_eye_points: only patches with a surface close above get more", "
     CHECK(make_eye_points(mesh, 4, 16).of(5).size() == 16);
 }
 
-TEST_CASE("make_hemicube_engine: counts the hemicubes of the rows that it delivered", "[engine][gl]") {
+TEST_CASE("make_hemicube_engine: counts the hemicubes of the rows that it delivered",
+          "[engine][gl][every-device]") {
     const PatchMesh mesh(sheet_above_floor());
     HemicubeSettings settings = visibility_settings(4, 32);
     settings.near_eye_points = 16;
     const std::vector<std::uint32_t> some{4, 5, 16};
     for (const std::filesystem::path& program : {std::filesystem::path(), find_worker_program()}) {
-        const auto engine = make_hemicube_engine(mesh, settings, {"osmesa", 1, program});
+        const auto engine = make_hemicube_engine(mesh, settings, {test_device(), 1, program});
         CHECK(engine->hemicubes() == 0);
         engine->rows(some, [](std::uint32_t, const RowView&) {});
         CHECK(engine->hemicubes() == 4 + 16 + 9); // the sheet is small for its gap
@@ -174,7 +176,7 @@ TEST_CASE("find_near_surfaces: walls at the border are neighbours, what stands o
     CHECK(straddled == 1); // the block's base runs along patch borders but for this one
 }
 
-TEST_CASE("Rows: several eye points a patch equal rays from the same points", "[engine][gl]") {
+TEST_CASE("Rows: several eye points a patch equal rays from the same points", "[engine][gl][every-device]") {
     const PatchMesh mesh(room_with_blocks(3));
     for (const std::uint32_t count : {4u, 9u}) {
         HemicubeSettings settings;
@@ -182,8 +184,8 @@ TEST_CASE("Rows: several eye points a patch equal rays from the same points", "[
         settings.resolution = 32;
         const double two_texels = 2.0 * 4.0 / (32.0 * 32.0 * std::numbers::pi) * 0.33;
         const std::vector<std::uint32_t> some{0, 20, 47, 60};
-        const auto drawn =
-            compute_matrix(*make_hemicube_engine(mesh, settings, {"osmesa", 1, find_worker_program()}), some);
+        const auto drawn = compute_matrix(
+            *make_hemicube_engine(mesh, settings, {test_device(), 1, find_worker_program()}), some);
         const auto traced = compute_matrix(*make_reference_engine(mesh, settings), some);
         for (const std::uint32_t i : some) {
             std::vector<double> difference(mesh.size());
@@ -203,14 +205,15 @@ TEST_CASE("Rows: several eye points a patch equal rays from the same points", "[
     }
 }
 
-TEST_CASE("Visibility rows: equal rays that meet a patch or something before it", "[engine][gl]") {
+TEST_CASE("Visibility rows: equal rays that meet a patch or something before it",
+          "[engine][gl][every-device]") {
     const bool triangles = GENERATE(false, true);
     const PatchMesh mesh(triangles ? read_case("10_concentric_spheres.obj") : room_with_blocks(3),
                          triangles ? Subdivision{.patch_size = {}, .patches_per_face = 4} : Subdivision{});
     const HemicubeSettings settings = visibility_settings(4, 48);
     const std::vector<std::uint32_t> some =
         triangles ? std::vector<std::uint32_t>{330, 500, 600} : std::vector<std::uint32_t>{4, 31, 50, 62};
-    const auto engine = make_visibility_engine(mesh, settings, {"osmesa", 1, find_worker_program()});
+    const auto engine = make_visibility_engine(mesh, settings, {test_device(), 1, find_worker_program()});
     std::size_t partly = 0;
     engine->rows(some, [&](std::uint32_t i, const VisibilityRow& row) {
         REQUIRE(row.texels.size() == row.shares.size());
@@ -231,12 +234,12 @@ TEST_CASE("Visibility rows: equal rays that meet a patch or something before it"
     CHECK(partly > 10);
 }
 
-TEST_CASE("Visibility rows: where nothing hides anything, all is clear", "[engine][gl]") {
+TEST_CASE("Visibility rows: where nothing hides anything, all is clear", "[engine][gl][every-device]") {
     Scene scene = empty_scene();
     add_room(scene, Vec3(0, 0, 0), Vec3(1, 1, 1), 12);
     const PatchMesh mesh(scene);
     const auto engine =
-        make_visibility_engine(mesh, visibility_settings(1, 16), {"osmesa", 1, find_worker_program()});
+        make_visibility_engine(mesh, visibility_settings(1, 16), {test_device(), 1, find_worker_program()});
     const std::vector<std::uint32_t> some{0, 300, 700};
     engine->rows(some, [&](std::uint32_t, const VisibilityRow& row) {
         CHECK(row.columns.size() == 5 * 144); // also those that no texel fell on
@@ -248,7 +251,7 @@ TEST_CASE("Visibility rows: where nothing hides anything, all is clear", "[engin
 }
 
 TEST_CASE("Hybrid: pairs are reciprocal to the rounding of floats, on any number of workers",
-          "[engine][gl][accuracy]") {
+          "[engine][gl][every-device][accuracy]") {
     const PatchMesh mesh(room_with_blocks(4));
     const HemicubeSettings settings = visibility_settings(4, 32);
     const FormFactorMatrix one = hybrid(mesh, settings, all_of(mesh), Enclosure::closed, 1);
@@ -264,7 +267,8 @@ TEST_CASE("Hybrid: pairs are reciprocal to the rounding of floats, on any number
     CHECK(error.pairs > 1000);
 }
 
-TEST_CASE("Hybrid: two parallel plates in the open have the exact factor, the sky the rest", "[engine][gl]") {
+TEST_CASE("Hybrid: two parallel plates in the open have the exact factor, the sky the rest",
+          "[engine][gl][every-device]") {
     const ExactCase plates = [] {
         for (const ExactCase& one : exact_cases()) {
             if (one.file == "03_parallel_d1.obj") {
@@ -283,7 +287,8 @@ TEST_CASE("Hybrid: two parallel plates in the open have the exact factor, the sk
     CHECK(sums.balance_error_max < 1e-9);
 }
 
-TEST_CASE("Hybrid: rows that are not asked for stay unknown, their columns do not", "[engine][gl]") {
+TEST_CASE("Hybrid: rows that are not asked for stay unknown, their columns do not",
+          "[engine][gl][every-device]") {
     const PatchMesh mesh(room_with_blocks(3));
     const HemicubeSettings settings = visibility_settings(16, 64);
     std::vector<std::uint32_t> most;
@@ -305,7 +310,8 @@ TEST_CASE("Hybrid: rows that are not asked for stay unknown, their columns do no
     }
 }
 
-TEST_CASE("Hybrid: a patch half under a block has half its factors, and half is blocked", "[engine][gl]") {
+TEST_CASE("Hybrid: a patch half under a block has half its factors, and half is blocked",
+          "[engine][gl][every-device]") {
     Scene scene = empty_scene();
     add_room(scene, Vec3(0, 0, 0), Vec3(4, 4, 4), 4);
     add_block(scene, "block", Vec3(1, 1, 0), Vec3(2.5, 2, 1), 2);

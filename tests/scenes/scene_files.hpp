@@ -1,5 +1,7 @@
 #pragma once
 
+#include "support/device.hpp"
+
 #include "hemi/core/diagnostics.hpp"
 #include "hemi/engine/engine.hpp"
 #include "hemi/io/scene_reader.hpp"
@@ -31,7 +33,7 @@ inline Scene shipped_scene(const std::string& name) {
 inline FormFactorMatrix hemicube_rows(const PatchMesh& mesh, std::uint32_t resolution,
                                       const std::vector<std::uint32_t>& patches) {
     const auto engine =
-        make_hemicube_engine(mesh, {.resolution = resolution}, {"osmesa", 2, find_worker_program()});
+        make_hemicube_engine(mesh, {.resolution = resolution}, {test_device(), 2, find_worker_program()});
     return compute_matrix(*engine, patches);
 }
 

@@ -150,7 +150,7 @@ TEST_CASE("scenes: the Cornell box has the published measures", "[scenes]") {
 }
 
 TEST_CASE("scenes: the Cornell box bleeds red to one side and green to the other and leaks nowhere",
-          "[scenes][gl][slow]") {
+          "[scenes][gl][every-device][slow]") {
     const Scene scene = shipped_scene("cornell-box.json");
     const PatchMesh mesh(scene);
     const FormFactorMatrix factors = hemicube_rows(mesh, 64, every(1, mesh));
@@ -210,7 +210,7 @@ TEST_CASE("scenes: the Cornell box bleeds red to one side and green to the other
     }
 }
 
-TEST_CASE("scenes: the cube has its exact factors by group", "[scenes][gl]") {
+TEST_CASE("scenes: the cube has its exact factors by group", "[scenes][gl][every-device]") {
     const Scene scene = shipped_scene("cube.json");
     const PatchMesh mesh(scene);
     REQUIRE(mesh.groups() == std::vector<std::string>{"x0", "x1", "y0", "y1", "z0", "z1"});
@@ -239,7 +239,8 @@ TEST_CASE("scenes: the cube has its exact factors by group", "[scenes][gl]") {
     CHECK(absorbed == Approx(1.0).epsilon(2e-3));
 }
 
-TEST_CASE("scenes: in the furnace every patch has the radiosity E / 1 - rho", "[scenes][gl][accuracy]") {
+TEST_CASE("scenes: in the furnace every patch has the radiosity E / 1 - rho",
+          "[scenes][gl][every-device][accuracy]") {
     const Scene scene = shipped_scene("furnace.json");
     const PatchMesh mesh(scene);
     const std::vector<double> radiosity = solved(scene, mesh, hemicube_rows(mesh, 128, every(1, mesh)));
@@ -248,7 +249,8 @@ TEST_CASE("scenes: in the furnace every patch has the radiosity E / 1 - rho", "[
         .check_below("limit", "", std::max(std::abs(*least - 5.0), std::abs(*most - 5.0)) / 5.0, 1e-3);
 }
 
-TEST_CASE("scenes: nothing leaks out of the room with a corner and light goes round it", "[scenes][gl]") {
+TEST_CASE("scenes: nothing leaks out of the room with a corner and light goes round it",
+          "[scenes][gl][every-device]") {
     const Scene scene = shipped_scene("l-room.json");
     const PatchMesh mesh(scene);
     const FormFactorMatrix factors = hemicube_rows(mesh, 64, every(1, mesh));
@@ -284,7 +286,8 @@ TEST_CASE("scenes: nothing leaks out of the room with a corner and light goes ro
     }
 }
 
-TEST_CASE("scenes: in the street canyon the road sees less of the sky than the roofs", "[scenes][gl]") {
+TEST_CASE("scenes: in the street canyon the road sees less of the sky than the roofs",
+          "[scenes][gl][every-device]") {
     const Scene scene = shipped_scene("canyon.json");
     CHECK(scene.enclosure == Enclosure::open);
     CHECK(scene.environment == std::vector<double>{62, 76, 104});
@@ -317,7 +320,7 @@ TEST_CASE("scenes: in the street canyon the road sees less of the sky than the r
     CHECK(road_end > road_most);
 }
 
-TEST_CASE("scenes: the office is closed and furnished", "[scenes][gl][slow]") {
+TEST_CASE("scenes: the office is closed and furnished", "[scenes][gl][every-device][slow]") {
     const Scene scene = shipped_scene("office.json");
     CHECK(scene.surfaces.size() >= 300);
     CHECK(scene.surfaces.size() <= 600);
@@ -345,7 +348,8 @@ TEST_CASE("scenes: the office is closed and furnished", "[scenes][gl][slow]") {
     CHECK(covered < sample.size() / 50);
 }
 
-TEST_CASE("scenes: the city's walls are drawn as few polygons and cover nothing", "[scenes][gl]") {
+TEST_CASE("scenes: the city's walls are drawn as few polygons and cover nothing",
+          "[scenes][gl][every-device]") {
     const Scene scene = shipped_scene("city.obj");
     const PatchMesh mesh(scene);
     CHECK(mesh.size() <= 5000);

@@ -121,7 +121,6 @@ struct Shown {
     bool split = false;
     bool bilinear = false;
     float twist_u = 0.0f, twist_v = 0.0f;
-    bool counted = false; ///< has patches
 };
 
 template <class T>
@@ -145,7 +144,7 @@ public:
     SimdRasteriser(const RasterScene& scene, const TexelTiles& tiles)
         : scene_(scene), tiles_(tiles), ids_(tiles.size()), depth_(tiles.size()),
           texels_(static_cast<float>(tiles.resolution())), half_(0.5f * texels_), guard_(4.0f * texels_),
-          across_(tiles.across()) {
+          across_(tiles.across()), padded_(tiles.resolution() % 8 != 0) {
         for (std::uint32_t k = 0; k < tile_size; ++k) {
             tile_x_[k] = static_cast<float>(k % 4);
             tile_y_[k] = static_cast<float>(k / 4);
@@ -635,15 +634,36 @@ private:
         hn::Store(hn::IfThenElse(hn::RebindMask(ids_of, taken), id, shown), ids_of, &ids_[at]);
     }
 
-    /// Adds covered texels of a part of a tile to a draw id.
-    HWY_INLINE void cover(std::uint32_t at, std::uint32_t bits, TexelTally& sum) const {
-        if (lanes == tile_size && bits == (1u << tile_size) - 1) {
-            sum += weights_->tile[at / tile_size];
+    /// Weights and number of the texels that a polygon of one cell covers. Weights cannot overflow: those of
+    /// a hemicube sum to less than 2^32.
+    struct Covered {
+        hn::Vec<Ids> weights;
+        std::uint32_t texels;
+    };
+    /// @param at  first texel of a part of a tile
+    HWY_INLINE void cover(std::uint32_t at, Mask inside, Covered& covered) const {
+        covered.weights =
+            hn::Add(covered.weights, hn::IfThenElseZero(hn::RebindMask(ids_of, inside),
+                                                        hn::LoadU(ids_of, &weights_->weight[at])));
+        covered.texels += static_cast<std::uint32_t>(hn::CountTrue(floats, inside));
+    }
+    void add_covered(std::uint32_t id, const Covered& sum) {
+        if (id == item_blocked || sum.texels == 0) {
             return;
         }
-        for (; bits != 0; bits &= bits - 1) {
-            sum += weights_->texel[at + static_cast<std::uint32_t>(std::countr_zero(bits))];
+        TexelTally& covered = coverage_->of_id[id];
+        if (covered == 0) {
+            coverage_->single_ids.push_back(id);
         }
+        covered += TexelTally{hn::GetLane(hn::SumOfLanes(ids_of, sum.weights))} << 32 | sum.texels;
+    }
+    /// Without the texels that are none, beyond the upper and right edge of a face.
+    HWY_INLINE Mask on_face_only(Mask inside, int face, Vec px, Vec py) const {
+        if (!padded_) {
+            return inside;
+        }
+        const float height = face == 0 ? texels_ : half_;
+        return hn::And(inside, hn::And(hn::Lt(px, set(texels_)), hn::Lt(py, set(height))));
     }
 
     /// A triangle tile by tile.
@@ -656,7 +676,7 @@ private:
         const std::array<Vec, 3> vz{set(z[0]), set(z[1]), set(z[2])};
         const auto ids = hn::Set(ids_of, id);
         const Vec zero = set(0.0f);
-        TexelTally covered = 0;
+        Covered covered{hn::Zero(ids_of), 0};
         for (std::uint32_t ty = low / 4; ty <= high / 4; ++ty) {
             std::uint32_t at = tiles_.first(face) + (ty * across_ + left / 4) * tile_size;
             for (std::uint32_t tx = left / 4; tx <= right / 4; ++tx, at += tile_size) {
@@ -686,23 +706,16 @@ private:
                         hn::Div(hn::Add(hn::Add(hn::Mul(e0, vz[0]), hn::Mul(e1, vz[1])), hn::Mul(e2, vz[2])),
                                 hn::Add(hn::Add(e0, e1), e2));
                     if constexpr (covering) {
-                        cover(at + k, bits_of(inside), covered);
+                        inside = on_face_only(inside, face, px, py);
+                        cover(at + k, inside, covered);
                     }
                     put_lanes(at + k, inside, depth, ids);
                 }
             }
         }
-        if (covering && id != item_blocked) {
+        if constexpr (covering) {
             add_covered(id, covered);
         }
-    }
-
-    void add_covered(std::uint32_t id, TexelTally sum) {
-        TexelTally& covered = coverage_->of_id[id];
-        if (covered == 0 && sum != 0) {
-            coverage_->single_ids.push_back(id);
-        }
-        covered += sum;
     }
 
     /// A triangle of a cluster of which some vertex does not project.
@@ -731,7 +744,6 @@ private:
         }
         Shown shown;
         shown.first_id = front ? scene_.front_id[first + triangle] : scene_.back_id[first + triangle];
-        shown.counted = shown.first_id != item_blocked;
         draw_outline<covering>(face, outline, on_texels(face, normal, 1.0 / height), shown, front);
     }
 
@@ -830,8 +842,7 @@ private:
         const DrawPolygon& polygon = scene_.list.polygons[drawn.polygon];
         Shown shown;
         shown.first_id = front ? polygon.front_id : polygon.back_id;
-        shown.counted = shown.first_id != item_blocked;
-        shown.cells = shown.counted;
+        shown.cells = shown.first_id != item_blocked;
         if (!shown.cells) {
             return shown;
         }
@@ -881,7 +892,7 @@ private:
         }
         const Vec zero = set(0.0f);
         const float bias = front ? front_bias : 1.0f;
-        TexelTally covered = 0;
+        Covered covered{hn::Zero(ids_of), 0};
         for (std::uint32_t ty = static_cast<std::uint32_t>(box[2]) / 4;
              ty <= static_cast<std::uint32_t>(box[3]) / 4; ++ty) {
             std::uint32_t tx = static_cast<std::uint32_t>(box[0]) / 4;
@@ -913,9 +924,12 @@ private:
                     const Vec z = affine(inverse);
                     inside = hn::And(inside, hn::Gt(z, zero));
                     const Vec depth = hn::Mul(z, set(bias));
+                    if constexpr (covering) {
+                        inside = on_face_only(inside, face, px, py);
+                    }
                     if (!shown.cells) {
-                        if (covering && shown.counted) {
-                            cover(at + k, bits_of(inside), covered);
+                        if constexpr (covering) {
+                            cover(at + k, inside, covered);
                         }
                         put_lanes(at + k, inside, depth, hn::Set(ids_of, shown.first_id));
                         continue;
@@ -933,7 +947,7 @@ private:
                 }
             }
         }
-        if (covering && shown.counted && !shown.cells) {
+        if (covering && !shown.cells) {
             add_covered(shown.first_id, covered);
         }
     }
@@ -1093,6 +1107,7 @@ private:
     float half_;
     float guard_; ///< a vertex projects where it is nearer than this, in texels
     std::uint32_t across_;
+    bool padded_; ///< some tiles have texels that are none
     double tolerance_;
     float near_plane_; ///< eyes nearer to a plane are looked at in double precision
 

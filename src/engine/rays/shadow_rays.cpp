@@ -14,24 +14,62 @@
 
 namespace hemi {
 
-struct ShadowRays::Query {
-    RTCIntersectContext context; ///< first, so that Embree's pointer to it is one to the query
-    const ShadowRays* rays;
-    const Vec3* from;
-    const Vec3* to;
+/// Rays of one pair of patches, traced side by side: they pass through much the same part of the scene.
+struct ShadowRays::Packet {
+    static constexpr std::uint32_t size = 16;
 
+    RTCIntersectContext context; ///< first, so that Embree's pointer to it is one to the packet
+    const ShadowRays* rays;
+    std::uint32_t count = 0;
+    std::array<Vec3, size> from, to;
+    std::array<double, size> weight;
+
+    /// Surfaces in whose plane either end lies, or that both ends are on the same side of, hide nothing.
     static void filter(const RTCFilterFunctionNArguments* arguments) {
-        const auto* query = reinterpret_cast<const Query*>(arguments->context);
-        const std::uint32_t s = RTCHitN_primID(arguments->hit, arguments->N, 0);
-        const PatchMesh& mesh = query->rays->mesh_;
-        const Vec3& normal = mesh.surface_normal(s);
-        const Vec3& corner = mesh.surfaces()[s].vertices[0];
-        const double from = glm::dot(*query->from - corner, normal);
-        const double to = glm::dot(*query->to - corner, normal);
-        const double rounding = query->rays->rounding_;
-        if (std::abs(from) <= rounding || std::abs(to) <= rounding || (from > 0.0) == (to > 0.0)) {
-            arguments->valid[0] = 0;
+        const auto* packet = reinterpret_cast<const Packet*>(arguments->context);
+        const PatchMesh& mesh = packet->rays->mesh_;
+        const double rounding = packet->rays->rounding_;
+        for (unsigned k = 0; k < arguments->N; ++k) {
+            if (arguments->valid[k] == 0) {
+                continue;
+            }
+            const std::uint32_t s = RTCHitN_primID(arguments->hit, arguments->N, k);
+            const std::uint32_t ray = RTCRayN_id(arguments->ray, arguments->N, k);
+            const Vec3& normal = mesh.surface_normal(s);
+            const Vec3& corner = mesh.surfaces()[s].vertices[0];
+            const double from = glm::dot(packet->from[ray] - corner, normal);
+            const double to = glm::dot(packet->to[ray] - corner, normal);
+            if (std::abs(from) <= rounding || std::abs(to) <= rounding || (from > 0.0) == (to > 0.0)) {
+                arguments->valid[k] = 0;
+            }
         }
+    }
+
+    /// Weights of the rays that nothing hides; the packet is empty afterwards.
+    double trace() {
+        const EmbreeScene& scene = *rays->scene_;
+        alignas(64) std::array<int, size> valid{};
+        alignas(64) RTCRay16 all{};
+        for (std::uint32_t k = 0; k < count; ++k) {
+            const RTCRay ray = scene.ray(from[k], (to[k] - from[k]) * scene.scale(), 1.0F);
+            valid[k] = -1;
+            all.org_x[k] = ray.org_x;
+            all.org_y[k] = ray.org_y;
+            all.org_z[k] = ray.org_z;
+            all.dir_x[k] = ray.dir_x;
+            all.dir_y[k] = ray.dir_y;
+            all.dir_z[k] = ray.dir_z;
+            all.tfar[k] = ray.tfar;
+            all.mask[k] = ray.mask;
+            all.id[k] = k;
+        }
+        rtcOccluded16(valid.data(), scene.handle(), &context, &all);
+        double seen = 0.0;
+        for (std::uint32_t k = 0; k < count; ++k) {
+            seen += all.tfar[k] < 0.0F ? 0.0 : weight[k];
+        }
+        count = 0;
+        return seen;
     }
 };
 
@@ -46,18 +84,6 @@ ShadowRays::ShadowRays(const PatchMesh& mesh) : mesh_(mesh), rounding_(mesh.roun
 }
 
 ShadowRays::~ShadowRays() = default;
-
-bool ShadowRays::occluded(const Vec3& from, const Vec3& to) const {
-    Query query{};
-    rtcInitIntersectContext(&query.context);
-    query.context.filter = Query::filter;
-    query.rays = this;
-    query.from = &from;
-    query.to = &to;
-    RTCRay ray = scene_->ray(from, (to - from) * scene_->scale(), 1.0F);
-    rtcOccluded1(scene_->handle(), &query.context, &ray);
-    return ray.tfar < 0.0F;
-}
 
 ShadowRays::Estimate ShadowRays::visibility(std::uint32_t i, std::uint32_t j, std::uint32_t rays) const {
     if (i > j) {
@@ -76,6 +102,11 @@ ShadowRays::Estimate ShadowRays::visibility(std::uint32_t i, std::uint32_t j, st
         state = splitmix(state);
         bits = static_cast<std::uint32_t>(state >> 32);
     }
+    Packet packet;
+    rtcInitIntersectContext(&packet.context);
+    packet.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    packet.context.filter = Packet::filter;
+    packet.rays = this;
     double seen = 0.0;
     double all = 0.0;
     double squares = 0.0;
@@ -98,7 +129,15 @@ ShadowRays::Estimate ShadowRays::visibility(std::uint32_t i, std::uint32_t j, st
                               leaving * arriving / (squared * squared);
         all += weight;
         squares += weight * weight;
-        seen += occluded(a, b) ? 0.0 : weight;
+        packet.from[packet.count] = a;
+        packet.to[packet.count] = b;
+        packet.weight[packet.count] = weight;
+        if (++packet.count == Packet::size) {
+            seen += packet.trace();
+        }
+    }
+    if (packet.count > 0) {
+        seen += packet.trace();
     }
     return all > 0.0 ? Estimate{seen / all, all * all / squares} : Estimate{1.0, 0.0};
 }

@@ -31,9 +31,7 @@ public:
     [[nodiscard]] Estimate visibility(std::uint32_t i, std::uint32_t j, std::uint32_t rays) const;
 
 private:
-    struct Query;
-
-    [[nodiscard]] bool occluded(const Vec3& from, const Vec3& to) const;
+    struct Packet;
 
     const PatchMesh& mesh_;
     double rounding_;
