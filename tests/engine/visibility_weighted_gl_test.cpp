@@ -121,8 +121,39 @@ TEST_CASE("make_eye_points: shares sum to one and their mean is the centroid", "
                     mean += eye.share * eye.position;
                 }
                 CHECK(share == Approx(1.0).margin(1e-12));
-                CHECK(glm::distance(mean, mesh.centres()[i]) < 1e-9);
+                const bool compact = eyes.of(i).size() <= count; // else points in no rows
+                CHECK(glm::distance(mean, mesh.centres()[i]) < (compact ? 1e-9 : 0.05));
             }
+        }
+    }
+}
+
+TEST_CASE("make_eye_points: long patches have points for their length, in no rows", "[engine]") {
+    Scene scene = empty_scene();
+    add_polygon(scene, "square", {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)});
+    add_polygon(scene, "strip", {Vec3(0, 0, 1), Vec3(6, 0, 1), Vec3(6, 1, 1), Vec3(0, 1, 1)});
+    add_polygon(scene, "needle", {Vec3(0, 0, 2), Vec3(50, 0, 2), Vec3(50, 0.5, 2)});
+    const PatchMesh mesh(scene);
+    const EyePoints eyes = make_eye_points(mesh, 4);
+    CHECK(eyes.of(0).size() == 4);
+    CHECK(eyes.of(1).size() == 12);
+    CHECK(eyes.of(2).size() == 16);
+    CHECK(make_eye_points(mesh, 1).points.size() == 3); // one point is one point
+    for (const std::uint32_t patch : {1u, 2u}) {
+        std::vector<double> along;
+        double share = 0.0;
+        for (const EyePoint& eye : eyes.of(patch)) {
+            along.push_back(eye.position.x);
+            share += eye.share;
+        }
+        CHECK(share == Approx(1.0).margin(1e-12));
+        std::sort(along.begin(), along.end());
+        // Every point has a place of its own along the patch, and gaps are about equal (towards the tip of
+        // the triangle they are longer, since less of its area lies there).
+        const double length = patch == 1 ? 6.0 : 50.0;
+        for (std::size_t k = 1; k < along.size(); ++k) {
+            CHECK(along[k] > along[k - 1]);
+            CHECK(along[k] - along[k - 1] < 2.5 * length / static_cast<double>(along.size()));
         }
     }
 }

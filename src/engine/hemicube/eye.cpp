@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -19,6 +20,11 @@ namespace hemi {
 namespace {
 
 constexpr std::uint32_t max_eyes_a_side = 8;
+
+// Patches up to this aspect ratio have as many points as were asked for, in rows; longer ones have points for
+// their length, in no rows, up to so many times as many.
+constexpr double max_compact_aspect = 2.0;
+constexpr double max_more_points = 4.0;
 
 /// Point of a rule on [0, 1]; the weights sum to 1.
 struct EdgePoint {
@@ -107,11 +113,49 @@ void normalise_shares(std::vector<EyePoint>& points, std::size_t first) {
     }
 }
 
+/// Length over width: of a quadrilateral the means of opposite edges, of a triangle half the longest edge
+/// over the height above it, which is 1 of half a square.
+double aspect_of(const PatchCorners& corners, double area) {
+    const auto& p = corners.points;
+    if (corners.count == 3) {
+        const double longest =
+            std::max({glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
+        return longest * longest / (4.0 * area);
+    }
+    const double u = glm::distance(p[0], p[1]) + glm::distance(p[3], p[2]);
+    const double v = glm::distance(p[0], p[3]) + glm::distance(p[1], p[2]);
+    return std::max(u, v) / std::min(u, v);
+}
+
+/// The same patch with its corners in such an order that the first coordinate of a point of the lattice below
+/// runs along it: from the sharpest corner of a triangle, along the longer edges of a quadrilateral.
+void turn_lengthwise(PatchCorners& corners) {
+    auto& p = corners.points;
+    if (corners.count == 3) {
+        std::size_t sharpest = 0; // opposite the shortest edge
+        double shortest = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double edge = glm::distance(p[(k + 1) % 3], p[(k + 2) % 3]);
+            if (edge < shortest) {
+                shortest = edge;
+                sharpest = k;
+            }
+        }
+        std::rotate(p.begin(), p.begin() + static_cast<std::ptrdiff_t>(sharpest), p.begin() + 3);
+    } else if (glm::distance(p[0], p[1]) + glm::distance(p[3], p[2]) >
+               glm::distance(p[0], p[3]) + glm::distance(p[1], p[2])) {
+        std::rotate(p.begin(), p.begin() + 1, p.begin() + 4);
+    }
+}
+
 /// Appends `count` points of a Fibonacci lattice. Where something near cuts the view off along a line,
-/// rows and columns of points would all cross it at once.
-void add_spread_points(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t count,
+/// rows and columns of points would all cross it at once; and along a needle there are `count` places.
+void add_spread_points(const PatchMesh& mesh, std::uint32_t patch, std::uint32_t count, double aspect,
                        std::vector<EyePoint>& points) {
-    const PatchCorners corners = mesh.corners(patch);
+    PatchCorners corners = mesh.corners(patch);
+    if (aspect > max_compact_aspect) {
+        turn_lengthwise(corners);
+    }
     const auto& p = corners.points;
     EyePoint eye = eye_at_centre(mesh, patch);
     const std::size_t first = points.size();
@@ -193,8 +237,14 @@ EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count, std::uint3
     eyes.points.reserve(std::size_t{mesh.size()} * count);
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
         eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
-        if (near_sides[patch] > 1) {
-            add_spread_points(mesh, patch, near_sides[patch] * near_sides[patch], eyes.points);
+        const double aspect = aspect_of(mesh.corners(patch), mesh.areas()[patch]);
+        const bool needle = count > 1 && aspect > max_compact_aspect;
+        const auto more = needle ? static_cast<std::uint32_t>(
+                                       std::min(max_more_points, std::ceil(aspect / max_compact_aspect)))
+                                 : 1u;
+        if (needle || near_sides[patch] > 1) {
+            const std::uint32_t compact = std::max(near_sides[patch] * near_sides[patch], count * more);
+            add_spread_points(mesh, patch, compact, aspect, eyes.points);
         } else {
             add_gauss_points(mesh, patch, side(count), eyes.points);
         }
