@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -23,7 +24,7 @@ constexpr std::uint32_t max_eyes_a_side = 8;
 
 // Patches up to this aspect ratio have as many points as were asked for, in rows; longer ones have points for
 // their length, in no rows, up to so many times as many.
-constexpr double max_compact_aspect = 2.0;
+constexpr double max_compact_aspect = 2.0 + 1e-9;
 constexpr double max_more_points = 4.0;
 
 /// Point of a rule on [0, 1]; the weights sum to 1.
@@ -113,14 +114,15 @@ void normalise_shares(std::vector<EyePoint>& points, std::size_t first) {
     }
 }
 
-/// Length over width: of a quadrilateral the means of opposite edges, of a triangle half the longest edge
-/// over the height above it, which is 1 of half a square.
+/// Length over width: of a quadrilateral the means of opposite edges, of a triangle its middle edge over the
+/// height above that, as of the rectangle that a right triangle is half of.
 double aspect_of(const PatchCorners& corners, double area) {
     const auto& p = corners.points;
     if (corners.count == 3) {
-        const double longest =
-            std::max({glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
-        return longest * longest / (4.0 * area);
+        std::array<double, 3> edges{glm::distance(p[0], p[1]), glm::distance(p[1], p[2]),
+                                    glm::distance(p[2], p[0])};
+        std::sort(edges.begin(), edges.end());
+        return edges[1] * edges[1] / (2.0 * area);
     }
     const double u = glm::distance(p[0], p[1]) + glm::distance(p[3], p[2]);
     const double v = glm::distance(p[0], p[3]) + glm::distance(p[1], p[2]);
