@@ -522,9 +522,9 @@ rays : int, optional
 seed : int, optional
     Of the hemicubes' rotations, and of rays.
 device : str
-    "auto", "egl", "egl:N" or "osmesa"; see devices().
+    "auto", "cpu", "egl", "egl:N" or "osmesa"; see devices().
 jobs : int
-    Worker processes of software OpenGL; 0: one for each core.
+    Threads of "cpu", worker processes of software OpenGL; 0: one for each core.
 repair : {"closure", "reciprocity", "none"}, optional
     What is enforced. Without it: closure where factors have visibility, nothing in plain rows and in single
     rows.

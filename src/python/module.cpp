@@ -36,7 +36,7 @@ PYBIND11_MODULE(_hemi, module) {
     bind_solution(module);
     bind_factors(module);
     module.def("devices", &devices, R"(
-OpenGL devices that could be used here.
+Devices that could be used here: OpenGL ones, and "cpu", the rasteriser of hemi itself.
 
 Returns
 -------

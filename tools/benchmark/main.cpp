@@ -24,13 +24,16 @@ using namespace hemi::bench;
 struct Options {
     std::string device = "auto";
     std::string scenes = "scenes";
+    std::string meshes;
     std::string json;
     bool quick = false;
     bool files = false;
 };
 
 void declare(CLI::App& app, Options& options) {
-    app.add_option("--device", options.device, "auto, egl, egl:N or osmesa (default auto)");
+    app.add_option("--device", options.device, "OpenGL: auto, egl, egl:N or osmesa (default auto)");
+    app.add_option("--meshes", options.meshes, "folder of bumpy-5k.obj, bumpy-20k.obj and bumpy-80k.obj")
+        ->required();
     app.add_option("--scenes", options.scenes, "folder of the scene files (default scenes)");
     app.add_option("--json", options.json, "write the figures to this file too");
     app.add_flag("--quick", options.quick, "no table, small samples");
@@ -54,15 +57,40 @@ void print_findings(Measurements& measurements, Report& report, const Case& offi
     measurements.workers_target(10000, 1.8);
     measurements.scene_rate(office);
     measurements.merging_target(city, 3.0);
-    measurements.solve_target(this_program().parent_path() / "hemi",
-                              std::filesystem::path(options.scenes) / "cornell-box.json",
-                              options.quick ? 3 : 5, 3.0);
+    for (const auto& [preset, most_seconds] : {std::pair("plain", 3.0), std::pair("default", 2.0)}) {
+        measurements.solve_target(this_program().parent_path() / "hemi",
+                                  std::filesystem::path(options.scenes) / "cornell-box.json", preset,
+                                  options.quick ? 3 : 5, most_seconds);
+    }
     frame_target(this_program(), options.device, report);
 }
 
-Setup make_setup(const Options& options, unsigned workers) {
+/// The CPU rasteriser: meshes without flat lattices, and merged scenes.
+void print_cpu_findings(Measurements& measurements, const Case& office, const Options& options) {
+    const auto read_mesh = [&](const char* name) {
+        return read_case(std::filesystem::path(options.meshes) / name);
+    };
+    const Case bumpy_5k = read_mesh("bumpy-5k.obj");
+    const Case bumpy_20k = read_mesh("bumpy-20k.obj");
+    const Case bumpy_80k = read_mesh("bumpy-80k.obj");
+    measurements.cpu_target(bumpy_5k, 200, 6.0, 4.0);
+    measurements.cpu_target(bumpy_20k, 200, 5.0, 8.0);
+    if (!options.quick) {
+        measurements.cpu_target(bumpy_80k, 200, 0.0, 0.0);
+    }
+    measurements.cpu_growth_target(bumpy_20k, bumpy_80k, 64, 2.2);
+    measurements.cpu_rates(bumpy_20k, 200, 1500.0, 1.85);
+    for (const std::uint32_t resolution : {64u, 128u}) {
+        const Case box = read_case(std::filesystem::path(options.scenes) / "cornell-box.json");
+        for (const Case& scene : {box, make_room(10000), office}) {
+            measurements.cpu_target(scene, resolution, 0.0, 2.0);
+        }
+    }
+}
+
+Setup make_setup(const Options& options, const std::string& device, unsigned workers) {
     Setup setup;
-    setup.device = options.device;
+    setup.device = device;
     setup.worker_program = find_worker_program();
     setup.workers = workers;
     setup.effort.seconds = options.quick ? 0.2 : 0.5;
@@ -80,7 +108,7 @@ void run(const Options& options) {
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     auto context = gl::make_context(options.device);
     const std::string renderer = context->renderer();
-    const Setup setup = make_setup(options, context->software() ? cores : 0);
+    const Setup setup = make_setup(options, context->name(), context->software() ? cores : 0);
     context.reset();
 
     Report report(circumstances_of(setup, renderer, cores));
@@ -96,6 +124,7 @@ void run(const Options& options) {
     }
     if (!options.files) {
         print_findings(measurements, report, office, city, options);
+        print_cpu_findings(measurements, office, options);
     }
     measure_files(report, setup.effort.rounds);
     write_json();

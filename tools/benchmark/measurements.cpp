@@ -246,16 +246,74 @@ void Measurements::merging_target(const Case& scene, double least_ratio) {
 }
 
 void Measurements::solve_target(const std::filesystem::path& hemi, const std::filesystem::path& scene,
-                                unsigned runs, double most_seconds) {
+                                const std::string& preset, unsigned runs, double most_seconds) {
     const TemporaryPicture picture;
-    const std::vector<std::string> arguments{
-        "solve", scene.string(),          "-q",       "--preset",   "plain",
-        "-o",    picture.path().string(), "--device", setup_.device};
+    const std::vector<std::string> arguments{"solve", scene.string(),         "-q", "--preset", preset,
+                                             "-o",    picture.path().string()};
     const std::array<Subject, 1> subjects{[&] { return run_timed(hemi, arguments); }};
     const auto series = time_interleaved(subjects, runs);
-    report_.finding({fmt::format("hemi solve {} --preset plain, wall time, median of {}",
-                                 scene.filename().string(), runs),
+    report_.finding({fmt::format("hemi solve {} --preset {}, wall time, median of {}",
+                                 scene.filename().string(), preset, runs),
                      median(series[0]), "s", Bound::at_most, most_seconds});
+}
+
+std::unique_ptr<RowProvider> Measurements::cpu_engine(const Case& scene, std::uint32_t resolution,
+                                                      std::uint32_t threads) const {
+    return make_hemicube_engine(scene.mesh, settings(resolution), {cpu_device, threads, {}});
+}
+
+void Measurements::cpu_target(const Case& scene, std::uint32_t resolution, double least_over_embree,
+                              double least_over_gl) {
+    const auto cpu = cpu_engine(scene, resolution, 1);
+    const auto drawn = engine(scene, settings(resolution), 0);
+    EmbreeRows embree(scene.mesh, settings(resolution), EmbreeRows::Rays::texels);
+    const auto compared = spread_rows(scene.mesh.size(), compared_rows, 1);
+    for (RowProvider* const other : {drawn.get(), static_cast<RowProvider*>(&embree)}) {
+        if (const double difference = row_difference(*other, *cpu, compared); difference > most_difference) {
+            throw Error(fmt::format("{}: rows of {} differ by {:.1e} of a row from those of {}", scene.name,
+                                    other->renderer(), difference, cpu->renderer()));
+        }
+    }
+    const auto rows_of = [&](RowProvider& provider) {
+        return spread_rows(provider.size(), rows_within(provider, setup_.effort.seconds), 1);
+    };
+    const std::array<Subject, 3> subjects{subject(*cpu, rows_of(*cpu)), subject(embree, rows_of(embree)),
+                                          subject(*drawn, rows_of(*drawn))};
+    const auto series = time_interleaved(subjects, setup_.effort.rounds);
+    const std::string what =
+        fmt::format("{}, {} patches, resolution {}, one core", scene.name, scene.mesh.size(), resolution);
+    report_.finding({fmt::format("{}: {}", what, cpu->renderer()), per_second(series[0]), "hemicubes/s"});
+    report_.finding({"  over " + embree.renderer(), median_ratio(series[1], series[0]), "x",
+                     least_over_embree > 0.0 ? Bound::at_least : Bound::none, least_over_embree});
+    report_.finding({"  over " + drawn->renderer(), median_ratio(series[2], series[0]), "x",
+                     least_over_gl > 0.0 ? Bound::at_least : Bound::none, least_over_gl});
+}
+
+void Measurements::cpu_rates(const Case& scene, std::uint32_t resolution, double least_rate,
+                             double least_ratio) {
+    const auto one = cpu_engine(scene, resolution, 1);
+    const auto two = cpu_engine(scene, resolution, 2);
+    const auto all = cpu_engine(scene, resolution, 0);
+    const auto rows = rows_for(*one, many_blocks);
+    const std::array<Subject, 3> subjects{subject(*one, rows), subject(*two, rows), subject(*all, rows)};
+    const auto series = time_interleaved(subjects, setup_.effort.rounds);
+    report_.finding({fmt::format("{}, {} patches, resolution {}, all cores: {}", scene.name,
+                                 scene.mesh.size(), resolution, all->renderer()),
+                     per_second(series[2]), "hemicubes/s", Bound::at_least, least_rate});
+    report_.finding(
+        {"  two threads over one", median_ratio(series[0], series[1]), "x", Bound::at_least, least_ratio});
+}
+
+void Measurements::cpu_growth_target(const Case& few, const Case& many, std::uint32_t resolution,
+                                     double most_ratio) {
+    const auto with_few = cpu_engine(few, resolution, 1);
+    const auto with_many = cpu_engine(many, resolution, 1);
+    const std::array<Subject, 2> subjects{subject(*with_few, rows_for(*with_few, few_blocks)),
+                                          subject(*with_many, rows_for(*with_many, few_blocks))};
+    const auto series = time_interleaved(subjects, setup_.effort.rounds);
+    report_.finding(
+        {fmt::format("cost of a row on the CPU, {} over {}, resolution {}", many.name, few.name, resolution),
+         median_ratio(series[1], series[0]), "x", Bound::at_most, most_ratio});
 }
 
 } // namespace hemi::bench

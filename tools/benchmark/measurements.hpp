@@ -14,7 +14,7 @@ namespace hemi::bench {
 
 /// What is measured, on which device, and how long.
 struct Setup {
-    std::string device = "auto";
+    std::string device; ///< of OpenGL
     std::filesystem::path worker_program;
     std::uint32_t workers = 1; ///< processes; 0: none, a GPU
     Effort effort{0.5, 3};
@@ -40,9 +40,18 @@ public:
     void workers_target(std::uint32_t patches, double least_ratio);
     void scene_rate(const Case& scene);
     void merging_target(const Case& scene, double least_ratio);
-    /// Wall time of `hemi solve SCENE -o PICTURE`.
-    void solve_target(const std::filesystem::path& hemi, const std::filesystem::path& scene, unsigned runs,
-                      double most_seconds);
+    /// Wall time of `hemi solve SCENE --preset PRESET --device auto -o PICTURE`.
+    void solve_target(const std::filesystem::path& hemi, const std::filesystem::path& scene,
+                      const std::string& preset, unsigned runs, double most_seconds);
+
+    /// The CPU rasteriser against Embree's coherent packets and OpenGL, one core each. Compares the rows
+    /// first.
+    void cpu_target(const Case& scene, std::uint32_t resolution, double least_over_embree,
+                    double least_over_gl);
+    /// The CPU rasteriser alone: rows by all cores, and what a second thread brings.
+    void cpu_rates(const Case& scene, std::uint32_t resolution, double least_rate, double least_ratio);
+    /// What a row of `many` costs on the CPU rasteriser, over one of `few`.
+    void cpu_growth_target(const Case& few, const Case& many, std::uint32_t resolution, double most_ratio);
 
 private:
     [[nodiscard]] HemicubeSettings settings(std::uint32_t resolution) const;
@@ -52,6 +61,8 @@ private:
     /// Rows for comparing engines on a scene: what `single` computes in a run, or enough for all workers.
     [[nodiscard]] std::vector<std::uint32_t> rows_for(RowProvider& single,
                                                       std::uint32_t blocks_a_worker) const;
+    [[nodiscard]] std::unique_ptr<RowProvider> cpu_engine(const Case& scene, std::uint32_t resolution,
+                                                          std::uint32_t threads) const;
     [[nodiscard]] Subject subject(RowProvider& provider, std::vector<std::uint32_t> rows) const;
     void compare_rows(const Case& scene);
     [[nodiscard]] Cell cell(const Case& scene, std::uint32_t resolution) const;

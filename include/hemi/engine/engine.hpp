@@ -17,7 +17,9 @@ struct HemicubeSettings {
     std::uint32_t resolution = 128; ///< texels along a full hemicube edge; even, 2 to 4096
     std::uint64_t seed = 0;         ///< of the hashed rotation of every hemicube about its normal
     bool merge_lattices = true;     ///< draw lattices of coplanar parallelogram cells as one polygon
-    std::uint32_t eye_points = 1;   ///< hemicubes a patch: 1, 4, 9 … 64
+    /// Hemicubes a patch: 1, 4, 9 … 64; with 4 and more, up to four times as many on patches longer than
+    /// twice their width.
+    std::uint32_t eye_points = 1;
     /// Up to so many where a surface hovers close above a patch or stands on it; 1: none more.
     std::uint32_t near_eye_points = 1;
 

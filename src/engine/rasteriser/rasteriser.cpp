@@ -57,11 +57,6 @@ HWY_INLINE std::uint32_t bits_of(Mask mask) {
     return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
 #endif
 }
-HWY_INLINE Mask mask_of(std::uint32_t bits) {
-    const std::array<std::uint8_t, 8> bytes{static_cast<std::uint8_t>(bits),
-                                            static_cast<std::uint8_t>(bits >> 8)};
-    return hn::LoadMaskBits(floats, bytes.data());
-}
 /// Twice the area of (a, b, p), a and b relative to p: positive where p lies left of a -> b. Exactly the
 /// negative of the same with a and b exchanged, since nothing is fused.
 HWY_INLINE Vec edge(Vec ax, Vec ay, Vec bx, Vec by) {
