@@ -359,7 +359,7 @@ TEST_CASE("ExchangeAreas: unoccluded exact cases are met, whatever their scale",
                     row.check_below(column(rule), "relative", error / pair.factor,
                                     accuracy(rule, 1e-5, 1e-11));
                 }
-                if (pair.factor < 0.2) {
+                if (pair.factor < 0.2) { // those above are off by up to 1.8e-7
                     CHECK(error < accuracy(rule, 1e-7, 1e-11));
                 }
             }
