@@ -12,7 +12,6 @@
 #include "hemi/pipeline/radiosity.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace hemi::cli {
 
@@ -43,19 +42,15 @@ void write_baked(const BakeArguments& arguments, const Outputs& outputs, const S
     const std::vector<float> corners =
         arguments.picture.flat ? flat_corners(picture.patches) : picture.corners;
     (extension_of(path) == ".ply" ? io::write_baked_ply : io::write_baked_glb)(path, mesh, corners, exposure);
-    if (arguments.common.json) {
-        print_json({{"schema", "hemi/bake/1"},
-                    {"output", path.string()},
-                    {"patches", mesh.size()},
-                    {"exposure", exposure}});
-        return;
-    }
-    outputs.print_summary(
-        summary_line("baked", fmt::format("{} ({}, exposure {}{})",
-                                          is_standard_output(path) ? "standard output" : path.string(),
-                                          plural(mesh.size(), "patch", "patches"), number_text(exposure),
-                                          arguments.picture.exposure ? "" : ", automatic")),
-        terminal);
+    Report report;
+    report.add("baked",
+               fmt::format("{} ({}, exposure {}{})",
+                           is_standard_output(path) ? "standard output" : path.string(),
+                           plural(mesh.size(), "patch", "patches"), number_text(exposure),
+                           arguments.picture.exposure ? "" : ", automatic"),
+               {{"output", path.string()}, {"patches", mesh.size()}, {"exposure", exposure}});
+    report.select("hemi/bake/1", {"output", "patches", "exposure"});
+    outputs.show(report, arguments.common.json, terminal);
 }
 
 ExitStatus bake_scene(const BakeArguments& arguments, const Outputs& outputs, const Terminal& terminal) {

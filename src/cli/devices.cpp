@@ -27,7 +27,9 @@ Report devices_report(const std::vector<DeviceInfo>& devices) {
                         {"software", device.software},
                         {"auto", device.chosen}});
     }
-    return {devices.empty() ? "" : table.text(), {{"schema", "hemi/devices/1"}, {"devices", list}}};
+    Report report{devices.empty() ? "" : table.text(), {{"devices", list}}};
+    report.select("hemi/devices/1", {"devices"});
+    return report;
 }
 
 } // namespace

@@ -2,6 +2,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/loaded_scene.hpp"
+#include "cli/report/balance_report.hpp"
+#include "cli/report/factor_report.hpp"
 #include "cli/report/factor_tables.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/factor_file.hpp"
@@ -69,8 +71,7 @@ Seconds factor_stages() {
     return Seconds({"load", "factors", "repair", "estimate", "search"});
 }
 
-void show_groups(const FactorsArguments& arguments, const FormFactors& factors, Report rows,
-                 const Seconds& seconds) {
+void show_groups(const FactorsArguments& arguments, const FormFactors& factors, const Seconds& seconds) {
     if (!factors.matrix.all_known()) {
         throw InputError(fmt::format("{}: some rows were not computed; --by-group needs all",
                                      arguments.scene.path.string()));
@@ -81,12 +82,16 @@ void show_groups(const FactorsArguments& arguments, const FormFactors& factors, 
         io::write_group_factors_csv(*arguments.output, factors.groups, groups);
     }
     if (arguments.common.json) {
-        rows.add(seconds.report());
-        rows.json.update(group_factors_json(factors.groups, groups));
-        rows.json["patches"] = factors.matrix.size();
-        print_json(rows.select("hemi/factors-by-group/1",
-                               {"renderer", "patches", "groups", "areas", "factors", "environment", "blocked",
-                                "row_sum", "repair", "error_estimate", "seconds"}));
+        Report report{"", group_factors_json(factors.groups, groups)};
+        report.json.update({{"renderer", factors.provenance.renderer}, {"patches", factors.matrix.size()}});
+        report.add(row_sum_report(row_sums(factors.matrix)));
+        report.add(repair_report(*factors.repair, seconds["repair"]));
+        report.add(error_report(factors.error));
+        report.add(seconds.report());
+        report.select("hemi/factors-by-group/1",
+                      {"renderer", "patches", "groups", "areas", "factors", "environment", "blocked",
+                       "row_sum", "repair", "error_estimate", "seconds"});
+        print_json(report.json);
     } else if (!table_goes_to_file(arguments)) {
         print(group_factors_text(factors.groups, groups));
     }

@@ -3,7 +3,6 @@
 #include "cli/arguments/arguments.hpp"
 #include "cli/exit_status.hpp"
 #include "cli/output_paths.hpp"
-#include "cli/report/report.hpp"
 #include "cli/report/seconds.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/matrix/form_factors.hpp"
@@ -24,8 +23,6 @@ namespace hemi::cli {
 /// The stages that both parts time.
 [[nodiscard]] Seconds factor_stages();
 /// --by-group: writes the table, or prints it.
-/// @param rows  what else is said of the rows
-void show_groups(const FactorsArguments& arguments, const FormFactors& factors, Report rows,
-                 const Seconds& seconds);
+void show_groups(const FactorsArguments& arguments, const FormFactors& factors, const Seconds& seconds);
 
 } // namespace hemi::cli

@@ -53,7 +53,6 @@ ExitStatus factors_of_file(const FactorsArguments& arguments, const Terminal& te
     Seconds seconds = factor_stages();
     const Stopwatch load_watch;
     FormFactors factors = io::read_hff(path);
-    factors.work.from_file = true;
     seconds["load"] = load_watch.seconds();
     if (arguments.row) {
         check_row(*arguments.row, factors.matrix, path);
@@ -68,9 +67,7 @@ ExitStatus factors_of_file(const FactorsArguments& arguments, const Terminal& te
     }
     const double max_row_error = arguments.rows.max_row_error;
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
-    show_groups(arguments, factors,
-                prepared_rows_report(factors, row_sums(factors.matrix), enclosure, seconds["repair"]),
-                seconds);
+    show_groups(arguments, factors, seconds);
     report_leaks(enclosure, factors.matrix, names, nullptr, max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }

@@ -97,13 +97,10 @@ void show_summary(const FactorsArguments& arguments, const FormFactors& factors,
                                                                       : " (rows after repair)";
         report.add("written", arguments.output->string() + which);
     }
-    if (arguments.common.json) {
-        print_json(report.select("hemi/factors/1", {"renderer", "patches", "groups", "entries", "memory",
-                                                    "row_sum", "environment_max", "blocked_max", "repair",
-                                                    "chosen_for", "error_estimate", "seconds"}));
-    } else {
-        outputs.print_summary(report.text, terminal);
-    }
+    report.select("hemi/factors/1",
+                  {"renderer", "patches", "groups", "entries", "memory", "row_sum", "environment_max",
+                   "blocked_max", "repair", "chosen_for", "error_estimate", "seconds"});
+    outputs.show(report, arguments.common.json, terminal);
 }
 
 ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, const Terminal& terminal,
@@ -133,10 +130,10 @@ ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, c
     const double max_row_error = arguments.rows.max_row_error;
     const RowSums sums = row_sums(factors.matrix);
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
-    const Report rows = prepared_rows_report(factors, sums, enclosure, seconds["repair"]);
     if (arguments.by_group) {
-        show_groups(arguments, factors, rows, seconds);
+        show_groups(arguments, factors, seconds);
     } else {
+        const Report rows = prepared_rows_report(factors, sums, enclosure, seconds["repair"]);
         show_summary(arguments, factors, loaded.mesh, rows, seconds, outputs, terminal);
     }
     report_buried(sums, terminal);

@@ -16,19 +16,17 @@ namespace hemi::cli {
 
 namespace {
 
-/// What is in the file.
-Report info_report(const char* kind, const Report& contents) {
-    Report report{"", {{"schema", "hemi/info/1"}, {"kind", kind}}};
-    report.add(contents);
-    return report;
-}
-
 Report scene_info(const InfoArguments& arguments, const Terminal& terminal) {
     const LoadedScene loaded = load_scene(arguments.scene, terminal);
     const FactorCost cost = arguments.measure ? measure_cost(loaded.mesh, arguments.rows.factors)
                                               : estimate_cost(loaded.mesh, arguments.rows.factors);
-    return info_report("scene", contents_report(loaded.scene, loaded.mesh,
-                                                cost_report(cost, loaded.mesh, arguments.measure)));
+    Report report =
+        contents_report(loaded.scene, loaded.mesh, cost_report(cost, loaded.mesh, arguments.measure));
+    report.json["kind"] = "scene";
+    report.select("hemi/info/1",
+                  {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels", "bounds",
+                   "enclosure", "environment", "camera", "groups", "materials", "estimate"});
+    return report;
 }
 
 Report file_info(const std::filesystem::path& path) {
@@ -36,14 +34,27 @@ Report file_info(const std::filesystem::path& path) {
     if (extension == ".hres") {
         const io::ResultFile result = io::read_hres(path);
         const PatchMesh mesh(result.scene, result.subdivision);
-        return info_report("result",
-                           contents_report(result.scene, mesh, stored_solution_report(result.solution)));
+        Report report = contents_report(result.scene, mesh, stored_solution_report(result.solution));
+        report.json["kind"] = "result";
+        report.select("hemi/info/1", {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches",
+                                      "channels", "bounds", "enclosure", "environment", "camera", "groups",
+                                      "materials", "renderer", "solver", "chosen_for", "error_estimate"});
+        return report;
     }
     if (extension == ".hff") {
-        return info_report("factors", stored_factors_report(io::read_hff(path)));
+        Report report = stored_factors_report(io::read_hff(path));
+        report.json["kind"] = "factors";
+        report.select("hemi/info/1",
+                      {"kind", "patches", "rows", "entries", "memory", "preset", "method", "resolution",
+                       "eye_points", "shadow_rays", "seed", "renderer", "enclosure", "geometry_hash",
+                       "row_sum", "chosen_for", "error_estimate", "groups"});
+        return report;
     }
     if (io::factor_content(path)) {
-        return info_report("factors", matrix_report(io::read_factors(path).matrix));
+        Report report = matrix_report(io::read_factors(path).matrix);
+        report.json["kind"] = "factors";
+        report.select("hemi/info/1", {"kind", "patches", "entries", "memory", "row_sum"});
+        return report;
     }
     throw InvalidArgument(
         fmt::format("{}: info reads {}, .hres, .hff, .mtx, .csv, .npz, .txt, .vf, .dat and .bin",

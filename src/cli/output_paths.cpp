@@ -67,14 +67,15 @@ void Outputs::refuse_with_json(bool json) const {
     }
 }
 
-void Outputs::print_summary(const std::string& text, const Terminal& terminal) const {
-    if (terminal.quiet()) {
-        return;
-    }
-    if (uses_standard_output_) {
-        std::fputs(text.c_str(), stderr);
-    } else {
-        print(text);
+void Outputs::show(const Report& report, bool json, const Terminal& terminal) const {
+    if (json) {
+        print_json(report.json);
+    } else if (!terminal.quiet()) {
+        if (uses_standard_output_) {
+            std::fputs(report.text.c_str(), stderr);
+        } else {
+            print(report.text);
+        }
     }
 }
 

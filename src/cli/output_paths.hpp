@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/report/report.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/io/paths.hpp"
 
@@ -38,8 +39,9 @@ public:
     [[nodiscard]] bool uses_standard_output() const noexcept { return uses_standard_output_; }
     /// @throws InvalidArgument if an output and --json would both go to standard output
     void refuse_with_json(bool json) const;
-    /// Prints text for people: on stdout, or on stderr where an output goes to stdout; nothing with -q.
-    void print_summary(const std::string& text, const Terminal& terminal) const;
+    /// Prints the JSON object on stdout, or else the text: on stdout, or on stderr where an output goes to
+    /// stdout; no text with -q.
+    void show(const Report& report, bool json, const Terminal& terminal) const;
 
 private:
     std::vector<std::filesystem::path> inputs_;

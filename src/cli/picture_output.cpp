@@ -1,6 +1,5 @@
 #include "cli/picture_output.hpp"
 
-#include "cli/report/text.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/nearest_word.hpp"
 #include "hemi/display/picture.hpp"
@@ -82,8 +81,8 @@ PictureSettings picture_settings(const PictureOptions& options) {
     return settings;
 }
 
-WrittenPicture write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
-                             const PictureOptions& options, const std::string& device) {
+Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
+                     const PictureOptions& options, const std::string& device) {
     DrawSettings settings;
     settings.picture = picture_settings(options);
     settings.automatic_exposure = !options.exposure;
@@ -92,11 +91,18 @@ WrittenPicture write_picture(const Scene& scene, const PatchMesh& mesh, const So
     settings.device = device;
     const DrawnPicture drawn = draw_solution(scene, mesh, solution, settings);
     hemi::write_picture(*options.output, drawn.picture);
-    return {fmt::format("{} ({} x {}, exposure {}{})",
-                        is_standard_output(*options.output) ? "standard output" : options.output->string(),
-                        drawn.picture.width, drawn.picture.height, number_text(drawn.exposure),
-                        options.exposure ? "" : ", automatic"),
-            drawn.exposure};
+    const std::string path = options.output->string();
+    Report report;
+    report.add("picture",
+               fmt::format("{} ({} x {}, exposure {}{})",
+                           is_standard_output(*options.output) ? "standard output" : path,
+                           drawn.picture.width, drawn.picture.height, number_text(drawn.exposure),
+                           options.exposure ? "" : ", automatic"),
+               {{"picture", path},
+                {"width", drawn.picture.width},
+                {"height", drawn.picture.height},
+                {"exposure", drawn.exposure}});
+    return report;
 }
 
 } // namespace hemi::cli

@@ -2,6 +2,7 @@
 
 #include "cli/arguments/arguments.hpp"
 #include "cli/output_paths.hpp"
+#include "cli/report/report.hpp"
 #include "hemi/display/picture.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/solver/solution.hpp"
@@ -30,14 +31,10 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options);
 /// How a picture is drawn; with an exposure of 1 where it is automatic.
 [[nodiscard]] PictureSettings picture_settings(const PictureOptions& options);
 
-struct WrittenPicture {
-    std::string text; ///< one line: the path, the size, the exposure
-    double exposure = 1.0;
-};
-
 /// Draws and writes the picture.
+/// @return the line "picture" and the keys "picture" (path), "width", "height" and "exposure"
 /// @throws NoDevice, GlError, IoError
-WrittenPicture write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
-                             const PictureOptions& options, const std::string& device);
+[[nodiscard]] Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
+                                   const PictureOptions& options, const std::string& device);
 
 } // namespace hemi::cli

@@ -7,7 +7,6 @@
 #include "hemi/io/result_file.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace hemi::cli {
 
@@ -32,20 +31,11 @@ ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
     result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
     seconds["load"] = load_watch.seconds();
     const Stopwatch render_watch;
-    const WrittenPicture picture =
-        write_picture(result.scene, mesh, result.solution, options, arguments.device);
+    Report report = write_picture(result.scene, mesh, result.solution, options, arguments.device);
     seconds["render"] = render_watch.seconds();
-    if (arguments.common.json) {
-        Json object{{"schema", "hemi/render/1"},
-                    {"picture", options.output->string()},
-                    {"width", options.size[0]},
-                    {"height", options.size[1]},
-                    {"exposure", picture.exposure}};
-        object.update(seconds.report().json);
-        print_json(object);
-    } else {
-        outputs.print_summary(summary_line("picture", picture.text), terminal);
-    }
+    report.json.update(seconds.report().json);
+    report.select("hemi/render/1", {"picture", "width", "height", "exposure", "seconds"});
+    outputs.show(report, arguments.common.json, terminal);
     return ExitStatus::ok;
 }
 

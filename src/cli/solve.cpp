@@ -108,17 +108,17 @@ void write_files(const SolveArguments& arguments, const LoadedScene& loaded, con
     }
 }
 
-/// @return the line that says so; empty where no picture was asked for
-std::string draw(const SolveArguments& arguments, const LoadedScene& loaded, const Solution& solution,
-                 Seconds& seconds) {
+/// @return report of the picture; empty where none was asked for
+Report draw(const SolveArguments& arguments, const LoadedScene& loaded, const Solution& solution,
+            Seconds& seconds) {
     if (!arguments.picture.output) {
-        return "";
+        return {};
     }
     const Stopwatch watch;
-    const WrittenPicture picture = write_picture(loaded.scene, loaded.mesh, solution, arguments.picture,
-                                                 arguments.rows.factors.engine.device);
+    Report picture = write_picture(loaded.scene, loaded.mesh, solution, arguments.picture,
+                                   arguments.rows.factors.engine.device);
     seconds["render"] = watch.seconds();
-    return summary_line("picture", picture.text);
+    return picture;
 }
 
 } // namespace
@@ -142,15 +142,11 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
     report_buried(sums, terminal);
     write_files(arguments, loaded, solution);
-    const std::string picture = draw(arguments, loaded, solution, seconds);
+    const Report picture = draw(arguments, loaded, solution, seconds);
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
-    const Report report =
-        solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, seconds);
-    if (arguments.common.json) {
-        print_json(report.json);
-    } else {
-        outputs.print_summary(report.text + picture, terminal);
-    }
+    Report report = solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, seconds);
+    report.text += picture.text;
+    outputs.show(report, arguments.common.json, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }

@@ -18,12 +18,14 @@ public:
     /// @param stride   values a patch, side by side: 1, 2 or a multiple of 4
     ExchangeProduct(const FormFactorMatrix& factors, std::span<const double> areas, std::size_t stride);
 
-    /// y_i = sum_j x_ij z_j over the pairs that contain a known row.
+    /// y_i = sum_j x_ij z_j for every known row i; y of unknown rows lacks part of their pairs.
     /// @param diagonal      N factors F(i, i) to be used, x_ii = A_i diagonal[i]
     /// @param z             N·stride values
     /// @param y             N·stride values, overwritten
     /// @param with_unknown  whether z is not 0 in rows that are unknown
-    void apply(std::span<const double> diagonal, const double* z, double* y, bool with_unknown);
+    /// @throws InvalidArgument for spans of other sizes
+    void apply(std::span<const double> diagonal, std::span<const double> z, std::span<double> y,
+               bool with_unknown);
 
 private:
     const FormFactorMatrix& factors_;

@@ -253,7 +253,8 @@ std::array<double, 2> PatchMesh::grid_coordinates(std::uint32_t patch) const {
         const double third = cell.upright ? 1.0 / 3.0 : 2.0 / 3.0;
         return {cell.along + third, cell.strip + third};
     }
-    return {local % grids_[s].u + 0.5, local / grids_[s].u + 0.5};
+    const std::uint32_t row = local / grids_[s].u;
+    return {local % grids_[s].u + 0.5, row + 0.5};
 }
 
 std::uint64_t PatchMesh::geometry_hash() const {

@@ -62,7 +62,7 @@ public:
                 deviation.patch(i)[c] -= common[c];
             }
         }
-        exchange_.apply(self_, deviation.patch(0), arriving_.patch(0), true);
+        exchange_.apply(self_, deviation.values(), arriving_.values(), true);
         for (std::uint32_t i = 0; i < system_.size(); ++i) {
             for (std::uint32_t c = 0; c < system_.channels(); ++c) {
                 const double rho = system_.reflectance().patch(i)[c];
@@ -85,7 +85,7 @@ private:
         for (std::uint32_t i = 0; i < system_.size(); ++i) {
             std::fill_n(ones.patch(i), stride_, 1.0);
         }
-        exchange_.apply(self_, ones.patch(0), arriving_.patch(0), true);
+        exchange_.apply(self_, ones.values(), arriving_.values(), true);
         for (std::uint32_t i = 0; i < system_.size(); ++i) {
             if (system_.factors().known(i)) {
                 const RowView row = system_.factors().row(i);
@@ -116,7 +116,7 @@ private:
             p = residual_.patch(i)[c] / diagonal + beta[c] * p;
             scaled.patch(i)[c] = system_.reflectance().patch(i)[c] * p;
         });
-        exchange_.apply(self_, scaled.patch(0), arriving_.patch(0), false);
+        exchange_.apply(self_, scaled.values(), arriving_.values(), false);
         std::vector<double> curvature(channels, 0.0);
         for_reflecting([&](std::uint32_t i, std::uint32_t c, double) {
             const double rho = system_.reflectance().patch(i)[c];

@@ -26,6 +26,8 @@ public:
     [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
     [[nodiscard]] double* patch(std::uint32_t i) { return values_.data() + i * stride_; }
     [[nodiscard]] const double* patch(std::uint32_t i) const { return values_.data() + i * stride_; }
+    /// All patches' values, one after the other.
+    [[nodiscard]] std::span<double> values() noexcept { return values_; }
 
 private:
     std::size_t stride_;

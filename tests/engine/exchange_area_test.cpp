@@ -240,10 +240,7 @@ TEST_CASE("ExchangeAreas: only the part in front of the other's plane counts", "
         CHECK(area_of_pair(unit_floor, upright(0, 1, -1, 1), rule) ==
               Approx(whole).epsilon(accuracy(rule, 1e-8, 1e-12)));
         const double far = area_of_pair(unit_floor, upright(30, 31, 0, 1), rule);
-        unoccluded("squares at distance 30, one partly behind the other's plane, relative")
-            .check_below(column(rule), "",
-                         relative_error(area_of_pair(unit_floor, upright(30, 31, -1, 1), rule), far),
-                         accuracy(rule, 1e-4, 1e-8));
+        CHECK(area_of_pair(unit_floor, upright(30, 31, -1, 1), rule) == Approx(far).epsilon(1e-12));
         CHECK(area_of_pair(unit_floor, upright(0, 1, -1, 0), rule) == 0.0);
         CHECK(area_of_pair(unit_floor, level(0, 1, 0, 1, 1, true), rule) == 0.0);
         CHECK(area_of_pair(unit_floor, level(1, 2, 0, 1, 0, true), rule) == 0.0);
@@ -355,9 +352,16 @@ TEST_CASE("ExchangeAreas: unoccluded exact cases are met, whatever their scale",
                         sum += mesh.groups()[mesh.group(j)] == pair.to ? areas(i, j) : 0.0;
                     }
                 }
-                unoccluded("unoccluded cases of `tests/data/cases`, absolute")
-                    .check_below(column(rule), "", std::abs(sum / from_area - pair.factor),
-                                 accuracy(rule, 2e-7, 1e-11));
+                const double error = std::abs(sum / from_area - pair.factor);
+                const AccuracyRow row = unoccluded("unoccluded cases of `tests/data/cases`");
+                row.check_below(column(rule), "absolute", error, accuracy(rule, 2e-7, 1e-11));
+                if (pair.factor > 0.0) { // a factor of 3e-7 has digits of its own
+                    row.check_below(column(rule), "relative", error / pair.factor,
+                                    accuracy(rule, 1e-5, 1e-11));
+                }
+                if (pair.factor < 0.2) { // those above are off by up to 1.8e-7
+                    CHECK(error < accuracy(rule, 1e-7, 1e-11));
+                }
             }
         }
     }

@@ -116,7 +116,7 @@ TEST_CASE("presets: a room with two turned boxes, 5,790 patches", "[pipeline][gl
     INFO(describe("default", default_errors, fair.seconds)
          << "; " << describe("exact", exact_errors, best.seconds) << "; "
          << describe("no rays", errors_without, without.seconds));
-    const AccuracyRow row("single factors", "the same room, 5,790 patches");
+    const AccuracyRow row("single factors", "closed room with two rotated boxes, 5,790 patches");
     row.check_below(column(Preset::standard), "rms", default_errors.rms, 8e-6);
     row.check_below(column(Preset::exact), "rms", exact_errors.rms, 3e-6);
     AccuracyRow("other limits", "rms of single factors with shadow rays / without them, 5,790 patches")
@@ -182,7 +182,7 @@ TEST_CASE("presets: a patch half under a block keeps what its other half sees", 
         double row, element;
     };
     const AccuracyRow factor_row("difficult geometry", "patches buried by 10 % to 90 %: single factor");
-    const AccuracyRow sum_row("difficult geometry", "the same: row sum");
+    const AccuracyRow sum_row("difficult geometry", "patches buried by 10 % to 90 %: row sum");
     for (const Limit& limit : {Limit{Preset::standard, 0.04, 3e-3}, Limit{Preset::exact, 0.02, 1.2e-3}}) {
         for (const double buried : {0.1, 0.4, 0.6, 0.9}) {
             const StraddledRoom room = straddled_room(buried);

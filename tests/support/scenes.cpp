@@ -263,7 +263,7 @@ std::vector<ExactCase> exact_cases() {
         {"needle_triangle", {"needle triangle, 1000 : 1, above a plate", 256, 1e-3}},
         {"far_patch", {"patch of solid angle 1e-6 sr", 256, 5e-6}},
         {"box_scale1e-6", {"closed box 1 x 0.7 x 0.1 in micrometres", 256, 4e-3}},
-        {"box_scale1e6", {"the same box in megametres", 256, 4e-3}}};
+        {"box_scale1e6", {"closed box 1 x 0.7 x 0.1 in megametres", 256, 4e-3}}};
     std::vector<ExactCase> result;
     for (const auto& entry : cases) {
         ExactCase exact;

@@ -104,15 +104,15 @@ private:
 
 /// A property of materials, spread over the patches: N·channels, channel c of patch i at [i·channels + c].
 /// @param mesh       N patches
-/// @param materials  those of the scene, by the index that the mesh knows; all of as many channels
+/// @param materials  those of the scene, by the surfaces' index; all with the same number of channels
 /// @param property   &Material::reflectance or &Material::exitance
 [[nodiscard]] std::vector<double> patch_values(const PatchMesh& mesh, std::span<const Material> materials,
                                                std::vector<double> Material::*property);
 
 /// Emissivity of every patch: 1 - reflectance, the mean over the channels; N values.
 /// @param mesh       N patches
-/// @param materials  those of the scene, by the index that the mesh knows; all of as many channels, at least
-/// 1
+/// @param materials  those of the scene, by the surfaces' index; all with the same number of channels, at
+/// least 1
 [[nodiscard]] std::vector<double> emissivities(const PatchMesh& mesh, std::span<const Material> materials);
 
 } // namespace hemi

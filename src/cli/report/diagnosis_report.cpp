@@ -22,8 +22,7 @@ struct Section {
 std::string leak_explanation(const Diagnosis& diagnosis) {
     if (diagnosis.enclosure == EnclosureVerdict::nearly_closed) {
         return "they see the environment, most others do not; if the scene is meant to be closed, there are "
-               "gaps "
-               "near them, or they face the outside. Environment share";
+               "gaps near them, or they face the outside. Environment share";
     }
     if (diagnosis.sums.max <= 0.0) {
         return "no patch sees any other: all normals may be reversed. Environment share";
@@ -44,13 +43,11 @@ std::vector<Section> sections(const Diagnosis& diagnosis) {
          true},
         {"straddled", "partly buried", &diagnosis.partly_buried,
          "other geometry stands on part of them; use smaller patches, or make its outline an edge of the "
-         "mesh. "
-         "Share that is buried",
+         "mesh. Share that is buried",
          true},
         {"near", "close surfaces", &diagnosis.close,
          "a surface is close above them; the preset default takes up to 16 sample points there, exact up to "
-         "64, "
-         "and smaller patches help. Gap in patch sizes",
+         "64, and smaller patches help. Gap in patch sizes",
          true}};
 }
 
@@ -156,9 +153,8 @@ Report pairs_report(const Reciprocity& pairs, const PatchNames& names) {
 Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, const PatchNames& names,
                         double max_row_error, double repair_seconds) {
     const RowSums& sums = diagnosis.sums;
-    const Report repair = repair_report(*factors.repair, repair_seconds);
     Report report;
-    report.json = {{"schema", "hemi/check/1"}, {"renderer", factors.provenance.renderer}};
+    report.json["renderer"] = factors.provenance.renderer;
     report.add("rows",
                fmt::format("{} of {} computed", count_text(sums.known), count_text(names.group_of.size())),
                {{"patches", factors.matrix.size()}, {"rows", sums.known}});
@@ -168,7 +164,7 @@ Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, 
                fmt::format("row sum + environment share + back-face share differs from 1 by up to {:.3g}",
                            sums.balance_error_max),
                {{"balance_error", sums.balance_error_max}});
-    report.text += repair.text;
+    report.add(repair_report(*factors.repair, repair_seconds));
     report.add(
         "bounds",
         fmt::format("largest factor {}, {} above 1", number_text(diagnosis.largest_factor),
@@ -177,7 +173,6 @@ Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, 
                         : plural(diagnosis.outside_bounds, "factor or row sum", "factors or row sums")),
         {{"largest_factor", diagnosis.largest_factor}, {"above_one", diagnosis.outside_bounds}});
     report.add(pairs_report(diagnosis.reciprocity, names));
-    report.json.update(repair.json);
     report.add(enclosure_report(diagnosis));
     for (const Section& section : sections(diagnosis)) {
         const bool applies =
@@ -195,6 +190,12 @@ Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, 
                {{"max_row_error", max_row_error},
                 {"failures", diagnosis.failures},
                 {"ok", diagnosis.failures.empty()}});
+    report.select("hemi/check/1",
+                  {"renderer",    "patches",       "rows",           "row_sum",   "environment_max",
+                   "blocked_max", "balance_error", "largest_factor", "above_one", "reciprocity",
+                   "repair",      "enclosure",     "declared",       "leaking",   "leaks",
+                   "covered",     "blocked",       "straddled",      "near",      "turned",
+                   "unseen",      "max_row_error", "failures",       "ok"});
     return report;
 }
 

@@ -6,7 +6,7 @@
 
 namespace hemi::cli {
 
-/// What `hemi check` says of a diagnosis.
+/// Report of a diagnosis, by `hemi check`.
 [[nodiscard]] Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors,
                                       const PatchNames& names, double max_row_error, double repair_seconds);
 

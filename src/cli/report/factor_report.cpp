@@ -1,6 +1,7 @@
 #include "cli/report/factor_report.hpp"
 
 #include "cli/report/balance_report.hpp"
+#include "cli/report/group_sizes.hpp"
 #include "hemi/engine/leaks.hpp"
 
 #include <fmt/format.h>
@@ -57,17 +58,13 @@ Report provenance_report(const Provenance& made) {
 
 /// Patches and area of every group of a file.
 Report groups_report(const FormFactors& file) {
-    std::vector<double> areas(file.groups.size(), 0.0);
-    std::vector<std::uint64_t> patches(file.groups.size(), 0);
-    for (std::size_t i = 0; i < file.group_of.size(); ++i) {
-        areas[file.group_of[i]] += file.areas[i];
-        ++patches[file.group_of[i]];
-    }
+    const std::vector<GroupSize> sizes = group_sizes(file.areas, file.group_of, file.groups.size());
     Table table({"group", "patches", "area"});
     Json list = Json::array();
-    for (std::size_t g = 0; g < areas.size(); ++g) {
-        table.add({file.groups[g], count_text(patches[g]), number_text(areas[g])});
-        list.push_back({{"name", file.groups[g]}, {"patches", patches[g]}, {"area", areas[g]}});
+    for (std::size_t g = 0; g < sizes.size(); ++g) {
+        const auto& [patches, area] = sizes[g];
+        table.add({file.groups[g], count_text(patches), number_text(area)});
+        list.push_back({{"name", file.groups[g]}, {"patches", patches}, {"area", area}});
     }
     return {fmt::format("\n{}", table.text()), {{"groups", list}}};
 }

@@ -10,21 +10,22 @@
 #include <optional>
 #include <string>
 
-/// What is said of form factors.
+/// Report of form factors.
 namespace hemi::cli {
 
 /// The rows just computed or read: renderer, hemicubes/s, entries and memory, row sums, shares, enclosure.
 [[nodiscard]] Report rows_report(const FormFactors& factors, const RowSums& sums,
                                  const EnclosureFinding& enclosure);
-/// The same of rows that are prepared, and repair and errors.
+/// Rows after prepare_form_factors(): those of rows_report(), repair, chosen settings and estimated errors.
 [[nodiscard]] Report prepared_rows_report(const FormFactors& factors, const RowSums& sums,
                                           const EnclosureFinding& enclosure, double repair_seconds);
-/// What a `.hff` holds.
+/// Contents of a `.hff`.
 [[nodiscard]] Report stored_factors_report(const FormFactors& file);
-/// What a file of F alone holds.
+/// Contents of a file that holds F alone.
 [[nodiscard]] Report matrix_report(const FormFactorMatrix& factors);
 
-/// A line on settings that the program chose; none, and null under the key "chosen_for", where the user did.
+/// Line and key "chosen_for": what the program chose the settings for. No line, and null, where the user
+/// chose them.
 [[nodiscard]] Report chosen_report(const std::string& chosen_for);
 /// Lines and key "error_estimate": estimated errors. No line, and null, where nothing is known.
 [[nodiscard]] Report error_report(const std::optional<FactorErrorEstimate>& factors,

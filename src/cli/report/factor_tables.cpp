@@ -54,17 +54,16 @@ Report row_report(const FormFactors& factors, std::uint32_t index, const PatchNa
     FactorList list{{row.columns.begin(), row.columns.end()}, {row.values.begin(), row.values.end()}};
     list.sort();
     Report report{fmt::format("row {}: what leaves {}\n", index, names.describe(index)),
-                  {{"schema", "hemi/factors-row/1"},
-                   {"renderer", factors.provenance.renderer},
+                  {{"renderer", factors.provenance.renderer},
                    {"patches", factors.matrix.size()},
                    {"row", index},
                    {"group", names.group(index)}}};
-    const Report entries = list.report(names, true);
-    report.text += fmt::format("sum {:.9f}, environment share {:.9f}, back-face share {:.9f}\n\n", row.sum(),
-                               row.environment, row.blocked) +
-                   entries.text;
-    report.json.update(entries.json);
-    report.json.update({{"sum", row.sum()}, {"environment", row.environment}, {"blocked", row.blocked}});
+    report.add({fmt::format("sum {:.9f}, environment share {:.9f}, back-face share {:.9f}\n\n", row.sum(),
+                            row.environment, row.blocked),
+                {{"sum", row.sum()}, {"environment", row.environment}, {"blocked", row.blocked}}});
+    report.add(list.report(names, true));
+    report.select("hemi/factors-row/1",
+                  {"renderer", "patches", "row", "group", "entries", "sum", "environment", "blocked"});
     return report;
 }
 
@@ -87,14 +86,12 @@ Report point_report(const PatchMesh& mesh, const std::array<double, 6>& at, cons
     const double sum = std::accumulate(list.factors.begin(), list.factors.end(), 0.0);
     Report report{fmt::format("what leaves a surface element at {} {} {}\n", number_text(point.x),
                               number_text(point.y), number_text(point.z)),
-                  {{"schema", "hemi/factors-from-point/1"},
-                   {"patches", factors.size()},
+                  {{"patches", factors.size()},
                    {"point", {point.x, point.y, point.z}},
                    {"normal", {normal.x / length, normal.y / length, normal.z / length}}}};
-    const Report entries = list.report(names, false);
-    report.text += fmt::format("sum {:.9f}\n\n", sum) + entries.text;
-    report.json.update(entries.json);
-    report.json["sum"] = sum;
+    report.add({fmt::format("sum {:.9f}\n\n", sum), {{"sum", sum}}});
+    report.add(list.report(names, false));
+    report.select("hemi/factors-from-point/1", {"patches", "point", "normal", "entries", "sum"});
     return report;
 }
 

@@ -1,5 +1,7 @@
 #include "cli/report/report.hpp"
 
+#include <utility>
+
 namespace hemi::cli {
 
 void Report::add(std::string_view name, std::string_view line, const Json& keys) {
@@ -12,12 +14,12 @@ void Report::add(const Report& more) {
     json.update(more.json);
 }
 
-Json Report::select(std::string_view schema, std::initializer_list<const char*> keys) const {
+void Report::select(std::string_view schema, std::initializer_list<const char*> keys) {
     Json object{{"schema", schema}};
     for (const char* const key : keys) {
-        object[key] = json.at(key);
+        object[key] = std::move(json.at(key));
     }
-    return object;
+    json = std::move(object);
 }
 
 void show(const Report& report, bool json) {

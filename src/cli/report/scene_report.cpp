@@ -1,5 +1,7 @@
 #include "cli/report/scene_report.hpp"
 
+#include "cli/report/group_sizes.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,25 +10,6 @@
 namespace hemi::cli {
 
 namespace {
-
-struct GroupCounts {
-    std::uint32_t surfaces = 0;
-    std::uint32_t patches = 0;
-    double area = 0.0;
-};
-
-std::vector<GroupCounts> count_groups(const PatchMesh& mesh) {
-    std::vector<GroupCounts> groups(mesh.groups().size());
-    for (const Surface& surface : mesh.surfaces()) {
-        ++groups[surface.group].surfaces;
-    }
-    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-        GroupCounts& group = groups[mesh.group(i)];
-        ++group.patches;
-        group.area += mesh.areas()[i];
-    }
-    return groups;
-}
 
 std::string values_text(const std::vector<double>& values) {
     std::vector<std::string> words;
@@ -61,13 +44,18 @@ Report surfaces_report(const PatchMesh& mesh) {
 Report groups_report(const PatchMesh& mesh) {
     Table table({"group", "surfaces", "patches", "area"});
     Json list = Json::array();
-    const std::vector<GroupCounts> counts = count_groups(mesh);
+    std::vector<std::uint32_t> surfaces(mesh.groups().size(), 0);
+    for (const Surface& surface : mesh.surfaces()) {
+        ++surfaces[surface.group];
+    }
+    const std::vector<GroupSize> sizes = group_sizes(mesh);
     double area = 0.0;
-    for (std::size_t g = 0; g < counts.size(); ++g) {
-        const auto& [surfaces, patches, group_area] = counts[g];
+    for (std::size_t g = 0; g < sizes.size(); ++g) {
+        const auto& [patches, group_area] = sizes[g];
         const std::string& name = mesh.groups()[g];
-        table.add({name, count_text(surfaces), count_text(patches), number_text(group_area)});
-        list.push_back({{"name", name}, {"surfaces", surfaces}, {"patches", patches}, {"area", group_area}});
+        table.add({name, count_text(surfaces[g]), count_text(patches), number_text(group_area)});
+        list.push_back(
+            {{"name", name}, {"surfaces", surfaces[g]}, {"patches", patches}, {"area", group_area}});
         area += group_area;
     }
     table.add({"(all)", count_text(mesh.surfaces().size()), count_text(mesh.size()), number_text(area)});
@@ -109,12 +97,9 @@ Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& 
     report.add("enclosure", to_word(scene.enclosure), {{"enclosure", to_word(scene.enclosure)}});
     report.add("environment", values_text(scene.environment), {{"environment", scene.environment}});
     report.add("camera", scene.camera ? "yes" : "no", {{"camera", scene.camera.has_value()}});
-    const Report groups = groups_report(mesh);
-    const Report materials = materials_report(scene);
-    report.text += more.text + groups.text + materials.text;
-    report.json.update(groups.json);
-    report.json.update(materials.json);
-    report.json.update(more.json);
+    report.add(more);
+    report.add(groups_report(mesh));
+    report.add(materials_report(scene));
     return report;
 }
 

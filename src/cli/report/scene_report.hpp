@@ -4,12 +4,12 @@
 #include "hemi/pipeline/cost.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
-/// What is said of a scene.
+/// Report of a scene.
 namespace hemi::cli {
 
 /// One line on its size.
 [[nodiscard]] Report scene_size_report(const PatchMesh& mesh);
-/// What a scene consists of, and `more` of it; tables of groups and materials are at the end of the text.
+/// Contents of a scene. `more` is added before the tables of groups and materials, the end of the text.
 [[nodiscard]] Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& more);
 /// Memory and time that its form factors will need.
 /// @param measured  whether rows were timed

@@ -8,13 +8,13 @@
 
 namespace hemi::cli {
 
-double& Seconds::operator[](std::string_view stage) {
+std::size_t Seconds::index(std::string_view stage) const {
     const auto found = std::find_if(stages_.begin(), stages_.end(),
                                     [stage](const auto& known) { return known.first == stage; });
     if (found == stages_.end()) {
         throw InvalidArgument(fmt::format("no stage is called {}", stage));
     }
-    return found->second;
+    return static_cast<std::size_t>(found - stages_.begin());
 }
 
 Report Seconds::report() const {

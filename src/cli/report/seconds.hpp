@@ -3,7 +3,9 @@
 #include "cli/report/report.hpp"
 #include "hemi/core/stopwatch.hpp"
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,11 +22,14 @@ public:
     }
 
     /// The time of a stage that was named.
-    [[nodiscard]] double& operator[](std::string_view stage);
+    [[nodiscard]] double& operator[](std::string_view stage) { return stages_[index(stage)].second; }
+    [[nodiscard]] double operator[](std::string_view stage) const { return stages_[index(stage)].second; }
     /// The line and the key "seconds".
     [[nodiscard]] Report report() const;
 
 private:
+    [[nodiscard]] std::size_t index(std::string_view stage) const;
+
     Stopwatch total_;
     std::vector<std::pair<std::string, double>> stages_;
 };

@@ -2,6 +2,7 @@
 
 #include "cli/report/balance_report.hpp"
 #include "cli/report/factor_report.hpp"
+#include "cli/report/group_sizes.hpp"
 #include "cli/report/scene_report.hpp"
 #include "hemi/engine/engine.hpp"
 
@@ -10,14 +11,6 @@
 namespace hemi::cli {
 
 namespace {
-
-std::vector<double> group_areas(const LoadedScene& loaded) {
-    std::vector<double> areas(loaded.mesh.groups().size(), 0.0);
-    for (std::uint32_t i = 0; i < loaded.mesh.size(); ++i) {
-        areas[loaded.group_of[i]] += loaded.mesh.areas()[i];
-    }
-    return areas;
-}
 
 /// Area mean per group and channel of a per-patch value.
 std::vector<double> group_means(const LoadedScene& loaded, const std::vector<double>& areas,
@@ -80,7 +73,10 @@ Report solution_report(const Solution& solution) {
 /// Means over the groups.
 Json group_means_json(const LoadedScene& loaded, const FormFactorMatrix& factors, const Solution& solution) {
     const std::uint32_t channels = solution.channels;
-    const std::vector<double> areas = group_areas(loaded);
+    std::vector<double> areas;
+    for (const GroupSize& group : group_sizes(loaded.mesh)) {
+        areas.push_back(group.area);
+    }
     return {{"channels", loaded.scene.channels},
             {"areas", areas},
             {"radiosity", rows_json(group_means(loaded, areas, solution.radiosity, channels), channels)},
@@ -102,7 +98,7 @@ Report stored_solution_report(const Solution& solution) {
 }
 
 Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
-                    const Solution& solution, Seconds& seconds) {
+                    const Solution& solution, const Seconds& seconds) {
     const RepairReport& repair = *factors.repair;
     Report report = scene_size_report(loaded.mesh);
     report.add(rows);
@@ -112,10 +108,9 @@ Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const
     report.json.update(group_means_json(loaded, factors.matrix, solution));
     report.json["reciprocity"] =
         factors.matrix.all_known() ? reciprocity_json(repair.reciprocity_after) : Json(nullptr);
-    report.json =
-        report.select("hemi/solve/1", {"renderer", "patches", "channels", "groups", "areas", "radiosity",
-                                       "exitance", "environment", "blocked", "solver", "row_sum",
-                                       "reciprocity", "repair", "chosen_for", "error_estimate", "seconds"});
+    report.select("hemi/solve/1", {"renderer", "patches", "channels", "groups", "areas", "radiosity",
+                                   "exitance", "environment", "blocked", "solver", "row_sum", "reciprocity",
+                                   "repair", "chosen_for", "error_estimate", "seconds"});
     return report;
 }
 

@@ -6,16 +6,16 @@
 #include "hemi/matrix/form_factors.hpp"
 #include "hemi/solver/solution.hpp"
 
-/// What is said of a solution.
+/// Report of a solution.
 namespace hemi::cli {
 
-/// What `hemi solve` says.
-/// @param rows  what is said of the rows
+/// Report of `hemi solve`, without the picture.
+/// @param rows  report of the rows
 [[nodiscard]] Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
-                                  const Solution& solution, Seconds& seconds);
-/// What a stored solution says of its solver and errors.
+                                  const Solution& solution, const Seconds& seconds);
+/// Report of a stored solution: its solver and errors.
 [[nodiscard]] Report stored_solution_report(const Solution& solution);
-/// With -v: what the scene did not require.
+/// With -v: the work that was saved: rows, channels and polygons that were left out.
 void report_savings(const LoadedScene& loaded, const FormFactors& factors, const Solution& solution,
                     bool merge_lattices, const Terminal& terminal);
 

@@ -144,7 +144,6 @@ Report trade_report(const Trade& trade, const LoadedScene& loaded, double budget
     const std::string& renderer = trade.reference.renderer;
     const Trade::Entry* const best = trade.best();
     Report report;
-    report.json["schema"] = "hemi/trade/1";
     report.add("scene", fmt::format("{}, {}", loaded.scene.name, plural(patches, "patch", "patches")),
                {{"scene", loaded.scene.name}});
     report.add("renderer", renderer, {{"renderer", renderer}});
@@ -155,6 +154,8 @@ Report trade_report(const Trade& trade, const LoadedScene& loaded, double budget
     report.json["best"] = best != nullptr ? Json(options_of(best->candidate.settings)) : Json(nullptr);
     report.json["advice"] = advice(trade);
     report.text += fmt::format("\n{}\n", advice(trade));
+    report.select("hemi/trade/1", {"scene", "renderer", "patches", "budget", "seconds", "reference",
+                                   "measurements", "omitted", "best", "advice"});
     return report;
 }
 

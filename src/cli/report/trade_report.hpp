@@ -8,7 +8,7 @@
 
 namespace hemi::cli {
 
-/// What `hemi trade` says of its measurements.
+/// Report of the measurements of `hemi trade`.
 /// @param budget   seconds that were allowed
 /// @param seconds  that it took
 [[nodiscard]] Report trade_report(const Trade& trade, const LoadedScene& loaded, double budget,
