@@ -118,7 +118,7 @@ TEST_CASE("Completion: values of an option are offered, and all are accepted", "
     const Directory directory;
     const std::string scene = directory.path("missing.json");
     for (const auto& [option, count] :
-         {std::pair("--device", 3u), std::pair("--preset", 4u), std::pair("--method", 5u),
+         {std::pair("--device", 4u), std::pair("--preset", 4u), std::pair("--method", 5u),
           std::pair("--solver", 4u), std::pair("--repair", 3u), std::pair("--enclosure", 3u),
           std::pair("--color", 3u), std::pair("--tone-mapping", 2u)}) {
         const Words values = complete(directory, {"hemi", "solve", scene, option, ""});

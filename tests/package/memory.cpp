@@ -5,7 +5,7 @@
 #include <array>
 #include <iostream>
 
-int main() try {
+int main(int argc, char** argv) try {
     const std::vector<hemi::Vec3> vertices{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                            {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     const std::vector<std::array<std::size_t, 4>> faces{{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
@@ -22,7 +22,10 @@ int main() try {
         scene.surfaces.push_back(wall);
     }
     const hemi::PatchMesh mesh(scene);
-    const hemi::FormFactors factors = hemi::compute_form_factors(scene, mesh, hemi::Preset::fast);
+    hemi::FactorSettings settings;
+    settings.preset = hemi::Preset::fast;
+    settings.engine.device = argc > 1 ? argv[1] : "auto";
+    const hemi::FormFactors factors = hemi::compute_form_factors(scene, mesh, settings);
     for (const double radiosity : hemi::solve_radiosity(scene, mesh, factors).radiosity) {
         std::cout << radiosity << '\n';
     }

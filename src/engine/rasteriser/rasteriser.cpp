@@ -16,110 +16,19 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/rasteriser/rasteriser.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
-#include <hwy/foreach_target.h> // must come before highway.h
-#include <hwy/highway.h>
+#include <hwy/foreach_target.h>
+
+// Must come after foreach_target.h.
+#include "engine/rasteriser/item_target.ipp"
 
 HWY_BEFORE_NAMESPACE();
 namespace hemi::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::ScalableTag<float>;
-using Ints = hn::RebindToSigned<Floats>;
-using Ids = hn::RebindToUnsigned<Floats>;
-using Vec = hn::Vec<Floats>;
-using Mask = hn::Mask<Floats>;
-constexpr Floats floats;
-constexpr Ints ints;
-constexpr Ids ids_of;
-constexpr std::uint32_t lanes = HWY_LANES(float) < 16 ? HWY_LANES(float) : 16;
-constexpr std::uint32_t tile_size = TexelTiles::tile_size;
-constexpr std::uint32_t cluster_size = RasterScene::cluster_size;
-
-// Fronts are nearer than backs by this, a part of the distance.
-constexpr float front_bias = 1.0f + 0x1p-20f;
 // Triangles that may cover up to so many texel centres are tested side by side, one in each lane.
 constexpr float max_small = 6.0f;
 // How far beyond a texel's centre a vertex may lie and still count as at it.
 constexpr float centre_slack = 1e-3f;
-
-HWY_INLINE Vec set(float value) {
-    return hn::Set(floats, value);
-}
-/// Bit per lane.
-HWY_INLINE std::uint32_t bits_of(Mask mask) {
-#if HWY_TARGET == HWY_AVX3
-    return static_cast<std::uint32_t>(mask.raw);
-#else
-    std::array<std::uint8_t, 8> bytes{};
-    hn::StoreMaskBits(floats, mask, bytes.data());
-    return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
-#endif
-}
-/// Twice the area of (a, b, p), a and b relative to p: positive where p lies left of a -> b. Exactly the
-/// negative of the same with a and b exchanged, since nothing is fused.
-HWY_INLINE Vec edge(Vec ax, Vec ay, Vec bx, Vec by) {
-    return hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx));
-}
-/// Elements `index` of a table of 64 floats.
-HWY_INLINE Vec look_up(const float* table, hn::Vec<Ints> index) {
-#if HWY_TARGET == HWY_AVX3
-    const __m512 low = _mm512_permutex2var_ps(_mm512_load_ps(table), index.raw, _mm512_load_ps(table + 16));
-    const __m512 high =
-        _mm512_permutex2var_ps(_mm512_load_ps(table + 32), index.raw, _mm512_load_ps(table + 48));
-    return Vec{_mm512_mask_blend_ps(_mm512_test_epi32_mask(index.raw, _mm512_set1_epi32(32)), low, high)};
-#else
-    return hn::GatherIndex(floats, table, index);
-#endif
-}
-HWY_INLINE hn::Vec<Ints> load_bytes(const std::uint8_t* bytes) {
-    return hn::PromoteTo(ints, hn::LoadU(hn::Rebind<std::uint8_t, Ints>(), bytes));
-}
-
-/// Axes of a face in the eye's frame, as face_direction(): which coordinate with which sign.
-struct FaceAxes {
-    int right, depth;
-    float right_sign, depth_sign;
-    int up;
-};
-constexpr std::array<FaceAxes, hemicube_faces> face_axes{{{0, 2, 1.0f, 1.0f, 1},
-                                                          {1, 0, 1.0f, 1.0f, 2},
-                                                          {0, 1, -1.0f, 1.0f, 2},
-                                                          {1, 0, -1.0f, -1.0f, 2},
-                                                          {0, 1, 1.0f, -1.0f, 2}}};
-
-/// A vertex on a face.
-struct FaceVertex {
-    float x = 0.0f, y = 0.0f;              ///< in texels, where `projects`
-    float hx = 0.0f, hy = 0.0f, hw = 0.0f; ///< homogeneous: x = hx / hw
-    bool projects = false;
-};
-/// An edge of a polygon that is drawn alone.
-struct FaceEdge {
-    float ax, ay, aw, bx, by, bw;
-    bool in; ///< whether points on it count as inside: in one of the two polygons that share it
-};
-/// c + x·i + y·j at texel (i, j) of a face.
-struct Affine {
-    double c = 0.0, x = 0.0, y = 0.0;
-
-    [[nodiscard]] double at(double i, double j) const { return c + x * i + y * j; }
-};
-/// What the texels of a polygon show.
-struct Shown {
-    std::uint32_t first_id = 0;
-    bool cells = false; ///< ids by cell, as the shaders derive them
-    Affine u, v;        ///< times 1 / depth; relative to base cells
-    float base_u = 0.0f, base_v = 0.0f;
-    float grid_u = 1.0f, grid_v = 1.0f;
-    bool split = false;
-    bool bilinear = false;
-    float twist_u = 0.0f, twist_v = 0.0f;
-};
-
-template <class T>
-using Lanes = std::array<T, lanes>;
 
 /// Triangles that may cover few texels, collected until they fill all lanes several times.
 struct SmallTriangles {
@@ -137,22 +46,17 @@ struct SmallTriangles {
 class SimdRasteriser final : public Rasteriser {
 public:
     SimdRasteriser(const RasterScene& scene, const TexelTiles& tiles)
-        : scene_(scene), tiles_(tiles), ids_(tiles.size()), depth_(tiles.size()),
-          texels_(static_cast<float>(tiles.resolution())), half_(0.5f * texels_), guard_(4.0f * texels_),
-          across_(tiles.across()), padded_(tiles.resolution() % 8 != 0) {
-        for (std::uint32_t k = 0; k < tile_size; ++k) {
-            tile_x_[k] = static_cast<float>(k % 4);
-            tile_y_[k] = static_cast<float>(k / 4);
-        }
-        tolerance_ = scene.list.tolerance;
-        near_plane_ = static_cast<float>(tolerance_ * scene.scale) + 2e-6f;
-    }
+        : scene_(scene), projection_(scene, tiles.resolution()), target_(tiles),
+          texels_(projection_.texels()), half_(projection_.half()), guard_(projection_.guard()),
+          tolerance_(scene.list.tolerance),
+          near_plane_(static_cast<float>(tolerance_ * scene.scale) + 2e-6f) {}
 
     void draw(const EyePoint& eye, const EyeFrame& frame, const TileWeights* weights,
               Coverage* coverage) override {
-        begin(eye, frame);
-        weights_ = weights;
-        coverage_ = coverage;
+        projection_.set(eye, frame);
+        target_.clear(weights, coverage);
+        own_polygon_ = scene_.list.polygon_of_surface[eye.surface];
+        small_.count = 0;
         if (coverage != nullptr) {
             draw_all<true>();
         } else {
@@ -160,31 +64,13 @@ public:
         }
     }
 
-    [[nodiscard]] std::span<const std::uint32_t> ids() const override { return ids_; }
+    [[nodiscard]] std::span<const std::uint32_t> ids() const override { return target_.ids(); }
 
 private:
     struct Candidate {
         std::uint32_t cluster;
         std::uint32_t faces;
     };
-
-    void begin(const EyePoint& eye, const EyeFrame& frame) {
-        eye_ = &eye;
-        frame_ = &frame;
-        own_polygon_ = scene_.list.polygon_of_surface[eye.surface];
-        const auto split = scene_.split(eye.position);
-        eye_high_ = split.high;
-        eye_low_ = split.low;
-        const std::array<const Vec3*, 3> axes{&frame.x, &frame.y, &frame.z};
-        for (std::size_t k = 0; k < 3; ++k) {
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                axes_[k][axis] = static_cast<float>((*axes[k])[static_cast<int>(axis)]);
-            }
-        }
-        std::fill(ids_.begin(), ids_.end(), item_nothing);
-        std::fill(depth_.begin(), depth_.end(), 0.0f);
-        small_.count = 0;
-    }
 
     template <bool covering>
     void draw_all() {
@@ -206,11 +92,12 @@ private:
             const TriangleCluster& cluster = scene_.clusters[c];
             std::array<float, 3> offset{};
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                offset[axis] = cluster.centre[axis] - eye_high_[axis];
+                offset[axis] = cluster.centre[axis] - projection_.high()[axis];
             }
             std::array<float, 3> p{};
             for (std::size_t k = 0; k < 3; ++k) {
-                p[k] = axes_[k][0] * offset[0] + axes_[k][1] * offset[1] + axes_[k][2] * offset[2];
+                p[k] = projection_.axes()[k][0] * offset[0] + projection_.axes()[k][1] * offset[1] +
+                       projection_.axes()[k][2] * offset[2];
             }
             const float radius = cluster.radius;
             if (p[2] < -radius) {
@@ -233,10 +120,12 @@ private:
         }
     }
 
-    /// Positions of vertices in the eye's frame. The same arithmetic as in_eye_frame().
+    /// Positions of vertices in the eye's frame. The same arithmetic as projection_.in_eye_frame().
     void transform(std::size_t first, std::uint32_t count) {
-        const std::array<Vec, 3> high{set(eye_high_[0]), set(eye_high_[1]), set(eye_high_[2])};
-        const std::array<Vec, 3> low{set(eye_low_[0]), set(eye_low_[1]), set(eye_low_[2])};
+        const std::array<Vec, 3> high{set(projection_.high()[0]), set(projection_.high()[1]),
+                                      set(projection_.high()[2])};
+        const std::array<Vec, 3> low{set(projection_.low()[0]), set(projection_.low()[1]),
+                                     set(projection_.low()[2])};
         for (std::uint32_t k = 0; k < count; k += lanes) {
             std::array<Vec, 3> offset;
             for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -245,44 +134,13 @@ private:
                             hn::Sub(hn::Load(floats, &scene_.vertex_low[axis][first + k]), low[axis]));
             }
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                const Vec at = hn::Add(
-                    hn::Add(hn::Mul(set(axes_[axis][0]), offset[0]), hn::Mul(set(axes_[axis][1]), offset[1])),
-                    hn::Mul(set(axes_[axis][2]), offset[2]));
+                const Vec at = hn::Add(hn::Add(hn::Mul(set(projection_.axes()[axis][0]), offset[0]),
+                                               hn::Mul(set(projection_.axes()[axis][1]), offset[1])),
+                                       hn::Mul(set(projection_.axes()[axis][2]), offset[2]));
                 hn::Store(at, floats, &local_[axis][k]);
             }
         }
     }
-    [[nodiscard]] std::array<float, 3> in_eye_frame(const Vec3& position) const {
-        const auto split = scene_.split(position);
-        std::array<float, 3> offset{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            offset[axis] = (split.high[axis] - eye_high_[axis]) + (split.low[axis] - eye_low_[axis]);
-        }
-        std::array<float, 3> at{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            at[axis] = (axes_[axis][0] * offset[0] + axes_[axis][1] * offset[1]) + axes_[axis][2] * offset[2];
-        }
-        return at;
-    }
-    /// As the vertices of clusters.
-    [[nodiscard]] FaceVertex on_face(int face, const std::array<float, 3>& at) const {
-        const FaceAxes& axes = face_axes[static_cast<std::size_t>(face)];
-        FaceVertex vertex;
-        const float right = at[static_cast<std::size_t>(axes.right)] * axes.right_sign;
-        const float up = at[static_cast<std::size_t>(axes.up)];
-        const float depth = at[static_cast<std::size_t>(axes.depth)] * axes.depth_sign;
-        const float offset_x = half_ - 0.5f;
-        const float offset_y = face == 0 ? half_ - 0.5f : -0.5f;
-        const float inverse = 1.0f / depth;
-        vertex.x = (right * inverse) * half_ + offset_x;
-        vertex.y = (up * inverse) * half_ + offset_y;
-        vertex.hx = right * half_ + offset_x * depth;
-        vertex.hy = up * half_ + offset_y * depth;
-        vertex.hw = depth;
-        vertex.projects = depth > 0.0f && std::abs(vertex.x) < guard_ && std::abs(vertex.y) < guard_;
-        return vertex;
-    }
-
     template <bool covering>
     void draw_cluster(const Candidate& candidate) {
         const TriangleCluster& cluster = scene_.clusters[candidate.cluster];
@@ -297,9 +155,9 @@ private:
     /// Which side of its plane every triangle of a cluster shows: side_ > 0 the front, < 0 the back, 0 where
     /// the triangle is not drawn.
     void find_sides(std::size_t first, std::uint32_t count) {
-        const Vec ex = set(eye_high_[0]);
-        const Vec ey = set(eye_high_[1]);
-        const Vec ez = set(eye_high_[2]);
+        const Vec ex = set(projection_.high()[0]);
+        const Vec ey = set(projection_.high()[1]);
+        const Vec ez = set(projection_.high()[2]);
         for (std::uint32_t t = 0; t < count; t += lanes) {
             const Vec height =
                 hn::Sub(hn::Add(hn::Add(hn::Mul(hn::Load(floats, &scene_.plane[0][first + t]), ex),
@@ -311,20 +169,13 @@ private:
                 hn::And(hn::Lt(hn::Abs(height), set(near_plane_)), hn::FirstN(floats, count - t));
             for (std::uint32_t bits = bits_of(close); bits != 0; bits &= bits - 1) {
                 const std::uint32_t k = t + static_cast<std::uint32_t>(std::countr_zero(bits));
-                const double exact = height_above(scene_.polygon[first + k]);
+                const double exact = projection_.height_above(scene_.polygon[first + k]);
                 side_[k] = scene_.polygon[first + k] == own_polygon_ || std::abs(exact) <= tolerance_ ? 0.0f
                            : exact > 0.0                                                              ? 1.0f
                                                                                                       : -1.0f;
             }
         }
     }
-    /// Height of the eye above a polygon's plane.
-    [[nodiscard]] double height_above(std::uint32_t polygon) const {
-        const DrawPolygon& drawn = scene_.list.polygons[polygon];
-        const Vec3& on_plane = scene_.list.vertices[scene_.list.corners[drawn.first_corner].vertex];
-        return glm::dot(eye_->position - on_plane, drawn.normal);
-    }
-
     template <bool covering>
     void draw_cluster_on(int face, std::size_t first, const TriangleCluster& cluster) {
         const FaceAxes& axes = face_axes[static_cast<std::size_t>(face)];
@@ -447,7 +298,7 @@ private:
                 hn::StoreU(id, ids_of, part_id.data());
                 for (; large_bits != 0; large_bits &= large_bits - 1) {
                     const auto k = static_cast<std::size_t>(std::countr_zero(large_bits));
-                    draw_large<covering>(
+                    target_.draw_large<covering>(
                         face, {part[0][k], part[1][k], part[2][k]}, {part[3][k], part[4][k], part[5][k]},
                         {part[6][k], part[7][k], part[8][k]}, part_id[k],
                         static_cast<std::uint32_t>(part[9][k]), static_cast<std::uint32_t>(part[10][k]),
@@ -474,7 +325,7 @@ private:
             hn::StoreU(hn::Compress(id, hn::RebindMask(ids_of, small)), ids_of,
                        small_.id.data() + small_.count);
             const auto queued = static_cast<std::uint32_t>(hn::CountTrue(floats, small));
-            std::fill_n(small_.face_first.begin() + small_.count, queued, tiles_.first(face));
+            std::fill_n(small_.face_first.begin() + small_.count, queued, target_.tiles().first(face));
             small_.count += queued;
             if (small_.count >= SmallTriangles::capacity) {
                 const std::uint32_t whole = small_.count / lanes * lanes;
@@ -513,7 +364,7 @@ private:
     template <bool covering>
     void flush(std::uint32_t count) {
         SmallTriangles& q = small_;
-        const auto across = hn::Set(ints, static_cast<std::int32_t>(across_));
+        const auto across = hn::Set(ints, static_cast<std::int32_t>(target_.tiles().across()));
         const auto three = hn::Set(ints, 3);
         for (std::uint32_t k = 0; k < count; k += lanes) {
             const Vec x0 = hn::LoadU(floats, &q.x[0][k]);
@@ -570,7 +421,8 @@ private:
                     hn::StoreU(at, ints, texel.data());
                     for (; bits != 0; bits &= bits - 1) {
                         const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-                        put<covering>(static_cast<std::uint32_t>(texel[lane]), depth[lane], q.id[k + lane]);
+                        target_.put<covering>(static_cast<std::uint32_t>(texel[lane]), depth[lane],
+                                              q.id[k + lane]);
                     }
                 }
                 px = hn::Add(px, set(1.0f));
@@ -598,121 +450,6 @@ private:
         q.count = rest;
     }
 
-    template <bool covering>
-    HWY_INLINE void put(std::uint32_t texel, float depth, std::uint32_t id) {
-        if constexpr (covering) {
-            if (id != item_blocked) {
-                TexelTally& covered = coverage_->of_id[id];
-                if (covered == 0) {
-                    coverage_->single_ids.push_back(id);
-                }
-                covered += weights_->texel[texel];
-            }
-        }
-        float& nearest = depth_[texel];
-        if (depth > nearest || (depth == nearest && id < ids_[texel])) {
-            nearest = depth;
-            ids_[texel] = id;
-        }
-    }
-
-    /// Takes the lanes `inside` of a part of a tile.
-    /// @param at  the part's first texel
-    HWY_INLINE void put_lanes(std::uint32_t at, Mask inside, Vec z, hn::Vec<Ids> id) {
-        const Vec nearest = hn::Load(floats, &depth_[at]);
-        const auto shown = hn::Load(ids_of, &ids_[at]);
-        const Mask equal_first =
-            hn::And(hn::Eq(z, nearest),
-                    hn::RebindMask(floats, hn::Lt(hn::BitCast(ints, id), hn::BitCast(ints, shown))));
-        const Mask taken = hn::And(inside, hn::Or(hn::Gt(z, nearest), equal_first));
-        hn::Store(hn::IfThenElse(taken, z, nearest), floats, &depth_[at]);
-        hn::Store(hn::IfThenElse(hn::RebindMask(ids_of, taken), id, shown), ids_of, &ids_[at]);
-    }
-
-    /// Weights and number of the texels that a polygon of one cell covers. Weights cannot overflow: those of
-    /// a hemicube sum to less than 2^32.
-    struct Covered {
-        hn::Vec<Ids> weights;
-        std::uint32_t texels;
-    };
-    /// @param at  first texel of a part of a tile
-    HWY_INLINE void cover(std::uint32_t at, Mask inside, Covered& covered) const {
-        covered.weights =
-            hn::Add(covered.weights, hn::IfThenElseZero(hn::RebindMask(ids_of, inside),
-                                                        hn::LoadU(ids_of, &weights_->weight[at])));
-        covered.texels += static_cast<std::uint32_t>(hn::CountTrue(floats, inside));
-    }
-    void add_covered(std::uint32_t id, const Covered& sum) {
-        if (id == item_blocked || sum.texels == 0) {
-            return;
-        }
-        TexelTally& covered = coverage_->of_id[id];
-        if (covered == 0) {
-            coverage_->single_ids.push_back(id);
-        }
-        covered += TexelTally{hn::GetLane(hn::SumOfLanes(ids_of, sum.weights))} << 32 | sum.texels;
-    }
-    /// Without the texels that are none, beyond the upper and right edge of a face.
-    HWY_INLINE Mask on_face_only(Mask inside, int face, Vec px, Vec py) const {
-        if (!padded_) {
-            return inside;
-        }
-        const float height = face == 0 ? texels_ : half_;
-        return hn::And(inside, hn::And(hn::Lt(px, set(texels_)), hn::Lt(py, set(height))));
-    }
-
-    /// A triangle tile by tile.
-    template <bool covering>
-    void draw_large(int face, const std::array<float, 3>& x, const std::array<float, 3>& y,
-                    const std::array<float, 3>& z, std::uint32_t id, std::uint32_t left, std::uint32_t right,
-                    std::uint32_t low, std::uint32_t high) {
-        const std::array<Vec, 3> vx{set(x[0]), set(x[1]), set(x[2])};
-        const std::array<Vec, 3> vy{set(y[0]), set(y[1]), set(y[2])};
-        const std::array<Vec, 3> vz{set(z[0]), set(z[1]), set(z[2])};
-        const auto ids = hn::Set(ids_of, id);
-        const Vec zero = set(0.0f);
-        Covered covered{hn::Zero(ids_of), 0};
-        for (std::uint32_t ty = low / 4; ty <= high / 4; ++ty) {
-            std::uint32_t at = tiles_.first(face) + (ty * across_ + left / 4) * tile_size;
-            for (std::uint32_t tx = left / 4; tx <= right / 4; ++tx, at += tile_size) {
-                for (std::uint32_t k = 0; k < tile_size; k += lanes) {
-                    const Vec px = hn::Add(hn::Load(floats, &tile_x_[k]), set(static_cast<float>(4 * tx)));
-                    const Vec py = hn::Add(hn::Load(floats, &tile_y_[k]), set(static_cast<float>(4 * ty)));
-                    const Vec ax = hn::Sub(vx[0], px);
-                    const Vec ay = hn::Sub(vy[0], py);
-                    const Vec bx = hn::Sub(vx[1], px);
-                    const Vec by = hn::Sub(vy[1], py);
-                    const Vec cx = hn::Sub(vx[2], px);
-                    const Vec cy = hn::Sub(vy[2], py);
-                    const Vec e2 = edge(ax, ay, bx, by);
-                    const Vec e0 = edge(bx, by, cx, cy);
-                    const Vec e1 = edge(cx, cy, ax, ay);
-                    const Vec least = hn::Min(e0, hn::Min(e1, e2));
-                    Mask inside = hn::Ge(least, zero);
-                    if (HWY_UNLIKELY(!hn::AllFalse(floats, hn::And(inside, hn::Eq(least, zero))))) {
-                        const auto on_edge_in = [&](Vec e, std::size_t from, std::size_t to) {
-                            const bool in = y[to] > y[from] || (y[to] == y[from] && x[to] > x[from]);
-                            return in ? hn::Ge(e, zero) : hn::Gt(e, zero);
-                        };
-                        inside = hn::And(on_edge_in(e2, 0, 1),
-                                         hn::And(on_edge_in(e0, 1, 2), on_edge_in(e1, 2, 0)));
-                    }
-                    const Vec depth =
-                        hn::Div(hn::Add(hn::Add(hn::Mul(e0, vz[0]), hn::Mul(e1, vz[1])), hn::Mul(e2, vz[2])),
-                                hn::Add(hn::Add(e0, e1), e2));
-                    if constexpr (covering) {
-                        inside = on_face_only(inside, face, px, py);
-                        cover(at + k, inside, covered);
-                    }
-                    put_lanes(at + k, inside, depth, ids);
-                }
-            }
-        }
-        if constexpr (covering) {
-            add_covered(id, covered);
-        }
-    }
-
     /// A triangle of a cluster of which some vertex does not project.
     template <bool covering>
     void draw_alone(int face, std::size_t first, std::uint32_t triangle) {
@@ -726,7 +463,7 @@ private:
             const std::size_t vertex = scene_.corners[3 * first + corner * cluster_size + triangle];
             const std::array<float, 3> at{local_[0][vertex], local_[1][vertex], local_[2][vertex]};
             highest = std::max(highest, at[2]);
-            outline[k] = on_face(face, at);
+            outline[k] = projection_.on_face(face, at);
             corners[k] = Vec3(at[0], at[1], at[2]);
         }
         if (highest <= static_cast<float>(tolerance_ * scene_.scale)) {
@@ -739,22 +476,22 @@ private:
         }
         Shown shown;
         shown.first_id = front ? scene_.front_id[first + triangle] : scene_.back_id[first + triangle];
-        draw_outline<covering>(face, outline, on_texels(face, normal, 1.0 / height), shown, front);
+        draw_outline<covering>(face, outline, projection_.on_texels(face, normal, 1.0 / height), shown,
+                               front);
     }
 
-    [[nodiscard]] Vec3 in_frame(const Vec3& v) const {
-        return {glm::dot(v, frame_->x), glm::dot(v, frame_->y), glm::dot(v, frame_->z)};
-    }
-    /// factor · (local · direction) of the direction through texel (i, j), in the eye's frame.
-    [[nodiscard]] Affine on_texels(int face, const Vec3& local, double factor) const {
-        const Vec3 depth = face_direction(face, 0.0, 0.0);
-        const Vec3 right = face_direction(face, 1.0, 0.0) - depth;
-        const Vec3 up = face_direction(face, 0.0, 1.0) - depth;
-        const auto half = static_cast<double>(half_);
-        const double per_x = glm::dot(local, right) * factor / half;
-        const double per_y = glm::dot(local, up) * factor / half;
-        const double offset_y = face == 0 ? half - 0.5 : -0.5;
-        return {glm::dot(local, depth) * factor - per_x * (half - 0.5) - per_y * offset_y, per_x, per_y};
+    /// A convex outline, counter-clockwise on the face.
+    template <bool covering>
+    void draw_outline(int face, std::span<const FaceVertex> outline, const Affine& inverse, Shown& shown,
+                      bool front) {
+        const std::array<int, 4> box = projection_.box_of(face, outline);
+        if (box[0] > box[1] || box[2] > box[3]) {
+            return;
+        }
+        if (shown.cells) {
+            move_base(inverse, shown, box);
+        }
+        target_.draw_outline<covering>(face, outline, box, inverse, shown, front);
     }
 
     template <bool covering>
@@ -762,11 +499,11 @@ private:
         const DrawList& list = scene_.list;
         const std::uint32_t index = drawn.polygon;
         const DrawPolygon& polygon = list.polygons[index];
-        if (index == own_polygon_ ||
-            glm::dot(eye_->position - polygon.centre, eye_->normal) > polygon.radius) {
+        if (index == own_polygon_ || glm::dot(projection_.eye().position - polygon.centre,
+                                              projection_.eye().normal) > polygon.radius) {
             return;
         }
-        const double height = height_above(index);
+        const double height = projection_.height_above(index);
         if (std::abs(height) <= tolerance_) {
             return; // edge-on
         }
@@ -775,7 +512,8 @@ private:
         corners_.clear();
         float highest = -1.0f;
         for (std::uint32_t k = 0; k < polygon.corner_count; ++k) {
-            corners_.push_back(in_eye_frame(list.vertices[list.corners[polygon.first_corner + k].vertex]));
+            corners_.push_back(
+                projection_.in_eye_frame(list.vertices[list.corners[polygon.first_corner + k].vertex]));
             highest = std::max(highest, corners_.back()[2]);
         }
         if (highest <= static_cast<float>(tolerance_ * scene_.scale)) {
@@ -795,14 +533,15 @@ private:
                 for (std::uint32_t k = 0; k < count; ++k) {
                     const std::uint32_t corner =
                         whole ? k : list.triangles[polygon.first_triangle + piece][k];
-                    outline[front ? count - 1 - k : k] = on_face(face, corners_[corner]);
+                    outline[front ? count - 1 - k : k] = projection_.on_face(face, corners_[corner]);
                 }
-                if (outside(face, std::span(outline).first(count))) {
+                if (projection_.outside(face, std::span(outline).first(count))) {
                     continue;
                 }
                 if (!ready) {
-                    inverse = on_texels(face, in_frame(polygon.normal), -1.0 / (height * scene_.scale));
-                    shown = shown_cells(face, drawn, front, inverse);
+                    inverse = projection_.on_texels(face, projection_.in_frame(polygon.normal),
+                                                    -1.0 / (height * scene_.scale));
+                    shown = shown_cells(scene_, projection_, face, drawn, front, inverse);
                     ready = true;
                 }
                 draw_outline<covering>(face, std::span(outline).first(count), inverse, shown, front);
@@ -810,320 +549,29 @@ private:
             }
         }
         if (covering && drawn_once && (front || polygon.back_id != item_blocked)) {
-            coverage_->sides.push_back({index, !front});
+            target_.coverage()->sides.push_back({index, !front});
         }
-    }
-
-    /// Whether all vertices are beyond one side of a face.
-    [[nodiscard]] bool outside(int face, std::span<const FaceVertex> outline) const {
-        const float last_x = texels_ - 1.0f;
-        const float last_y = (face == 0 ? texels_ : half_) - 1.0f;
-        bool left = true;
-        bool right = true;
-        bool low = true;
-        bool high = true;
-        for (const FaceVertex& v : outline) {
-            // Half a texel of slack is more than any rounding.
-            left = left && v.hx < -0.5f * v.hw;
-            right = right && v.hx > (last_x + 0.5f) * v.hw;
-            low = low && v.hy < -0.5f * v.hw;
-            high = high && v.hy > (last_y + 0.5f) * v.hw;
-        }
-        return left || right || low || high;
-    }
-
-    [[nodiscard]] Shown shown_cells(int face, const RasterScene::GridPolygon& drawn, bool front,
-                                    const Affine& inverse) const {
-        const DrawPolygon& polygon = scene_.list.polygons[drawn.polygon];
-        Shown shown;
-        shown.first_id = front ? polygon.front_id : polygon.back_id;
-        shown.cells = shown.first_id != item_blocked;
-        if (!shown.cells) {
-            return shown;
-        }
-        const GridMap& map = drawn.map;
-        const Vec3 offset = eye_->position - map.origin;
-        // u at the eye and its change along a ray; both over depth.
-        const auto over_depth = [&](const Vec3& gradient, double at_origin) {
-            const double at_eye = at_origin + glm::dot(offset, gradient);
-            const Affine along = on_texels(face, in_frame(gradient), 1.0 / scene_.scale);
-            return Affine{at_eye * inverse.c + along.c, at_eye * inverse.x + along.x,
-                          at_eye * inverse.y + along.y};
-        };
-        shown.u = over_depth(map.gradient_u, map.u);
-        shown.v = over_depth(map.gradient_v, map.v);
-        shown.grid_u = static_cast<float>(polygon.grid.u);
-        shown.grid_v = static_cast<float>(polygon.grid.v);
-        shown.split = polygon.split != 0;
-        shown.bilinear = polygon.bilinear != 0;
-        shown.twist_u = polygon.twist_u;
-        shown.twist_v = polygon.twist_v;
-        return shown;
-    }
-
-    /// A convex outline, counter-clockwise on the face, tile by tile. Vertices may lie anywhere: an edge is
-    /// tested in texels where both its ends project, as in clusters, else homogeneously.
-    template <bool covering>
-    void draw_outline(int face, std::span<const FaceVertex> outline, const Affine& inverse, Shown& shown,
-                      bool front) {
-        std::array<FaceEdge, 4> edges;
-        for (std::size_t k = 0; k < outline.size(); ++k) {
-            const FaceVertex& a = outline[k];
-            const FaceVertex& b = outline[k + 1 < outline.size() ? k + 1 : 0];
-            if (a.projects && b.projects) {
-                edges[k] = {a.x, a.y, 1.0f, b.x, b.y, 1.0f, b.y > a.y || (b.y == a.y && b.x > a.x)};
-            } else {
-                const bool in = std::tuple(b.hy, b.hx, b.hw) > std::tuple(a.hy, a.hx, a.hw);
-                edges[k] = {a.hx, a.hy, a.hw, b.hx, b.hy, b.hw, in};
-            }
-        }
-        const auto box = box_of(face, outline);
-        if (box[0] > box[1] || box[2] > box[3]) {
-            return;
-        }
-        const std::span<const FaceEdge> used = std::span(edges).first(outline.size());
-        if (shown.cells) {
-            move_base(inverse, shown, box);
-        }
-        const Vec zero = set(0.0f);
-        const float bias = front ? front_bias : 1.0f;
-        Covered covered{hn::Zero(ids_of), 0};
-        for (std::uint32_t ty = static_cast<std::uint32_t>(box[2]) / 4;
-             ty <= static_cast<std::uint32_t>(box[3]) / 4; ++ty) {
-            std::uint32_t tx = static_cast<std::uint32_t>(box[0]) / 4;
-            std::uint32_t at = tiles_.first(face) + (ty * across_ + tx) * tile_size;
-            for (; tx <= static_cast<std::uint32_t>(box[1]) / 4; ++tx, at += tile_size) {
-                const double x = 4.0 * tx;
-                const double y = 4.0 * ty;
-                for (std::uint32_t k = 0; k < tile_size; k += lanes) {
-                    const Vec in_x = hn::Load(floats, &tile_x_[k]);
-                    const Vec in_y = hn::Load(floats, &tile_y_[k]);
-                    const Vec px = hn::Add(in_x, set(static_cast<float>(x)));
-                    const Vec py = hn::Add(in_y, set(static_cast<float>(y)));
-                    Mask inside = hn::FirstN(floats, lanes);
-                    for (const FaceEdge& e : used) {
-                        const Vec value = edge(hn::Sub(set(e.ax), hn::Mul(px, set(e.aw))),
-                                               hn::Sub(set(e.ay), hn::Mul(py, set(e.aw))),
-                                               hn::Sub(set(e.bx), hn::Mul(px, set(e.bw))),
-                                               hn::Sub(set(e.by), hn::Mul(py, set(e.bw))));
-                        inside = hn::And(inside, e.in ? hn::Ge(value, zero) : hn::Gt(value, zero));
-                    }
-                    if (hn::AllFalse(floats, inside)) {
-                        continue;
-                    }
-                    const auto affine = [&](const Affine& f) {
-                        return hn::Add(set(static_cast<float>(f.at(x, y))),
-                                       hn::Add(hn::Mul(in_x, set(static_cast<float>(f.x))),
-                                               hn::Mul(in_y, set(static_cast<float>(f.y)))));
-                    };
-                    const Vec z = affine(inverse);
-                    inside = hn::And(inside, hn::Gt(z, zero));
-                    const Vec depth = hn::Mul(z, set(bias));
-                    if constexpr (covering) {
-                        inside = on_face_only(inside, face, px, py);
-                    }
-                    if (!shown.cells) {
-                        if constexpr (covering) {
-                            cover(at + k, inside, covered);
-                        }
-                        put_lanes(at + k, inside, depth, hn::Set(ids_of, shown.first_id));
-                        continue;
-                    }
-                    const auto id = cell_ids(shown, hn::Div(affine(shown.u), z), hn::Div(affine(shown.v), z));
-                    if constexpr (covering) {
-                        alignas(64) Lanes<std::uint32_t> id_of_lane;
-                        hn::StoreU(id, ids_of, id_of_lane.data());
-                        for (std::uint32_t bits = bits_of(inside); bits != 0; bits &= bits - 1) {
-                            const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-                            coverage_->of_id[id_of_lane[lane]] += weights_->texel[at + k + lane];
-                        }
-                    }
-                    put_lanes(at + k, inside, depth, id);
-                }
-            }
-        }
-        if (covering && !shown.cells) {
-            add_covered(shown.first_id, covered);
-        }
-    }
-
-    /// Draw ids of points on the grid, as the shaders derive them. u and v are relative to the base cell.
-    [[nodiscard]] HWY_INLINE hn::Vec<Ids> cell_ids(const Shown& shown, Vec u, Vec v) const {
-        const Vec zero = set(0.0f);
-        const Vec one = set(1.0f);
-        const Vec grid_u = set(shown.grid_u);
-        const Vec grid_v = set(shown.grid_v);
-        Vec cell_u;
-        Vec cell_v;
-        Vec rest = zero;
-        if (shown.bilinear) {
-            const Vec twist_u = set(shown.twist_u);
-            const Vec twist_v = set(shown.twist_v);
-            const Vec across = hn::Sub(hn::Add(one, hn::Mul(u, twist_v)), hn::Mul(v, twist_u));
-            const Vec root = hn::Sqrt(
-                hn::Max(hn::Add(hn::Mul(across, across), hn::Mul(hn::Mul(set(4.0f), twist_u), v)), zero));
-            const Vec at_v = hn::Div(hn::Mul(set(2.0f), v), hn::Add(across, root));
-            const Vec at_u = hn::Div(u, hn::Add(one, hn::Mul(at_v, twist_u)));
-            cell_u = hn::Min(hn::Floor(hn::Max(hn::Mul(at_u, grid_u), zero)), hn::Sub(grid_u, one));
-            cell_v = hn::Min(hn::Floor(hn::Max(hn::Mul(at_v, grid_v), zero)), hn::Sub(grid_v, one));
-        } else {
-            // Cells relative to the base, so that their borders are as sharp as floats near 0 are.
-            const Vec least_u = set(-shown.base_u);
-            const Vec least_v = set(-shown.base_v);
-            const Vec last_u = hn::Sub(hn::Add(least_u, grid_u), one);
-            const Vec last_v = hn::Sub(hn::Add(least_v, grid_v), one);
-            const Vec floor_u = hn::Min(hn::Max(hn::Floor(u), least_u), last_u);
-            const Vec floor_v = hn::Min(hn::Max(hn::Floor(v), least_v), last_v);
-            if (shown.split) {
-                const auto clamped = [&](Vec value, Vec least, Vec last) {
-                    return hn::Min(hn::Max(value, least), hn::Add(last, one));
-                };
-                rest = hn::Add(hn::Sub(clamped(u, least_u, last_u), floor_u),
-                               hn::Sub(clamped(v, least_v, last_v), floor_v));
-            }
-            cell_u = hn::Sub(floor_u, least_u);
-            cell_v = hn::Sub(floor_v, least_v);
-        }
-        const auto i = hn::ConvertTo(ints, cell_u);
-        const auto j = hn::ConvertTo(ints, cell_v);
-        auto cell = hn::Add(hn::Mul(j, hn::Set(ints, static_cast<std::int32_t>(shown.grid_u))), i);
-        if (shown.split) {
-            const auto second = hn::RebindMask(ints, hn::Gt(rest, one));
-            cell = hn::Add(hn::ShiftLeft<1>(cell), hn::IfThenElseZero(second, hn::Set(ints, 1)));
-        }
-        return hn::Add(hn::BitCast(ids_of, cell), hn::Set(ids_of, shown.first_id));
-    }
-
-    /// Counts cells from the one at the nearest corner of the box, where they are largest on the face.
-    static void move_base(const Affine& inverse, Shown& shown, const std::array<int, 4>& box) {
-        if (shown.bilinear) {
-            return;
-        }
-        double x = 0.0;
-        double y = 0.0;
-        double nearest = -1.0;
-        for (const int i : {box[0], box[1]}) {
-            for (const int j : {box[2], box[3]}) {
-                if (inverse.at(i, j) > nearest) {
-                    nearest = inverse.at(i, j);
-                    x = i;
-                    y = j;
-                }
-            }
-        }
-        if (!(nearest > 0.0)) {
-            return;
-        }
-        const auto move = [&](Affine& f, float& base, float grid) {
-            // `f` may have been moved for another piece of the polygon.
-            const double at = f.at(x, y) / nearest;
-            const double cell =
-                std::floor(std::clamp(at + static_cast<double>(base), 0.0, static_cast<double>(grid)));
-            const double step = cell - static_cast<double>(base);
-            f.c -= step * inverse.c;
-            f.x -= step * inverse.x;
-            f.y -= step * inverse.y;
-            base = static_cast<float>(cell);
-        };
-        move(shown.u, shown.base_u, shown.grid_u);
-        move(shown.v, shown.base_v, shown.grid_v);
-    }
-
-    /// Texels left, right, low and high that an outline may cover.
-    [[nodiscard]] std::array<int, 4> box_of(int face, std::span<const FaceVertex> outline) const {
-        const double last_x = static_cast<double>(texels_) - 1.0;
-        const double last_y = static_cast<double>(face == 0 ? texels_ : half_) - 1.0;
-        // Clipped to the face and half a texel round it, in homogeneous coordinates.
-        struct Point {
-            double x, y, w;
-        };
-        std::array<Point, 12> from{};
-        std::array<Point, 12> to{};
-        std::size_t count = 0;
-        for (const FaceVertex& v : outline) {
-            from[count++] = {static_cast<double>(v.hx), static_cast<double>(v.hy), static_cast<double>(v.hw)};
-        }
-        for (int side = 0; side < 4; ++side) {
-            const auto distance = [&](const Point& p) {
-                switch (side) {
-                case 0:
-                    return p.x + 0.5 * p.w;
-                case 1:
-                    return (last_x + 0.5) * p.w - p.x;
-                case 2:
-                    return p.y + 0.5 * p.w;
-                default:
-                    return (last_y + 0.5) * p.w - p.y;
-                }
-            };
-            std::size_t kept = 0;
-            for (std::size_t k = 0; k < count; ++k) {
-                const Point& a = from[k];
-                const Point& b = from[k + 1 < count ? k + 1 : 0];
-                const double d_a = distance(a);
-                const double d_b = distance(b);
-                if (d_a >= 0.0) {
-                    to[kept++] = a;
-                }
-                if ((d_a >= 0.0) != (d_b >= 0.0)) {
-                    const double t = d_a / (d_a - d_b);
-                    to[kept++] = {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.w + t * (b.w - a.w)};
-                }
-            }
-            count = kept;
-            std::swap(from, to);
-        }
-        double left = last_x + 1.0;
-        double right = -1.0;
-        double low = last_y + 1.0;
-        double high = -1.0;
-        for (std::size_t k = 0; k < count; ++k) {
-            const Point& p = from[k];
-            if (!(p.w > 0.0)) { // at the eye itself
-                return {0, static_cast<int>(last_x), 0, static_cast<int>(last_y)};
-            }
-            left = std::min(left, p.x / p.w);
-            right = std::max(right, p.x / p.w);
-            low = std::min(low, p.y / p.w);
-            high = std::max(high, p.y / p.w);
-        }
-        constexpr double slack = 0.01;
-        return {static_cast<int>(std::max(0.0, std::ceil(left - slack))),
-                static_cast<int>(std::min(last_x, std::floor(right + slack))),
-                static_cast<int>(std::max(0.0, std::ceil(low - slack))),
-                static_cast<int>(std::min(last_y, std::floor(high + slack)))};
     }
 
     const RasterScene& scene_;
-    TexelTiles tiles_;
-    CacheLineVector<std::uint32_t> ids_;
-    CacheLineVector<float> depth_; ///< 1 / depth; 0: nothing
-    float texels_;                 ///< of a face's edge
+    Projection projection_;
+    ItemTarget target_;
+    float texels_; ///< of a face's edge, and half of it; vertices project where they are nearer than guard_
     float half_;
-    float guard_; ///< a vertex projects where it is nearer than this, in texels
-    std::uint32_t across_;
-    bool padded_; ///< some tiles have texels that are none
+    float guard_;
     double tolerance_;
     float near_plane_; ///< eyes nearer to a plane are looked at in double precision
 
-    alignas(64) std::array<float, tile_size> tile_x_{};
-    alignas(64) std::array<float, tile_size> tile_y_{};
+    // Of the cluster that is being drawn; by vertex unless said.
     alignas(64) std::array<std::array<float, cluster_size>, 3> local_{}; ///< in the eye's frame
     alignas(64) std::array<float, cluster_size> x_{};
     alignas(64) std::array<float, cluster_size> y_{};
     alignas(64) std::array<float, cluster_size> inverse_{};
     alignas(64) std::array<float, cluster_size> projects_{};
     alignas(64) std::array<float, cluster_size> outside_{}; ///< bits
-    alignas(64) std::array<float, cluster_size> side_{};
+    alignas(64) std::array<float, cluster_size> side_{};    ///< by triangle
 
-    const EyePoint* eye_ = nullptr;
-    const EyeFrame* frame_ = nullptr;
-    const TileWeights* weights_ = nullptr;
-    Coverage* coverage_ = nullptr;
     std::uint32_t own_polygon_ = 0;
-    std::array<float, 3> eye_high_{};
-    std::array<float, 3> eye_low_{};
-    std::array<std::array<float, 3>, 3> axes_{};
     std::vector<Candidate> candidates_;
     std::vector<std::array<float, 3>> corners_;
     SmallTriangles small_{};

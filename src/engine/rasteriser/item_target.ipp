@@ -1,0 +1,314 @@
+// Compiled once for each instruction set, by rasteriser.cpp: included again when HWY_TARGET_TOGGLE changes.
+#if defined(HEMI_RASTERISER_ITEM_TARGET) == defined(HWY_TARGET_TOGGLE)
+#ifdef HEMI_RASTERISER_ITEM_TARGET
+#undef HEMI_RASTERISER_ITEM_TARGET
+#else
+#define HEMI_RASTERISER_ITEM_TARGET
+#endif
+
+#include "engine/rasteriser/lanes.ipp"
+#include "engine/rasteriser/rasteriser.hpp"
+#include "engine/rasteriser/shown_cells.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <tuple>
+
+HWY_BEFORE_NAMESPACE();
+namespace hemi::HWY_NAMESPACE {
+namespace {
+
+// Fronts are nearer than backs by this, a part of the distance.
+constexpr float front_bias = 1.0f + 0x1p-20f;
+
+/// An edge of a polygon that is drawn alone.
+struct FaceEdge {
+    float ax, ay, aw, bx, by, bw;
+    bool in; ///< whether points on it count as inside: in one of the two polygons that share it
+};
+
+/// Ids and depths of a hemicube's texels, and what is drawn into them without clusters.
+class ItemTarget {
+public:
+    explicit ItemTarget(const TexelTiles& tiles)
+        : tiles_(tiles), ids_(tiles.size()), depth_(tiles.size()),
+          texels_(static_cast<float>(tiles.resolution())), half_(0.5f * texels_), across_(tiles.across()),
+          padded_(tiles.resolution() % 8 != 0) {
+        for (std::uint32_t k = 0; k < tile_size; ++k) {
+            tile_x_[k] = static_cast<float>(k % 4);
+            tile_y_[k] = static_cast<float>(k / 4);
+        }
+    }
+
+    void clear(const TileWeights* weights, Coverage* coverage) {
+        weights_ = weights;
+        coverage_ = coverage;
+        std::fill(ids_.begin(), ids_.end(), item_nothing);
+        std::fill(depth_.begin(), depth_.end(), 0.0f);
+    }
+    [[nodiscard]] std::span<const std::uint32_t> ids() const { return ids_; }
+    [[nodiscard]] const TexelTiles& tiles() const { return tiles_; }
+    [[nodiscard]] Coverage* coverage() const { return coverage_; }
+
+    template <bool covering>
+    HWY_INLINE void put(std::uint32_t texel, float depth, std::uint32_t id) {
+        if constexpr (covering) {
+            if (id != item_blocked) {
+                TexelTally& covered = coverage_->of_id[id];
+                if (covered == 0) {
+                    coverage_->single_ids.push_back(id);
+                }
+                covered += weights_->texel[texel];
+            }
+        }
+        float& nearest = depth_[texel];
+        if (depth > nearest || (depth == nearest && id < ids_[texel])) {
+            nearest = depth;
+            ids_[texel] = id;
+        }
+    }
+
+    /// A triangle tile by tile.
+    template <bool covering>
+    void draw_large(int face, const std::array<float, 3>& x, const std::array<float, 3>& y,
+                    const std::array<float, 3>& z, std::uint32_t id, std::uint32_t left, std::uint32_t right,
+                    std::uint32_t low, std::uint32_t high) {
+        const std::array<Vec, 3> vx{set(x[0]), set(x[1]), set(x[2])};
+        const std::array<Vec, 3> vy{set(y[0]), set(y[1]), set(y[2])};
+        const std::array<Vec, 3> vz{set(z[0]), set(z[1]), set(z[2])};
+        const auto ids = hn::Set(ids_of, id);
+        const Vec zero = set(0.0f);
+        Covered covered{hn::Zero(ids_of), 0};
+        for (std::uint32_t ty = low / 4; ty <= high / 4; ++ty) {
+            std::uint32_t at = tiles_.first(face) + (ty * across_ + left / 4) * tile_size;
+            for (std::uint32_t tx = left / 4; tx <= right / 4; ++tx, at += tile_size) {
+                for (std::uint32_t k = 0; k < tile_size; k += lanes) {
+                    const Vec px = hn::Add(hn::Load(floats, &tile_x_[k]), set(static_cast<float>(4 * tx)));
+                    const Vec py = hn::Add(hn::Load(floats, &tile_y_[k]), set(static_cast<float>(4 * ty)));
+                    const Vec ax = hn::Sub(vx[0], px);
+                    const Vec ay = hn::Sub(vy[0], py);
+                    const Vec bx = hn::Sub(vx[1], px);
+                    const Vec by = hn::Sub(vy[1], py);
+                    const Vec cx = hn::Sub(vx[2], px);
+                    const Vec cy = hn::Sub(vy[2], py);
+                    const Vec e2 = edge(ax, ay, bx, by);
+                    const Vec e0 = edge(bx, by, cx, cy);
+                    const Vec e1 = edge(cx, cy, ax, ay);
+                    const Vec least = hn::Min(e0, hn::Min(e1, e2));
+                    Mask inside = hn::Ge(least, zero);
+                    if (HWY_UNLIKELY(!hn::AllFalse(floats, hn::And(inside, hn::Eq(least, zero))))) {
+                        const auto on_edge_in = [&](Vec e, std::size_t from, std::size_t to) {
+                            const bool in = y[to] > y[from] || (y[to] == y[from] && x[to] > x[from]);
+                            return in ? hn::Ge(e, zero) : hn::Gt(e, zero);
+                        };
+                        inside = hn::And(on_edge_in(e2, 0, 1),
+                                         hn::And(on_edge_in(e0, 1, 2), on_edge_in(e1, 2, 0)));
+                    }
+                    const Vec depth =
+                        hn::Div(hn::Add(hn::Add(hn::Mul(e0, vz[0]), hn::Mul(e1, vz[1])), hn::Mul(e2, vz[2])),
+                                hn::Add(hn::Add(e0, e1), e2));
+                    if constexpr (covering) {
+                        inside = on_face_only(inside, face, px, py);
+                        cover(at + k, inside, covered);
+                    }
+                    put_lanes(at + k, inside, depth, ids);
+                }
+            }
+        }
+        if constexpr (covering) {
+            add_covered(id, covered);
+        }
+    }
+
+    /// A convex outline, counter-clockwise on the face, tile by tile. Vertices may lie anywhere: an edge is
+    /// tested in texels where both its ends project, as in clusters, else homogeneously.
+    /// @param box      texels that it may cover
+    /// @param inverse  1 / depth of its plane
+    template <bool covering>
+    void draw_outline(int face, std::span<const FaceVertex> outline, const std::array<int, 4>& box,
+                      const Affine& inverse, const Shown& shown, bool front) {
+        std::array<FaceEdge, 4> edges;
+        for (std::size_t k = 0; k < outline.size(); ++k) {
+            const FaceVertex& a = outline[k];
+            const FaceVertex& b = outline[k + 1 < outline.size() ? k + 1 : 0];
+            if (a.projects && b.projects) {
+                edges[k] = {a.x, a.y, 1.0f, b.x, b.y, 1.0f, b.y > a.y || (b.y == a.y && b.x > a.x)};
+            } else {
+                const bool in = std::tuple(b.hy, b.hx, b.hw) > std::tuple(a.hy, a.hx, a.hw);
+                edges[k] = {a.hx, a.hy, a.hw, b.hx, b.hy, b.hw, in};
+            }
+        }
+        const std::span<const FaceEdge> used = std::span(edges).first(outline.size());
+        const Vec zero = set(0.0f);
+        const float bias = front ? front_bias : 1.0f;
+        Covered covered{hn::Zero(ids_of), 0};
+        for (std::uint32_t ty = static_cast<std::uint32_t>(box[2]) / 4;
+             ty <= static_cast<std::uint32_t>(box[3]) / 4; ++ty) {
+            std::uint32_t tx = static_cast<std::uint32_t>(box[0]) / 4;
+            std::uint32_t at = tiles_.first(face) + (ty * across_ + tx) * tile_size;
+            for (; tx <= static_cast<std::uint32_t>(box[1]) / 4; ++tx, at += tile_size) {
+                const double x = 4.0 * tx;
+                const double y = 4.0 * ty;
+                for (std::uint32_t k = 0; k < tile_size; k += lanes) {
+                    const Vec in_x = hn::Load(floats, &tile_x_[k]);
+                    const Vec in_y = hn::Load(floats, &tile_y_[k]);
+                    const Vec px = hn::Add(in_x, set(static_cast<float>(x)));
+                    const Vec py = hn::Add(in_y, set(static_cast<float>(y)));
+                    Mask inside = hn::FirstN(floats, lanes);
+                    for (const FaceEdge& e : used) {
+                        const Vec value = edge(hn::Sub(set(e.ax), hn::Mul(px, set(e.aw))),
+                                               hn::Sub(set(e.ay), hn::Mul(py, set(e.aw))),
+                                               hn::Sub(set(e.bx), hn::Mul(px, set(e.bw))),
+                                               hn::Sub(set(e.by), hn::Mul(py, set(e.bw))));
+                        inside = hn::And(inside, e.in ? hn::Ge(value, zero) : hn::Gt(value, zero));
+                    }
+                    if (hn::AllFalse(floats, inside)) {
+                        continue;
+                    }
+                    const auto affine = [&](const Affine& f) {
+                        return hn::Add(set(static_cast<float>(f.at(x, y))),
+                                       hn::Add(hn::Mul(in_x, set(static_cast<float>(f.x))),
+                                               hn::Mul(in_y, set(static_cast<float>(f.y)))));
+                    };
+                    const Vec z = affine(inverse);
+                    inside = hn::And(inside, hn::Gt(z, zero));
+                    const Vec depth = hn::Mul(z, set(bias));
+                    if constexpr (covering) {
+                        inside = on_face_only(inside, face, px, py);
+                    }
+                    if (!shown.cells) {
+                        if constexpr (covering) {
+                            cover(at + k, inside, covered);
+                        }
+                        put_lanes(at + k, inside, depth, hn::Set(ids_of, shown.first_id));
+                        continue;
+                    }
+                    const auto id = cell_ids(shown, hn::Div(affine(shown.u), z), hn::Div(affine(shown.v), z));
+                    if constexpr (covering) {
+                        alignas(64) Lanes<std::uint32_t> id_of_lane;
+                        hn::StoreU(id, ids_of, id_of_lane.data());
+                        for (std::uint32_t bits = bits_of(inside); bits != 0; bits &= bits - 1) {
+                            const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+                            coverage_->of_id[id_of_lane[lane]] += weights_->texel[at + k + lane];
+                        }
+                    }
+                    put_lanes(at + k, inside, depth, id);
+                }
+            }
+        }
+        if (covering && !shown.cells) {
+            add_covered(shown.first_id, covered);
+        }
+    }
+
+private:
+    /// Takes the lanes `inside` of a part of a tile.
+    /// @param at  the part's first texel
+    HWY_INLINE void put_lanes(std::uint32_t at, Mask inside, Vec z, hn::Vec<Ids> id) {
+        const Vec nearest = hn::Load(floats, &depth_[at]);
+        const auto shown = hn::Load(ids_of, &ids_[at]);
+        const Mask equal_first =
+            hn::And(hn::Eq(z, nearest),
+                    hn::RebindMask(floats, hn::Lt(hn::BitCast(ints, id), hn::BitCast(ints, shown))));
+        const Mask taken = hn::And(inside, hn::Or(hn::Gt(z, nearest), equal_first));
+        hn::Store(hn::IfThenElse(taken, z, nearest), floats, &depth_[at]);
+        hn::Store(hn::IfThenElse(hn::RebindMask(ids_of, taken), id, shown), ids_of, &ids_[at]);
+    }
+
+    /// Weights and number of the texels that a polygon of one cell covers. Weights cannot overflow: those of
+    /// a hemicube sum to less than 2^32.
+    struct Covered {
+        hn::Vec<Ids> weights;
+        std::uint32_t texels;
+    };
+    /// @param at  first texel of a part of a tile
+    HWY_INLINE void cover(std::uint32_t at, Mask inside, Covered& covered) const {
+        covered.weights =
+            hn::Add(covered.weights, hn::IfThenElseZero(hn::RebindMask(ids_of, inside),
+                                                        hn::LoadU(ids_of, &weights_->weight[at])));
+        covered.texels += static_cast<std::uint32_t>(hn::CountTrue(floats, inside));
+    }
+    void add_covered(std::uint32_t id, const Covered& sum) {
+        if (id == item_blocked || sum.texels == 0) {
+            return;
+        }
+        TexelTally& covered = coverage_->of_id[id];
+        if (covered == 0) {
+            coverage_->single_ids.push_back(id);
+        }
+        covered += TexelTally{hn::GetLane(hn::SumOfLanes(ids_of, sum.weights))} << 32 | sum.texels;
+    }
+    /// Without the texels that are none, beyond the upper and right edge of a face.
+    HWY_INLINE Mask on_face_only(Mask inside, int face, Vec px, Vec py) const {
+        if (!padded_) {
+            return inside;
+        }
+        const float height = face == 0 ? texels_ : half_;
+        return hn::And(inside, hn::And(hn::Lt(px, set(texels_)), hn::Lt(py, set(height))));
+    }
+
+    /// Draw ids of points on the grid, as the shaders derive them. u and v are relative to the base cell.
+    [[nodiscard]] HWY_INLINE hn::Vec<Ids> cell_ids(const Shown& shown, Vec u, Vec v) const {
+        const Vec zero = set(0.0f);
+        const Vec one = set(1.0f);
+        const Vec grid_u = set(shown.grid_u);
+        const Vec grid_v = set(shown.grid_v);
+        Vec cell_u;
+        Vec cell_v;
+        Vec rest = zero;
+        if (shown.bilinear) {
+            const Vec twist_u = set(shown.twist_u);
+            const Vec twist_v = set(shown.twist_v);
+            const Vec across = hn::Sub(hn::Add(one, hn::Mul(u, twist_v)), hn::Mul(v, twist_u));
+            const Vec root = hn::Sqrt(
+                hn::Max(hn::Add(hn::Mul(across, across), hn::Mul(hn::Mul(set(4.0f), twist_u), v)), zero));
+            const Vec at_v = hn::Div(hn::Mul(set(2.0f), v), hn::Add(across, root));
+            const Vec at_u = hn::Div(u, hn::Add(one, hn::Mul(at_v, twist_u)));
+            cell_u = hn::Min(hn::Floor(hn::Max(hn::Mul(at_u, grid_u), zero)), hn::Sub(grid_u, one));
+            cell_v = hn::Min(hn::Floor(hn::Max(hn::Mul(at_v, grid_v), zero)), hn::Sub(grid_v, one));
+        } else {
+            // Cells relative to the base, so that their borders are as sharp as floats near 0 are.
+            const Vec least_u = set(-shown.base_u);
+            const Vec least_v = set(-shown.base_v);
+            const Vec last_u = hn::Sub(hn::Add(least_u, grid_u), one);
+            const Vec last_v = hn::Sub(hn::Add(least_v, grid_v), one);
+            const Vec floor_u = hn::Min(hn::Max(hn::Floor(u), least_u), last_u);
+            const Vec floor_v = hn::Min(hn::Max(hn::Floor(v), least_v), last_v);
+            if (shown.split) {
+                const auto clamped = [&](Vec value, Vec least, Vec last) {
+                    return hn::Min(hn::Max(value, least), hn::Add(last, one));
+                };
+                rest = hn::Add(hn::Sub(clamped(u, least_u, last_u), floor_u),
+                               hn::Sub(clamped(v, least_v, last_v), floor_v));
+            }
+            cell_u = hn::Sub(floor_u, least_u);
+            cell_v = hn::Sub(floor_v, least_v);
+        }
+        const auto i = hn::ConvertTo(ints, cell_u);
+        const auto j = hn::ConvertTo(ints, cell_v);
+        auto cell = hn::Add(hn::Mul(j, hn::Set(ints, static_cast<std::int32_t>(shown.grid_u))), i);
+        if (shown.split) {
+            const auto second = hn::RebindMask(ints, hn::Gt(rest, one));
+            cell = hn::Add(hn::ShiftLeft<1>(cell), hn::IfThenElseZero(second, hn::Set(ints, 1)));
+        }
+        return hn::Add(hn::BitCast(ids_of, cell), hn::Set(ids_of, shown.first_id));
+    }
+
+    TexelTiles tiles_;
+    CacheLineVector<std::uint32_t> ids_;
+    CacheLineVector<float> depth_; ///< 1 / depth; 0: nothing
+    float texels_;
+    float half_;
+    std::uint32_t across_;
+    bool padded_; ///< some tiles have texels that are none
+    const TileWeights* weights_ = nullptr;
+    Coverage* coverage_ = nullptr;
+    alignas(64) std::array<float, tile_size> tile_x_{};
+    alignas(64) std::array<float, tile_size> tile_y_{};
+};
+
+} // namespace
+} // namespace hemi::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
