@@ -117,7 +117,7 @@ VisibilityRow VisibilityAccumulator::take(Coverage& coverage) {
         const std::uint32_t first = side.back ? polygon.back_id : polygon.front_id;
         const std::uint32_t end = first + (polygon.grid.u * polygon.grid.v << polygon.split);
         for (std::uint32_t id = first; id < end; ++id) {
-            hidden_[id] = std::exchange(coverage.of_id[id], Tally{0}) - visible_[id];
+            hidden_[id] = std::exchange(coverage.of_id[id], Tally{0});
         }
     }
     return finish();

@@ -6,13 +6,14 @@
 #define HEMI_RASTERISER_ITEM_TARGET
 #endif
 
+#include "engine/rasteriser/face_outline.hpp"
 #include "engine/rasteriser/lanes.ipp"
 #include "engine/rasteriser/rasteriser.hpp"
 #include "engine/rasteriser/shown_cells.hpp"
 
 #include <algorithm>
 #include <bit>
-#include <tuple>
+#include <vector>
 
 HWY_BEFORE_NAMESPACE();
 namespace hemi::HWY_NAMESPACE {
@@ -20,12 +21,6 @@ namespace {
 
 // Fronts are nearer than backs by this, a part of the distance.
 constexpr float front_bias = 1.0f + 0x1p-20f;
-
-/// An edge of a polygon that is drawn alone.
-struct FaceEdge {
-    float ax, ay, aw, bx, by, bw;
-    bool in; ///< whether points on it count as inside: in one of the two polygons that share it
-};
 
 /// Ids and depths of a hemicube's texels, and what is drawn into them without clusters.
 class ItemTarget {
@@ -43,6 +38,7 @@ public:
     void clear(const TileWeights* weights, Coverage* coverage) {
         weights_ = weights;
         coverage_ = coverage;
+        cells_.clear();
         std::fill(ids_.begin(), ids_.end(), item_nothing);
         std::fill(depth_.begin(), depth_.end(), 0.0f);
     }
@@ -108,7 +104,8 @@ public:
                         hn::Div(hn::Add(hn::Add(hn::Mul(e0, vz[0]), hn::Mul(e1, vz[1])), hn::Mul(e2, vz[2])),
                                 hn::Add(hn::Add(e0, e1), e2));
                     if constexpr (covering) {
-                        inside = on_face_only(inside, face, px, py);
+                        inside = on_face_only(inside, face, 4.0 * tx, 4.0 * ty, hn::Load(floats, &tile_x_[k]),
+                                              hn::Load(floats, &tile_y_[k]));
                         cover(at + k, inside, covered);
                     }
                     put_lanes(at + k, inside, depth, ids);
@@ -120,88 +117,124 @@ public:
         }
     }
 
-    /// A convex outline, counter-clockwise on the face, tile by tile. Vertices may lie anywhere: an edge is
-    /// tested in texels where both its ends project, as in clusters, else homogeneously.
-    /// @param box      texels that it may cover
+    /// A convex outline tile by tile.
     /// @param inverse  1 / depth of its plane
     template <bool covering>
-    void draw_outline(int face, std::span<const FaceVertex> outline, const std::array<int, 4>& box,
-                      const Affine& inverse, const Shown& shown, bool front) {
-        std::array<FaceEdge, 4> edges;
-        for (std::size_t k = 0; k < outline.size(); ++k) {
-            const FaceVertex& a = outline[k];
-            const FaceVertex& b = outline[k + 1 < outline.size() ? k + 1 : 0];
-            if (a.projects && b.projects) {
-                edges[k] = {a.x, a.y, 1.0f, b.x, b.y, 1.0f, b.y > a.y || (b.y == a.y && b.x > a.x)};
-            } else {
-                const bool in = std::tuple(b.hy, b.hx, b.hw) > std::tuple(a.hy, a.hx, a.hw);
-                edges[k] = {a.hx, a.hy, a.hw, b.hx, b.hy, b.hw, in};
-            }
-        }
-        const std::span<const FaceEdge> used = std::span(edges).first(outline.size());
-        const Vec zero = set(0.0f);
+    void draw_outline(int face, const FaceOutline& outline, const Affine& inverse, const Shown& shown,
+                      bool front) {
         const float bias = front ? front_bias : 1.0f;
         Covered covered{hn::Zero(ids_of), 0};
-        for (std::uint32_t ty = static_cast<std::uint32_t>(box[2]) / 4;
-             ty <= static_cast<std::uint32_t>(box[3]) / 4; ++ty) {
-            std::uint32_t tx = static_cast<std::uint32_t>(box[0]) / 4;
-            std::uint32_t at = tiles_.first(face) + (ty * across_ + tx) * tile_size;
-            for (; tx <= static_cast<std::uint32_t>(box[1]) / 4; ++tx, at += tile_size) {
-                const double x = 4.0 * tx;
-                const double y = 4.0 * ty;
-                for (std::uint32_t k = 0; k < tile_size; k += lanes) {
-                    const Vec in_x = hn::Load(floats, &tile_x_[k]);
-                    const Vec in_y = hn::Load(floats, &tile_y_[k]);
-                    const Vec px = hn::Add(in_x, set(static_cast<float>(x)));
-                    const Vec py = hn::Add(in_y, set(static_cast<float>(y)));
-                    Mask inside = hn::FirstN(floats, lanes);
-                    for (const FaceEdge& e : used) {
-                        const Vec value = edge(hn::Sub(set(e.ax), hn::Mul(px, set(e.aw))),
-                                               hn::Sub(set(e.ay), hn::Mul(py, set(e.aw))),
-                                               hn::Sub(set(e.bx), hn::Mul(px, set(e.bw))),
-                                               hn::Sub(set(e.by), hn::Mul(py, set(e.bw))));
-                        inside = hn::And(inside, e.in ? hn::Ge(value, zero) : hn::Gt(value, zero));
-                    }
-                    if (hn::AllFalse(floats, inside)) {
-                        continue;
-                    }
-                    const auto affine = [&](const Affine& f) {
-                        return hn::Add(set(static_cast<float>(f.at(x, y))),
-                                       hn::Add(hn::Mul(in_x, set(static_cast<float>(f.x))),
-                                               hn::Mul(in_y, set(static_cast<float>(f.y)))));
-                    };
-                    const Vec z = affine(inverse);
-                    inside = hn::And(inside, hn::Gt(z, zero));
-                    const Vec depth = hn::Mul(z, set(bias));
-                    if constexpr (covering) {
-                        inside = on_face_only(inside, face, px, py);
-                    }
-                    if (!shown.cells) {
-                        if constexpr (covering) {
-                            cover(at + k, inside, covered);
-                        }
-                        put_lanes(at + k, inside, depth, hn::Set(ids_of, shown.first_id));
-                        continue;
-                    }
-                    const auto id = cell_ids(shown, hn::Div(affine(shown.u), z), hn::Div(affine(shown.v), z));
-                    if constexpr (covering) {
-                        alignas(64) Lanes<std::uint32_t> id_of_lane;
-                        hn::StoreU(id, ids_of, id_of_lane.data());
-                        for (std::uint32_t bits = bits_of(inside); bits != 0; bits &= bits - 1) {
-                            const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-                            coverage_->of_id[id_of_lane[lane]] += weights_->texel[at + k + lane];
-                        }
-                    }
-                    put_lanes(at + k, inside, depth, id);
-                }
+        for_tiles(face, outline, [&](std::uint32_t at, double x, double y, Vec in_x, Vec in_y, Mask inside) {
+            const Vec z = affine(inverse, x, y, in_x, in_y);
+            inside = hn::And(inside, hn::Gt(z, set(0.0f)));
+            const Vec depth = hn::Mul(z, set(bias));
+            if (shown.cells) {
+                put_lanes(at, inside, depth, ids_at(shown, z, x, y, in_x, in_y));
+                return;
             }
-        }
-        if (covering && !shown.cells) {
-            add_covered(shown.first_id, covered);
+            if constexpr (covering) {
+                inside = on_face_only(inside, face, x, y, in_x, in_y);
+                cover(at, inside, covered);
+            }
+            put_lanes(at, inside, depth, hn::Set(ids_of, shown.first_id));
+        });
+        if constexpr (covering) {
+            if (shown.cells) {
+                cells_.push_back({face, outline, inverse, shown});
+            } else {
+                add_covered(shown.first_id, covered);
+            }
         }
     }
 
+    /// Counts, when everything is drawn, what is hidden of the polygons of several cells.
+    void count_hidden() {
+        for (const DrawnCells& drawn : cells_) {
+            const Shown& shown = drawn.shown;
+            const auto first = hn::Set(ids_of, shown.first_id);
+            const auto count = hn::Set(ids_of, shown.id_count);
+            for_tiles(drawn.face, drawn.outline,
+                      [&](std::uint32_t at, double x, double y, Vec in_x, Vec in_y, Mask inside) {
+                          const auto id = hn::Load(ids_of, &ids_[at]);
+                          const auto others =
+                              hn::RebindMask(floats, hn::Not(hn::Lt(hn::Sub(id, first), count)));
+                          inside = hn::And(inside, others);
+                          if (HWY_LIKELY(hn::AllFalse(floats, inside))) {
+                              return;
+                          }
+                          const Vec z = affine(drawn.inverse, x, y, in_x, in_y);
+                          inside = on_face_only(hn::And(inside, hn::Gt(z, set(0.0f))), drawn.face, x, y, in_x,
+                                                in_y);
+                          alignas(64) Lanes<std::uint32_t> id_of_lane;
+                          hn::StoreU(ids_at(shown, z, x, y, in_x, in_y), ids_of, id_of_lane.data());
+                          for (std::uint32_t bits = bits_of(inside); bits != 0; bits &= bits - 1) {
+                              const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
+                              coverage_->of_id[id_of_lane[lane]] += weights_->texel[at + lane];
+                          }
+                      });
+        }
+        cells_.clear();
+    }
+
 private:
+    /// What is needed to see again which texels an outline covers.
+    struct DrawnCells {
+        int face;
+        FaceOutline outline;
+        Affine inverse;
+        Shown shown;
+    };
+
+    /// Calls `visit(at, x, y, in_x, in_y, inside)` for the parts of tiles of which an outline covers a texel:
+    /// first texel, place of the tile on the face, places of the lanes in the tile, lanes that it covers.
+    template <class Visit>
+    HWY_INLINE void for_tiles(int face, const FaceOutline& outline, const Visit& visit) const {
+        const Vec zero = set(0.0f);
+        const std::span<const FaceEdge> edges = outline.edges();
+        for (std::uint32_t ty = outline.first_row(); ty <= outline.last_row(); ++ty) {
+            const FaceOutline::Span span = outline.row(ty);
+            std::uint32_t at = tiles_.first(face) + (ty * across_ + span.begin) * tile_size;
+            for (std::uint32_t tx = span.begin; tx < span.end; ++tx, at += tile_size) {
+                const double x = 4.0 * tx;
+                const double y = 4.0 * ty;
+                const bool whole = tx >= span.inner_begin && tx < span.inner_end;
+                for (std::uint32_t k = 0; k < tile_size; k += lanes) {
+                    const Vec in_x = hn::Load(floats, &tile_x_[k]);
+                    const Vec in_y = hn::Load(floats, &tile_y_[k]);
+                    Mask inside = hn::FirstN(floats, lanes);
+                    if (!whole) {
+                        const Vec px = hn::Add(in_x, set(static_cast<float>(x)));
+                        const Vec py = hn::Add(in_y, set(static_cast<float>(y)));
+                        for (const FaceEdge& e : edges) {
+                            const Vec value = edge(hn::Sub(set(e.ax), hn::Mul(px, set(e.aw))),
+                                                   hn::Sub(set(e.ay), hn::Mul(py, set(e.aw))),
+                                                   hn::Sub(set(e.bx), hn::Mul(px, set(e.bw))),
+                                                   hn::Sub(set(e.by), hn::Mul(py, set(e.bw))));
+                            inside = hn::And(inside, e.in ? hn::Ge(value, zero) : hn::Gt(value, zero));
+                        }
+                        if (hn::AllFalse(floats, inside)) {
+                            continue;
+                        }
+                    }
+                    visit(at + k, x, y, in_x, in_y, inside);
+                }
+            }
+        }
+    }
+
+    /// f at the lanes of the tile at (x, y).
+    static HWY_INLINE Vec affine(const Affine& f, double x, double y, Vec in_x, Vec in_y) {
+        return hn::Add(set(static_cast<float>(f.at(x, y))),
+                       hn::Add(hn::Mul(in_x, set(static_cast<float>(f.x))),
+                               hn::Mul(in_y, set(static_cast<float>(f.y)))));
+    }
+    [[nodiscard]] HWY_INLINE hn::Vec<Ids> ids_at(const Shown& shown, Vec z, double x, double y, Vec in_x,
+                                                 Vec in_y) const {
+        const Vec depth = hn::Div(set(1.0f), z);
+        return cell_ids(shown, hn::Mul(affine(shown.u, x, y, in_x, in_y), depth),
+                        hn::Mul(affine(shown.v, x, y, in_x, in_y), depth));
+    }
+
     /// Takes the lanes `inside` of a part of a tile.
     /// @param at  the part's first texel
     HWY_INLINE void put_lanes(std::uint32_t at, Mask inside, Vec z, hn::Vec<Ids> id) {
@@ -239,12 +272,14 @@ private:
         covered += TexelTally{hn::GetLane(hn::SumOfLanes(ids_of, sum.weights))} << 32 | sum.texels;
     }
     /// Without the texels that are none, beyond the upper and right edge of a face.
-    HWY_INLINE Mask on_face_only(Mask inside, int face, Vec px, Vec py) const {
+    HWY_INLINE Mask on_face_only(Mask inside, int face, double x, double y, Vec in_x, Vec in_y) const {
         if (!padded_) {
             return inside;
         }
-        const float height = face == 0 ? texels_ : half_;
-        return hn::And(inside, hn::And(hn::Lt(px, set(texels_)), hn::Lt(py, set(height))));
+        const double height = static_cast<double>(face == 0 ? texels_ : half_);
+        return hn::And(inside,
+                       hn::And(hn::Lt(in_x, set(static_cast<float>(static_cast<double>(texels_) - x))),
+                               hn::Lt(in_y, set(static_cast<float>(height - y)))));
     }
 
     /// Draw ids of points on the grid, as the shaders derive them. u and v are relative to the base cell.
@@ -303,6 +338,7 @@ private:
     bool padded_; ///< some tiles have texels that are none
     const TileWeights* weights_ = nullptr;
     Coverage* coverage_ = nullptr;
+    std::vector<DrawnCells> cells_; ///< of the hemicube, where coverage is wanted
     alignas(64) std::array<float, tile_size> tile_x_{};
     alignas(64) std::array<float, tile_size> tile_y_{};
 };

@@ -5,6 +5,28 @@
 
 namespace hemi {
 
+namespace {
+
+std::array<int, 4> box_of_projected(std::span<const FaceVertex> outline, float last_x, float last_y) {
+    constexpr float slack = 0.01f;
+    float left = last_x + 1.0f;
+    float right = -1.0f;
+    float low = last_y + 1.0f;
+    float high = -1.0f;
+    for (const FaceVertex& v : outline) {
+        left = std::min(left, v.x);
+        right = std::max(right, v.x);
+        low = std::min(low, v.y);
+        high = std::max(high, v.y);
+    }
+    return {static_cast<int>(std::max(0.0f, std::ceil(left - slack))),
+            static_cast<int>(std::min(last_x, std::floor(right + slack))),
+            static_cast<int>(std::max(0.0f, std::ceil(low - slack))),
+            static_cast<int>(std::min(last_y, std::floor(high + slack)))};
+}
+
+} // namespace
+
 void Projection::set(const EyePoint& eye, const EyeFrame& frame) {
     eye_ = &eye;
     frame_ = &frame;
@@ -19,17 +41,40 @@ void Projection::set(const EyePoint& eye, const EyeFrame& frame) {
     }
 }
 
-std::array<float, 3> Projection::in_eye_frame(const Vec3& position) const {
-    const auto split = scene_.split(position);
+std::array<float, 3> Projection::in_eye_frame(const RasterScene::SplitPosition& position) const {
     std::array<float, 3> offset{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        offset[axis] = (split.high[axis] - high_[axis]) + (split.low[axis] - low_[axis]);
+        offset[axis] = (position.high[axis] - high_[axis]) + (position.low[axis] - low_[axis]);
     }
     std::array<float, 3> at{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         at[axis] = (axes_[axis][0] * offset[0] + axes_[axis][1] * offset[1]) + axes_[axis][2] * offset[2];
     }
     return at;
+}
+
+std::uint32_t Projection::faces_of(const std::array<float, 3>& centre, float radius) const {
+    constexpr float slope = 0.70710678f;
+    std::array<float, 3> p{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        p[k] = axes_[k][0] * (centre[0] - high_[0]) + axes_[k][1] * (centre[1] - high_[1]) +
+               axes_[k][2] * (centre[2] - high_[2]);
+    }
+    if (p[2] < -radius) {
+        return 0;
+    }
+    std::uint32_t faces = 0;
+    for (std::uint32_t face = 0; face < hemicube_faces; ++face) {
+        const FaceAxes& axes = face_axes[face];
+        const float depth = p[static_cast<std::size_t>(axes.depth)] * axes.depth_sign;
+        const float right = p[static_cast<std::size_t>(axes.right)];
+        const float up = p[static_cast<std::size_t>(axes.up)];
+        const float below = face == 0 ? (depth + up) * slope : up;
+        const float nearest =
+            std::min(std::min((depth - std::abs(right)) * slope, (depth - up) * slope), below);
+        faces |= (nearest >= -radius ? 1u : 0u) << face;
+    }
+    return faces;
 }
 
 FaceVertex Projection::on_face(int face, const std::array<float, 3>& at) const {
@@ -91,6 +136,9 @@ bool Projection::outside(int face, std::span<const FaceVertex> outline) const {
 std::array<int, 4> Projection::box_of(int face, std::span<const FaceVertex> outline) const {
     const double last_x = static_cast<double>(texels_) - 1.0;
     const double last_y = static_cast<double>(face == 0 ? texels_ : half_) - 1.0;
+    if (std::all_of(outline.begin(), outline.end(), [](const FaceVertex& v) { return v.projects; })) {
+        return box_of_projected(outline, static_cast<float>(last_x), static_cast<float>(last_y));
+    }
     // Clipped to the face and half a texel round it, in homogeneous coordinates.
     struct Point {
         double x, y, w;

@@ -9,6 +9,9 @@ namespace hemi {
 
 namespace {
 
+// Of centres of spheres to floats, and of the tests with them.
+constexpr float sphere_rounding = 1e-6f;
+
 /// A triangle of a polygon that shows one draw id.
 struct Triangle {
     std::uint32_t polygon;
@@ -22,7 +25,7 @@ std::vector<Triangle> collect_triangles(const DrawList& list,
     for (std::uint32_t p = 0; p < list.polygons.size(); ++p) {
         const DrawPolygon& polygon = list.polygons[p];
         if (polygon.grid.u * polygon.grid.v > 1 || polygon.split != 0) {
-            grid_polygons.push_back({p, make_grid_map(list, p)});
+            grid_polygons.push_back({.polygon = p, .map = make_grid_map(list, p)});
             continue;
         }
         for (std::uint32_t t = 0; t < polygon.triangle_count; ++t) {
@@ -110,7 +113,7 @@ private:
         for (std::size_t axis = 0; axis < 3; ++axis) {
             cluster.centre[axis] = static_cast<float>(centre[static_cast<int>(axis)]);
         }
-        cluster.radius = static_cast<float>(radius * 1.0001) + 1e-6f; // the rounding of centres to floats
+        cluster.radius = static_cast<float>(radius * 1.0001) + sphere_rounding;
         for (std::size_t k = 0; k < size; ++k) {
             const auto position =
                 scene_.split(scene_.list.vertices[vertices[std::min(k, vertices.size() - 1)]]);
@@ -166,6 +169,15 @@ RasterScene::RasterScene(const DrawList& the_list) : list(the_list) {
     }
     std::vector<Triangle> triangles = collect_triangles(list, grid_polygons);
     ClusterBuilder(*this).add(triangles);
+    for (GridPolygon& drawn : grid_polygons) {
+        const DrawPolygon& outline = list.polygons[drawn.polygon];
+        drawn.centre = split(outline.centre).high;
+        drawn.radius = static_cast<float>(outline.radius * scale * 1.0001) + sphere_rounding;
+        drawn.first_corner = static_cast<std::uint32_t>(grid_corners.size());
+        for (std::uint32_t k = 0; k < outline.corner_count; ++k) {
+            grid_corners.push_back(split(list.vertices[list.corners[outline.first_corner + k].vertex]));
+        }
+    }
 }
 
 RasterScene::SplitPosition RasterScene::split(const Vec3& position) const {

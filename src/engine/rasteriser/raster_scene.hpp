@@ -75,8 +75,12 @@ struct RasterScene {
     struct GridPolygon {
         std::uint32_t polygon; ///< into the draw list
         GridMap map;
+        std::array<float, 3> centre{}; ///< with `radius`: a sphere round it, in raster coordinates
+        float radius = 0.0f;
+        std::uint32_t first_corner = 0; ///< into grid_corners; as many as the polygon has
     };
     std::vector<GridPolygon> grid_polygons;
+    std::vector<SplitPosition> grid_corners;
 };
 
 } // namespace hemi

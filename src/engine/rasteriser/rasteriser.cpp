@@ -82,39 +82,18 @@ private:
             draw_cluster<covering>(candidate);
         }
         flush<covering>(small_.count);
+        if constexpr (covering) {
+            target_.count_hidden();
+        }
     }
 
     /// Clusters that reach into the faces' pyramids.
     void find_candidates() {
         candidates_.clear();
-        const float slope = std::sqrt(0.5f);
         for (std::uint32_t c = 0; c < scene_.clusters.size(); ++c) {
             const TriangleCluster& cluster = scene_.clusters[c];
-            std::array<float, 3> offset{};
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                offset[axis] = cluster.centre[axis] - projection_.high()[axis];
-            }
-            std::array<float, 3> p{};
-            for (std::size_t k = 0; k < 3; ++k) {
-                p[k] = projection_.axes()[k][0] * offset[0] + projection_.axes()[k][1] * offset[1] +
-                       projection_.axes()[k][2] * offset[2];
-            }
-            const float radius = cluster.radius;
-            if (p[2] < -radius) {
-                continue;
-            }
-            std::uint32_t faces = 0;
-            for (std::uint32_t face = 0; face < hemicube_faces; ++face) {
-                const FaceAxes& axes = face_axes[face];
-                const float depth = p[static_cast<std::size_t>(axes.depth)] * axes.depth_sign;
-                const float right = p[static_cast<std::size_t>(axes.right)];
-                const float up = p[static_cast<std::size_t>(axes.up)];
-                const float below = face == 0 ? (depth + up) * slope : up;
-                const float nearest =
-                    std::min(std::min((depth - std::abs(right)) * slope, (depth - up) * slope), below);
-                faces |= (nearest >= -radius ? 1u : 0u) << face;
-            }
-            if (faces != 0) {
+            if (const std::uint32_t faces = projection_.faces_of(cluster.centre, cluster.radius);
+                faces != 0) {
                 candidates_.push_back({c, faces});
             }
         }
@@ -491,7 +470,7 @@ private:
         if (shown.cells) {
             move_base(inverse, shown, box);
         }
-        target_.draw_outline<covering>(face, outline, box, inverse, shown, front);
+        target_.draw_outline<covering>(face, FaceOutline(outline, box), inverse, shown, front);
     }
 
     template <bool covering>
@@ -509,17 +488,21 @@ private:
         }
         const bool front = height > 0.0;
         bool drawn_once = false;
+        const std::uint32_t faces = projection_.faces_of(drawn.centre, drawn.radius);
+        if (faces == 0) {
+            return;
+        }
         corners_.clear();
         float highest = -1.0f;
         for (std::uint32_t k = 0; k < polygon.corner_count; ++k) {
-            corners_.push_back(
-                projection_.in_eye_frame(list.vertices[list.corners[polygon.first_corner + k].vertex]));
+            corners_.push_back(projection_.in_eye_frame(scene_.grid_corners[drawn.first_corner + k]));
             highest = std::max(highest, corners_.back()[2]);
         }
         if (highest <= static_cast<float>(tolerance_ * scene_.scale)) {
             return; // on or behind the eye's plane
         }
-        for (int face = 0; face < hemicube_faces; ++face) {
+        for (std::uint32_t left = faces; left != 0; left &= left - 1) {
+            const int face = std::countr_zero(left);
             Shown shown;
             Affine inverse;
             bool ready = false;
@@ -573,7 +556,7 @@ private:
 
     std::uint32_t own_polygon_ = 0;
     std::vector<Candidate> candidates_;
-    std::vector<std::array<float, 3>> corners_;
+    std::vector<std::array<float, 3>> corners_; ///< of the polygon that is being drawn, in the eye's frame
     SmallTriangles small_{};
 };
 

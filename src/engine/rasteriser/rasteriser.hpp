@@ -13,12 +13,14 @@
 
 namespace hemi {
 
-/// What covers texel centres before anything is hidden: of every draw id of a side that has patches the
-/// weights and numbers of the texels, summed over the hemicubes of a row.
+/// What covers texel centres though it may be hidden there, of sides that have patches, summed over the
+/// hemicubes of a row: weights and numbers of texels.
 struct Coverage {
     explicit Coverage(std::size_t draw_ids) : of_id(draw_ids, 0) {}
 
-    std::vector<TexelTally> of_id;         ///< an element a draw id
+    /// An element a draw id: of a polygon of one cell all texels that it covers, seen or hidden; of a cell of
+    /// another polygon the hidden ones only.
+    std::vector<TexelTally> of_id;
     std::vector<std::uint32_t> single_ids; ///< those of polygons of one cell that are not 0, each once
     /// A side of a polygon of several cells that was drawn.
     struct Side {

@@ -28,6 +28,7 @@ Shown shown_cells(const RasterScene& scene, const Projection& projection, int fa
     shown.grid_u = static_cast<float>(polygon.grid.u);
     shown.grid_v = static_cast<float>(polygon.grid.v);
     shown.split = polygon.split != 0;
+    shown.id_count = polygon.grid.u * polygon.grid.v << polygon.split;
     shown.bilinear = polygon.bilinear != 0;
     shown.twist_u = polygon.twist_u;
     shown.twist_v = polygon.twist_v;

@@ -7,6 +7,7 @@ namespace hemi {
 /// What the texels of a polygon show.
 struct Shown {
     std::uint32_t first_id = 0;
+    std::uint32_t id_count = 1;
     bool cells = false; ///< ids by cell, as the shaders derive them
     Affine u, v;        ///< times 1 / depth; relative to base cells
     float base_u = 0.0f, base_v = 0.0f;

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "engine/rasteriser/projection.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace hemi {
+
+/// An edge of an outline, from a to b: in texels (aw = bw = 1), or homogeneous.
+struct FaceEdge {
+    float ax, ay, aw, bx, by, bw;
+    bool in; ///< whether points on it count as inside: in one of the two polygons that share it
+};
+
+/// A convex polygon on a face, counter-clockwise, and the tiles that it covers.
+///
+/// Vertices may lie anywhere: an edge is tested in texels where both its ends project, as in clusters, else
+/// homogeneously.
+class FaceOutline {
+public:
+    FaceOutline() = default;
+    /// @param outline  3 or 4 vertices
+    /// @param box      left, right, low and high texel that it may cover
+    FaceOutline(std::span<const FaceVertex> outline, const std::array<int, 4>& box);
+
+    [[nodiscard]] std::span<const FaceEdge> edges() const { return std::span(edges_).first(count_); }
+
+    /// First and last row of tiles.
+    [[nodiscard]] std::uint32_t first_row() const { return rows_[0]; }
+    [[nodiscard]] std::uint32_t last_row() const { return rows_[1]; }
+
+    /// Tiles of a row that the outline may cover, [begin, end), and those that it covers whole, [inner_begin,
+    /// inner_end); by distances from the edges, with a margin above all rounding.
+    struct Span {
+        std::uint32_t begin, end, inner_begin, inner_end;
+    };
+    [[nodiscard]] Span row(std::uint32_t tile_row) const;
+
+private:
+    /// Distance from an edge's line, positive inside: x·to_right + y·up + offset texels.
+    struct Line {
+        double to_right = 0.0, up = 0.0, offset = 0.0;
+        double inverse = 0.0; ///< 1 / to_right
+        bool known = false;   ///< false: the line is too short or too far to say anything
+    };
+
+    std::array<FaceEdge, 4> edges_{};
+    std::array<Line, 4> lines_{};
+    std::uint32_t count_ = 0;
+    std::array<std::uint32_t, 2> columns_{}; ///< first and last tile
+    std::array<std::uint32_t, 2> rows_{};
+};
+
+} // namespace hemi
