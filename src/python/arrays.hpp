@@ -34,7 +34,7 @@ py::array_t<T> owned(std::vector<T>&& values, std::vector<py::ssize_t> shape) {
     auto kept = std::make_unique<std::vector<T>>(std::move(values));
     const T* const data = kept->data();
     const py::capsule owner(kept.get(), [](void* pointer) { delete static_cast<std::vector<T>*>(pointer); });
-    kept.release();
+    static_cast<void>(kept.release()); // the capsule deletes it
     return py::array_t<T>(std::move(shape), data, owner);
 }
 

@@ -201,6 +201,20 @@ TEST_CASE("hemicube rows: the same bytes from two runs, one and two workers, EGL
     CHECK(software_egl);
 }
 
+TEST_CASE("hemicube rows: rows of long patches, which have more eye points, fit what workers send",
+          "[engine][gl][every-device]") {
+    // A comb of 900 needles under a ceiling of 900: more columns a row than 4 hemicubes of 8² texels have.
+    Scene scene = empty_scene();
+    add_polygon(scene, "comb", {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, {1, 900});
+    add_polygon(scene, "ceiling", {Vec3(0, 0, 1), Vec3(0, 1, 1), Vec3(1, 1, 1), Vec3(1, 0, 1)}, {30, 30});
+    const PatchMesh mesh(scene);
+    const HemicubeSettings settings{.resolution = 8, .eye_points = 4};
+    const FormFactorMatrix by_workers = compute(mesh, settings);
+    const FormFactorMatrix in_process =
+        compute_matrix(*make_hemicube_engine(mesh, settings, {test_device(), 0, ""}));
+    CHECK(same_bytes(by_workers, in_process));
+}
+
 TEST_CASE("hemicube rows: another seed turns the hemicubes", "[engine][gl][every-device]") {
     const PatchMesh mesh(room_with_blocks(4));
     CHECK_FALSE(same_bytes(compute(mesh, {.resolution = 32, .seed = 1}),

@@ -127,8 +127,10 @@ void EmbreeRows::trace_texels(std::uint32_t patch) {
         for (std::uint32_t y = 0; y < height; y += 4) {
             for (std::uint32_t x = 0; x < resolution; x += 4) {
                 for (std::uint32_t k = 0; k < packet; ++k) {
-                    const double right = (x + k % 4 + 0.5) / resolution * 2.0 - 1.0;
-                    const double row = (y + k / 4 + 0.5) / resolution * 2.0;
+                    const std::uint32_t texel_x = x + k % 4;
+                    const std::uint32_t texel_y = y + k / 4;
+                    const double right = (texel_x + 0.5) / resolution * 2.0 - 1.0;
+                    const double row = (texel_y + 0.5) / resolution * 2.0;
                     const Vec3 v = face_direction(face, right, face == 0 ? row - 1.0 : row);
                     directions[k] = v.x * frame.x + v.y * frame.y + v.z * frame.z;
                     set_ray(rays, static_cast<int>(k), scene_->ray(eye.position, directions[k], infinity));

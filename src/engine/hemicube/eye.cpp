@@ -23,9 +23,8 @@ namespace {
 constexpr std::uint32_t max_eyes_a_side = 8;
 
 // Patches up to this aspect ratio have as many points as were asked for, in rows; longer ones have points for
-// their length, in no rows, up to so many times as many.
+// their length, spread without rows, up to max_more_eye_points times as many.
 constexpr double max_compact_aspect = 2.0 + 1e-9;
-constexpr double max_more_points = 4.0;
 
 /// Point of a rule on [0, 1]; the weights sum to 1.
 struct EdgePoint {
@@ -241,8 +240,8 @@ EyePoints make_eye_points(const PatchMesh& mesh, std::uint32_t count, std::uint3
         eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
         const double aspect = aspect_of(mesh.corners(patch), mesh.areas()[patch]);
         const bool needle = count > 1 && aspect > max_compact_aspect;
-        const auto more = needle ? static_cast<std::uint32_t>(
-                                       std::min(max_more_points, std::ceil(aspect / max_compact_aspect)))
+        const auto more = needle ? static_cast<std::uint32_t>(std::min<double>(
+                                       max_more_eye_points, std::ceil(aspect / max_compact_aspect)))
                                  : 1u;
         if (needle || near_sides[patch] > 1) {
             const std::uint32_t compact = std::max(near_sides[patch] * near_sides[patch], count * more);

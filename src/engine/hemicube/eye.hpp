@@ -29,11 +29,14 @@ struct EyePoints {
     }
 };
 
+/// Long patches have at most so many times the eye points that were asked for.
+inline constexpr std::uint32_t max_more_eye_points = 4;
+
 /// Eye points of every patch. One: its centroid. k²: a Gauss–Legendre rule of k × k points on quadrilaterals,
 /// weighted by the share of the area they stand for; on triangles the symmetric rule of fewest points that
 /// integrates polynomials of degree k (1, 3, 6 or 12 points, k = 1 to 4; above that as on quadrilaterals).
-/// Patches whose length is more than twice their width have ceil(length / 2 width) times as many, at most four
-/// times, as a Fibonacci lattice along them; one point remains one point.
+/// Patches whose length is more than twice their width have ceil(length / 2 width) times as many, at most
+/// four times, as a Fibonacci lattice along them; one point remains one point.
 /// @param count       a square: 1, 4, 9 … 64
 /// @param near_count  another: where a surface hovers close above a patch or stands on it
 ///   (find_near_surfaces), at a gap of g patch sizes, k is at least 1 / 2g, but k² at most this; the points

@@ -44,9 +44,9 @@ std::pair<std::uint32_t, double> cell_of(double at, std::uint32_t cells) {
 } // namespace
 
 VisibilityAccumulator::VisibilityAccumulator(const DrawList& list, std::uint32_t patches)
-    : list_(list), patches_(patches), item_of_id_(list.item_of_id), maps_(list.polygons.size()),
-      visible_(list.item_of_id.size()), hidden_(list.item_of_id.size()), side_seen_(list.polygons.size()),
-      share_(patches), evidence_(patches), columns_(patches), shares_(patches), texels_(patches) {
+    : list_(list), patches_(patches), item_of_id_(list.item_of_id), visible_(list.item_of_id.size()),
+      hidden_(list.item_of_id.size()), side_seen_(list.polygons.size()), share_(patches), evidence_(patches),
+      columns_(patches), shares_(patches), texels_(patches) {
     std::vector<std::uint32_t> first_id(patches, 0);
     for (std::uint32_t id = item_first_patch; id < item_of_id_.size(); ++id) {
         if (item_of_id_[id] < item_first_patch) {
@@ -60,13 +60,15 @@ VisibilityAccumulator::VisibilityAccumulator(const DrawList& list, std::uint32_t
             item_of_id_[id] = item_nothing;
         }
     }
-    for (std::uint32_t p = 0; p < list.polygons.size(); ++p) {
-        maps_[p] = make_grid_map(list, p);
-    }
 }
 
 void VisibilityAccumulator::add(const std::uint32_t* ids, const DeltaFormFactors& weights,
                                 const FrontViews& views, const EyePoint& eye, const EyeFrame& frame) {
+    if (maps_.empty()) {
+        for (std::uint32_t p = 0; p < list_.polygons.size(); ++p) {
+            maps_.push_back(make_grid_map(list_, p));
+        }
+    }
     add_visible(ids, weights);
     for (const FrontViews::View& view : views.views) {
         note_side({view.polygon, view.back});
@@ -120,7 +122,7 @@ VisibilityRow VisibilityAccumulator::take(Coverage& coverage) {
             hidden_[id] = std::exchange(coverage.of_id[id], Tally{0});
         }
     }
-    return finish();
+    return take();
 }
 
 /// A polygon of one cell: there is nothing to pool.
@@ -365,10 +367,6 @@ void VisibilityAccumulator::pool_cells(const DrawPolygon& polygon, std::uint32_t
 }
 
 VisibilityRow VisibilityAccumulator::take() {
-    return finish();
-}
-
-VisibilityRow VisibilityAccumulator::finish() {
     const double unit = 1.0 / std::exchange(total_, 0u);
     VisibilityRow row;
     row.environment = weight(std::exchange(visible_[item_nothing], 0)) * unit;

@@ -49,7 +49,6 @@ private:
     void spans(std::span<const FrontViews::Point> outline, std::uint32_t face, std::uint32_t resolution);
     void note_side(const Side& side);
     void take_single(std::uint32_t id, Tally covered);
-    [[nodiscard]] VisibilityRow finish();
     void pool(const Side& side);
     void pool_cells(const DrawPolygon& polygon, std::uint32_t first_id);
     void set(std::uint32_t id, Tally visible, Tally hidden);
@@ -64,7 +63,7 @@ private:
         std::uint32_t first;
     };
     std::vector<Double> doubles_; ///< those ids and the lower ones, ascending
-    std::vector<GridMap> maps_;   ///< per polygon
+    std::vector<GridMap> maps_;   ///< per polygon; made when views are added
     std::vector<Tally> visible_;  ///< per draw id
     std::vector<Tally> hidden_;
     std::vector<std::uint8_t> side_seen_; ///< bit 0: front, bit 1: back, per polygon

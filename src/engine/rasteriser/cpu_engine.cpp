@@ -57,23 +57,22 @@ public:
         : patches_(patches),
           chunk_size_(std::clamp<std::size_t>(patches.size() / (8 * makers.size()), 1, 16)),
           chunks_((patches.size() + chunk_size_ - 1) / chunk_size_), ahead_(4 * makers.size()) {
-        for (const auto& maker : makers) {
-            threads_.emplace_back([this, &rows = *maker] { work(rows); });
+        try {
+            for (const auto& maker : makers) {
+                threads_.emplace_back([this, &rows = *maker] { work(rows); });
+            }
+        } catch (...) { // no more threads are to be had: the destructor does not run
+            stop();
+            throw;
         }
     }
-    ~RowThreads() {
-        {
-            const std::lock_guard lock(mutex_);
-            stopped_ = true;
-        }
-        changed_.notify_all();
-    }
+    ~RowThreads() { stop(); }
     RowThreads(const RowThreads&) = delete;
     RowThreads& operator=(const RowThreads&) = delete;
 
     template <class Sink>
     void deliver(const Sink& sink) {
-        for (delivered_ = 0; delivered_ < chunks_;) {
+        while (delivered_ < chunks_) {
             RowChunk chunk;
             {
                 std::unique_lock lock(mutex_);
@@ -92,6 +91,13 @@ public:
     }
 
 private:
+    void stop() {
+        {
+            const std::lock_guard lock(mutex_);
+            stopped_ = true;
+        }
+        changed_.notify_all();
+    }
     void work(CpuRows& rows) {
         try {
             for (std::size_t index = 0; take(index);) {

@@ -27,19 +27,21 @@ struct CpuRows::State {
         return {geometry.eyes.of(patch)[eye].normal, patch, eye, settings.seed};
     }
 
-    /// Weights for an eye point that stands for `share` of its patch; a rule has few different shares.
+    /// Weights for an eye point that stands for `share` of its patch; a rule has few different shares, but
+    /// for their last bits, which DeltaFormFactors does not see.
     const TileWeights& weights_for(double share) {
-        constexpr std::size_t max_kept = 32;
-        const auto found = std::find_if(kept.begin(), kept.end(),
-                                        [share](const auto& entry) { return entry.first == share; });
+        const auto key = static_cast<std::uint64_t>(share * 0x1p32);
+        const auto found =
+            std::find_if(kept.begin(), kept.end(), [key](const auto& entry) { return entry.first == key; });
         if (found != kept.end()) {
             return found->second;
         }
-        if (kept.size() == max_kept) {
+        constexpr std::size_t most_bytes = std::size_t{8} << 20; // a thread
+        constexpr std::size_t bytes_a_texel = sizeof(std::uint32_t) + sizeof(TexelTally);
+        if (kept.size() >= std::clamp<std::size_t>(most_bytes / (tiles.size() * bytes_a_texel), 2, 64)) {
             kept.pop_front();
         }
-        return kept.emplace_back(share, TileWeights(tiles, share >= 1.0 ? delta : delta.scaled(share)))
-            .second;
+        return kept.emplace_back(key, TileWeights(tiles, share >= 1.0 ? delta : delta.scaled(share))).second;
     }
 
     const EngineGeometry& geometry;
@@ -47,7 +49,7 @@ struct CpuRows::State {
     DeltaFormFactors delta;
     TexelTiles tiles;
     std::unique_ptr<Rasteriser> rasteriser;
-    std::deque<std::pair<double, TileWeights>> kept;
+    std::deque<std::pair<std::uint64_t, TileWeights>> kept;
     std::optional<RowAccumulator> accumulator;       ///< of form factors
     std::optional<VisibilityAccumulator> visibility; ///< or of visibility
     std::optional<Coverage> coverage;                ///< with it

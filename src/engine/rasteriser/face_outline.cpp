@@ -23,11 +23,10 @@ FaceOutline::FaceOutline(std::span<const FaceVertex> outline, const std::array<i
         const FaceVertex& a = outline[k];
         const FaceVertex& b = outline[k + 1 < outline.size() ? k + 1 : 0];
         FaceEdge& e = edges_[k];
-        if (a.projects && b.projects) {
-            e = {a.x, a.y, 1.0f, b.x, b.y, 1.0f, b.y > a.y || (b.y == a.y && b.x > a.x)};
-        } else {
-            e = {a.hx, a.hy, a.hw, b.hx, b.hy, b.hw, std::tie(b.hy, b.hx, b.hw) > std::tie(a.hy, a.hx, a.hw)};
-        }
+        e = a.projects ? FaceEdge{a.x, a.y, 1.0f, 0.0f, 0.0f, 0.0f, false}
+                       : FaceEdge{a.hx, a.hy, a.hw, 0.0f, 0.0f, 0.0f, false};
+        std::tie(e.bx, e.by, e.bw) = b.projects ? std::tuple(b.x, b.y, 1.0f) : std::tuple(b.hx, b.hy, b.hw);
+        e.in = std::tie(e.by, e.bx, e.bw) > std::tie(e.ay, e.ax, e.aw);
         // The product of the differences, as a function of the point.
         const double ax = static_cast<double>(e.ax);
         const double ay = static_cast<double>(e.ay);

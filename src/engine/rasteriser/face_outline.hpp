@@ -8,7 +8,7 @@
 
 namespace hemi {
 
-/// An edge of an outline, from a to b: in texels (aw = bw = 1), or homogeneous.
+/// An edge of an outline, from a to b: either end in texels (w = 1) where it projects, else homogeneous.
 struct FaceEdge {
     float ax, ay, aw, bx, by, bw;
     bool in; ///< whether points on it count as inside: in one of the two polygons that share it
@@ -16,8 +16,7 @@ struct FaceEdge {
 
 /// A convex polygon on a face, counter-clockwise, and the tiles that it covers.
 ///
-/// Vertices may lie anywhere: an edge is tested in texels where both its ends project, as in clusters, else
-/// homogeneously.
+/// Vertices may lie anywhere. Where both ends of an edge project, it is tested by the arithmetic of clusters.
 class FaceOutline {
 public:
     FaceOutline() = default;

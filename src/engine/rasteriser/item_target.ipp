@@ -30,8 +30,9 @@ public:
           texels_(static_cast<float>(tiles.resolution())), half_(0.5f * texels_), across_(tiles.across()),
           padded_(tiles.resolution() % 8 != 0) {
         for (std::uint32_t k = 0; k < tile_size; ++k) {
+            const std::uint32_t row = k / 4;
             tile_x_[k] = static_cast<float>(k % 4);
-            tile_y_[k] = static_cast<float>(k / 4);
+            tile_y_[k] = static_cast<float>(row);
         }
     }
 
@@ -271,7 +272,7 @@ private:
         }
         covered += TexelTally{hn::GetLane(hn::SumOfLanes(ids_of, sum.weights))} << 32 | sum.texels;
     }
-    /// Without the texels that are none, beyond the upper and right edge of a face.
+    /// Without padding, beyond the upper and right edge of a face.
     HWY_INLINE Mask on_face_only(Mask inside, int face, double x, double y, Vec in_x, Vec in_y) const {
         if (!padded_) {
             return inside;
@@ -335,7 +336,7 @@ private:
     float texels_;
     float half_;
     std::uint32_t across_;
-    bool padded_; ///< some tiles have texels that are none
+    bool padded_; ///< some tiles have padding
     const TileWeights* weights_ = nullptr;
     Coverage* coverage_ = nullptr;
     std::vector<DrawnCells> cells_; ///< of the hemicube, where coverage is wanted

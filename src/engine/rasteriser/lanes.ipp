@@ -30,7 +30,7 @@ constexpr Ints ints;
 constexpr Ids ids_of;
 constexpr std::uint32_t lanes = HWY_LANES(float) < 16 ? HWY_LANES(float) : 16;
 constexpr std::uint32_t tile_size = TexelTiles::tile_size;
-constexpr std::uint32_t cluster_size = RasterScene::cluster_size;
+constexpr std::size_t cluster_size = RasterScene::cluster_size;
 HWY_INLINE Vec set(float value) {
     return hn::Set(floats, value);
 }

@@ -143,8 +143,8 @@ std::array<int, 4> Projection::box_of(int face, std::span<const FaceVertex> outl
     struct Point {
         double x, y, w;
     };
-    std::array<Point, 12> from{};
-    std::array<Point, 12> to{};
+    std::array<Point, 20> from{};
+    std::array<Point, 20> to{};
     std::size_t count = 0;
     for (const FaceVertex& v : outline) {
         from[count++] = {static_cast<double>(v.hx), static_cast<double>(v.hy), static_cast<double>(v.hw)};

@@ -22,7 +22,6 @@ inline constexpr std::array<FaceAxes, hemicube_faces> face_axes{{{0, 2, 1.0f, 1.
                                                                  {0, 1, 1.0f, -1.0f, 2}}};
 
 /// A vertex on a face.
-/// A vertex on a face.
 struct FaceVertex {
     float x = 0.0f, y = 0.0f;              ///< in texels, where `projects`
     float hx = 0.0f, hy = 0.0f, hw = 0.0f; ///< homogeneous: x = hx / hw

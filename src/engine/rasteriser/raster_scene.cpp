@@ -40,6 +40,25 @@ std::vector<Triangle> collect_triangles(const DrawList& list,
     return triangles;
 }
 
+/// Whether a polygon has three or four corners, none of them straight.
+bool has_no_straight_corner(const DrawList& list, const DrawPolygon& polygon) {
+    constexpr double least_sine = 1e-3;
+    if (polygon.corner_count > 4) {
+        return false;
+    }
+    const auto corner = [&](std::uint32_t k) {
+        return list.vertices[list.corners[polygon.first_corner + k % polygon.corner_count].vertex];
+    };
+    for (std::uint32_t k = 0; k < polygon.corner_count; ++k) {
+        const Vec3 before = glm::normalize(corner(k + 1) - corner(k));
+        const Vec3 after = glm::normalize(corner(k + 2) - corner(k + 1));
+        if (glm::length(glm::cross(before, after)) < least_sine) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /// The vertices of some triangles, each once.
 std::vector<std::uint32_t> vertices_of(std::span<const Triangle> triangles) {
     std::vector<std::uint32_t> vertices;
@@ -165,7 +184,7 @@ RasterScene::RasterScene(const DrawList& the_list) : list(the_list) {
     if (!list.vertices.empty()) {
         origin = 0.5 * (lower + upper);
         const double largest = 0.5 * std::max({upper.x - lower.x, upper.y - lower.y, upper.z - lower.z});
-        scale = std::ldexp(1.0, -std::ilogb(largest) - 1);
+        scale = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest) - 1) : 1.0;
     }
     std::vector<Triangle> triangles = collect_triangles(list, grid_polygons);
     ClusterBuilder(*this).add(triangles);
@@ -173,6 +192,7 @@ RasterScene::RasterScene(const DrawList& the_list) : list(the_list) {
         const DrawPolygon& outline = list.polygons[drawn.polygon];
         drawn.centre = split(outline.centre).high;
         drawn.radius = static_cast<float>(outline.radius * scale * 1.0001) + sphere_rounding;
+        drawn.whole = has_no_straight_corner(list, outline);
         drawn.first_corner = static_cast<std::uint32_t>(grid_corners.size());
         for (std::uint32_t k = 0; k < outline.corner_count; ++k) {
             grid_corners.push_back(split(list.vertices[list.corners[outline.first_corner + k].vertex]));

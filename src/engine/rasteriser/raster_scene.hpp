@@ -78,6 +78,9 @@ struct RasterScene {
         std::array<float, 3> centre{}; ///< with `radius`: a sphere round it, in raster coordinates
         float radius = 0.0f;
         std::uint32_t first_corner = 0; ///< into grid_corners; as many as the polygon has
+        /// Drawn as one outline of three or four edges. Others have corners along their edges and are drawn
+        /// triangle by triangle: a short edge says little about points far along its line.
+        bool whole = false;
     };
     std::vector<GridPolygon> grid_polygons;
     std::vector<SplitPosition> grid_corners;

@@ -9,8 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
-#include <tuple>
 
 // One source for all instruction sets: this file is compiled once for each by foreach_target.h.
 #undef HWY_TARGET_INCLUDE
@@ -27,8 +25,6 @@ namespace {
 
 // Triangles that may cover up to so many texel centres are tested side by side, one in each lane.
 constexpr float max_small = 6.0f;
-// How far beyond a texel's centre a vertex may lie and still count as at it.
-constexpr float centre_slack = 1e-3f;
 
 /// Triangles that may cover few texels, collected until they fill all lanes several times.
 struct SmallTriangles {
@@ -48,7 +44,7 @@ public:
     SimdRasteriser(const RasterScene& scene, const TexelTiles& tiles)
         : scene_(scene), projection_(scene, tiles.resolution()), target_(tiles),
           texels_(projection_.texels()), half_(projection_.half()), guard_(projection_.guard()),
-          tolerance_(scene.list.tolerance),
+          slack_(std::max(1e-3f, 2e-6f * texels_)), tolerance_(scene.list.tolerance),
           near_plane_(static_cast<float>(tolerance_ * scene.scale) + 2e-6f) {}
 
     void draw(const EyePoint& eye, const EyeFrame& frame, const TileWeights* weights,
@@ -143,15 +139,15 @@ private:
                                         hn::Mul(hn::Load(floats, &scene_.plane[1][first + t]), ey)),
                                 hn::Mul(hn::Load(floats, &scene_.plane[2][first + t]), ez)),
                         hn::Load(floats, &scene_.plane[3][first + t]));
-            hn::Store(height, floats, &side_[t]);
-            const Mask close =
-                hn::And(hn::Lt(hn::Abs(height), set(near_plane_)), hn::FirstN(floats, count - t));
+            const Mask own = hn::RebindMask(
+                floats, hn::Eq(hn::Load(ids_of, &scene_.polygon[first + t]), hn::Set(ids_of, own_polygon_)));
+            hn::Store(hn::IfThenZeroElse(own, height), floats, &side_[t]);
+            const Mask close = hn::AndNot(
+                own, hn::And(hn::Lt(hn::Abs(height), set(near_plane_)), hn::FirstN(floats, count - t)));
             for (std::uint32_t bits = bits_of(close); bits != 0; bits &= bits - 1) {
                 const std::uint32_t k = t + static_cast<std::uint32_t>(std::countr_zero(bits));
                 const double exact = projection_.height_above(scene_.polygon[first + k]);
-                side_[k] = scene_.polygon[first + k] == own_polygon_ || std::abs(exact) <= tolerance_ ? 0.0f
-                           : exact > 0.0                                                              ? 1.0f
-                                                                                                      : -1.0f;
+                side_[k] = std::abs(exact) <= tolerance_ ? 0.0f : exact > 0.0 ? 1.0f : -1.0f;
             }
         }
     }
@@ -200,8 +196,7 @@ private:
             const float x1 = hn::GetLane(hn::MaxOfLanes(floats, right));
             const float y0 = hn::GetLane(hn::MinOfLanes(floats, low));
             const float y1 = hn::GetLane(hn::MaxOfLanes(floats, high));
-            if (x0 > last_x + centre_slack || x1 < -centre_slack || y0 > last_y + centre_slack ||
-                y1 < -centre_slack) {
+            if (x0 > last_x + slack_ || x1 < -slack_ || y0 > last_y + slack_ || y1 < -slack_) {
                 return;
             }
         }
@@ -237,7 +232,7 @@ private:
             const Vec y0 = look_up(y_.data(), c0);
             const Vec ya = look_up(y_.data(), c1);
             const Vec yb = look_up(y_.data(), c2);
-            const Vec slack = set(centre_slack);
+            const Vec slack = set(slack_);
             const Vec box_left = hn::Max(hn::Ceil(hn::Sub(hn::Min(x0, hn::Min(xa, xb)), slack)), set(0.0f));
             const Vec box_right =
                 hn::Min(hn::Floor(hn::Add(hn::Max(x0, hn::Max(xa, xb)), slack)), set(last_x));
@@ -506,9 +501,7 @@ private:
             Shown shown;
             Affine inverse;
             bool ready = false;
-            // An outline with corners along its edges is drawn triangle by triangle: a short edge says little
-            // about points far along its line.
-            const bool whole = polygon.corner_count <= 4;
+            const bool whole = drawn.whole;
             const std::uint32_t pieces = whole ? 1 : polygon.triangle_count;
             for (std::uint32_t piece = 0; piece < pieces; ++piece) {
                 std::array<FaceVertex, 4> outline;
@@ -542,6 +535,7 @@ private:
     float texels_; ///< of a face's edge, and half of it; vertices project where they are nearer than guard_
     float half_;
     float guard_;
+    float slack_; ///< how far beyond a texel's centre a vertex may lie and still count as at it
     double tolerance_;
     float near_plane_; ///< eyes nearer to a plane are looked at in double precision
 

@@ -11,8 +11,8 @@
 namespace hemi {
 
 /// Where the CPU rasteriser keeps the texels of a hemicube: in tiles of 4 x 4, one cache line each, row by
-/// row, face after face. Tiles at the upper and right edge of a face may have texels that are none: they are
-/// drawn like others, and weigh nothing.
+/// row, face after face. Tiles at the upper and right edge of a face may have padding: texels that are drawn
+/// like others, and weigh nothing.
 class TexelTiles {
 public:
     static constexpr std::uint32_t tile_size = 16; ///< texels
@@ -37,7 +37,7 @@ public:
     [[nodiscard]] std::uint32_t first(int face) const noexcept {
         return first_[static_cast<std::size_t>(face)];
     }
-    /// Texels of all faces, those that are none included; a multiple of tile_size.
+    /// Texels of all faces, padding included; a multiple of tile_size.
     [[nodiscard]] std::uint32_t size() const noexcept { return size_; }
     /// Position of texel (x, y) of a face.
     [[nodiscard]] std::uint32_t at(int face, std::uint32_t x, std::uint32_t y) const noexcept {
@@ -54,15 +54,15 @@ private:
 /// A weight in the upper and a number of texels in the lower half: both are summed at once.
 using TexelTally = std::uint64_t;
 
-/// Delta form factors in the order of TexelTiles, and their sums by tile. Texels that are none weigh 0.
+/// Delta form factors in the order of TexelTiles, and their sums by tile. Padding weighs 0.
 struct TileWeights {
     TileWeights(const TexelTiles& tiles, const DeltaFormFactors& weights);
 
     std::vector<std::uint32_t> weight;      ///< tiles.size()
     std::vector<std::uint32_t> tile_weight; ///< tiles.size() / 16
-    std::vector<TexelTally> texel; ///< weight and number 1 of every texel; both 0 for those that are none
-    std::vector<TexelTally> tile;  ///< the same by tile
-    std::uint32_t sum;             ///< of all weights
+    std::vector<TexelTally> texel;          ///< weight and number 1 of every texel; both 0 for padding
+    std::vector<TexelTally> tile;           ///< the same by tile
+    std::uint32_t sum;                      ///< of all weights
 };
 
 } // namespace hemi

@@ -1,5 +1,6 @@
 #include "engine/workers/worker_wire.hpp"
 
+#include "engine/hemicube/eye.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
@@ -93,8 +94,10 @@ ResultSlot::ResultSlot(std::uint32_t patches, const HemicubeSettings& settings, 
     const std::uint64_t row_texels = texels * std::max(settings.eye_points, settings.near_eye_points);
     rows_ = static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(texels_a_chunk / row_texels, 1, FormFactorMatrix::block_rows));
-    // Visibility is pooled: patches without a texel of their own have some.
-    row_entries_ = with_visibility_ ? patches : std::min<std::uint64_t>(patches, row_texels);
+    // Visibility is pooled: patches without a texel of their own have some. Long patches have more eye
+    // points.
+    const std::uint32_t more = settings.eye_points > 1 ? max_more_eye_points : 1;
+    row_entries_ = with_visibility_ ? patches : std::min<std::uint64_t>(patches, more * row_texels);
     constexpr std::size_t page = 4096;
     bytes_ = rows_ * (sizeof(RowHead) +
                       row_entries_ * (sizeof(std::uint32_t) + sizeof(float) + (with_visibility_ ? 1 : 0)));
