@@ -132,7 +132,7 @@ void run(const Options& options) {
 
 } // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     if (argc == 3 && std::string_view(argv[1]) == frames_argument) {
         return run_frames(argv[2]);
     }
@@ -144,12 +144,12 @@ int main(int argc, char** argv) {
     declare(app, options);
     try {
         app.parse(argc, argv);
-        run(options);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? EXIT_SUCCESS : 2;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "bench: {}\n", error.what());
-        return EXIT_FAILURE;
     }
+    run(options);
     return EXIT_SUCCESS;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "bench: %s\n", error.what());
+    return EXIT_FAILURE;
 }

@@ -72,13 +72,14 @@ private:
         if (word.empty()) {
             return;
         }
-        const auto letter = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+        const auto first = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+        // Titles and ends may be words; all other lines begin with a single letter.
+        const bool known = word.size() == 1 || first == 'E' || first == '*' || first == 'T';
+        const char letter = known ? first : '\0';
         if (letter == 'E' || letter == '*') {
             ended_ = true;
         } else if (letter == 'T') {
             read_title(line);
-        } else if (word.size() > 1) {
-            refuse(word);
         } else if (letter == 'V') {
             read_vertex(words);
         } else if (letter == 'S') {
