@@ -89,22 +89,9 @@ template <bool identity>
 void RowAccumulator::add_all_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights) {
     const std::uint32_t* const item_of_id = item_of_id_.data();
     std::uint32_t* const sums = sums_.data();
-    const auto item = [item_of_id](std::uint32_t id) { return identity ? id : item_of_id[id]; };
-    for (std::size_t first = 0; first < ids.size(); first += TexelTiles::tile_size) {
-        const std::uint32_t* const tile = ids.data() + first;
-        std::uint32_t differing = 0;
-        for (std::size_t k = 1; k < TexelTiles::tile_size; ++k) {
-            differing |= tile[k] ^ tile[0];
-        }
-        if (differing == 0) {
-            sums[item(tile[0])] += weights.tile_weight[first / TexelTiles::tile_size];
-            continue;
-        }
-        const std::uint32_t* const weight = weights.weight.data() + first;
-        for (std::size_t k = 0; k < TexelTiles::tile_size; ++k) {
-            sums[item(tile[k])] += weight[k];
-        }
-    }
+    sum_by_id<std::uint32_t>(
+        ids, weights.weight, weights.tile_weight,
+        [=](std::uint32_t id, std::uint32_t weight) { sums[identity ? id : item_of_id[id]] += weight; });
 }
 
 RowView RowAccumulator::take() {

@@ -87,21 +87,8 @@ void VisibilityAccumulator::note_side(const Side& side) {
 
 void VisibilityAccumulator::add_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights) {
     Tally* const visible = visible_.data();
-    for (std::size_t first = 0; first < ids.size(); first += TexelTiles::tile_size) {
-        const std::uint32_t* const tile = ids.data() + first;
-        std::uint32_t differing = 0;
-        for (std::size_t k = 1; k < TexelTiles::tile_size; ++k) {
-            differing |= tile[k] ^ tile[0];
-        }
-        if (differing == 0) {
-            visible[tile[0]] += weights.tile[first / TexelTiles::tile_size];
-            continue;
-        }
-        const Tally* const texel = weights.texel.data() + first;
-        for (std::size_t k = 0; k < TexelTiles::tile_size; ++k) {
-            visible[tile[k]] += texel[k];
-        }
-    }
+    sum_by_id<Tally>(ids, weights.texel, weights.tile,
+                     [visible](std::uint32_t id, Tally tally) { visible[id] += tally; });
     total_ += weights.sum;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hemi {
@@ -64,5 +65,29 @@ struct TileWeights {
     std::vector<TexelTally> tile;           ///< the same by tile
     std::uint32_t sum;                      ///< of all weights
 };
+
+/// Calls `add(id, sum)` until every texel is summed under its draw id: once for a tile of one id, else texel
+/// by texel.
+/// @param ids    in the order of TexelTiles
+/// @param texel  what a texel counts, and `tile` the same by tile
+template <class Sum, class Add>
+void sum_by_id(std::span<const std::uint32_t> ids, std::span<const Sum> texel, std::span<const Sum> tile,
+               const Add& add) {
+    for (std::size_t first = 0; first < ids.size(); first += TexelTiles::tile_size) {
+        const std::uint32_t* const id = ids.data() + first;
+        std::uint32_t differing = 0;
+        for (std::size_t k = 1; k < TexelTiles::tile_size; ++k) {
+            differing |= id[k] ^ id[0];
+        }
+        if (differing == 0) {
+            add(id[0], tile[first / TexelTiles::tile_size]);
+            continue;
+        }
+        const Sum* const sums = texel.data() + first;
+        for (std::size_t k = 0; k < TexelTiles::tile_size; ++k) {
+            add(id[k], sums[k]);
+        }
+    }
+}
 
 } // namespace hemi
