@@ -524,7 +524,7 @@ seed : int, optional
 device : str
     "auto", "cpu", "egl", "egl:N" or "osmesa"; see devices().
 jobs : int
-    Threads of "cpu", worker processes of software OpenGL; 0: one for each core.
+    Threads of "cpu", worker processes of OpenGL; 0: one for each core, on a GPU four at most.
 repair : {"closure", "reciprocity", "none"}, optional
     What is enforced. Without it: closure where factors have visibility, nothing in plain rows and in single
     rows.

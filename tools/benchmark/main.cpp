@@ -88,11 +88,12 @@ void print_cpu_findings(Measurements& measurements, const Case& office, const Op
     }
 }
 
-Setup make_setup(const Options& options, const std::string& device, unsigned workers) {
+Setup make_setup(const Options& options, const gl::Context& context, unsigned cores) {
     Setup setup;
-    setup.device = device;
+    setup.device = context.name();
+    setup.software = context.software();
     setup.worker_program = find_worker_program();
-    setup.workers = workers;
+    setup.workers = context.software() ? cores : std::min(cores, 4u); // as an engine that is asked for 0
     setup.effort.seconds = options.quick ? 0.2 : 0.5;
     return setup;
 }
@@ -108,7 +109,7 @@ void run(const Options& options) {
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     auto context = gl::make_context(options.device);
     const std::string renderer = context->renderer();
-    const Setup setup = make_setup(options, context->name(), context->software() ? cores : 0);
+    const Setup setup = make_setup(options, *context, cores);
     context.reset();
 
     Report report(circumstances_of(setup, renderer, cores));

@@ -16,7 +16,8 @@ namespace hemi::bench {
 struct Setup {
     std::string device; ///< of OpenGL
     std::filesystem::path worker_program;
-    std::uint32_t workers = 1; ///< processes; 0: none, a GPU
+    bool software = true;      ///< OpenGL; figures that say what the CPU reaches have an aim there alone
+    std::uint32_t workers = 1; ///< processes
     Effort effort{0.5, 3};
     std::uint64_t seed = 0;
 };
@@ -55,6 +56,7 @@ public:
 
 private:
     [[nodiscard]] HemicubeSettings settings(std::uint32_t resolution) const;
+    [[nodiscard]] Bound software_bound() const { return setup_.software ? Bound::at_least : Bound::none; }
     /// @param workers  processes; 0: one context of this process
     [[nodiscard]] std::unique_ptr<RowProvider> engine(const Case& scene, const HemicubeSettings& settings,
                                                       std::uint32_t workers) const;

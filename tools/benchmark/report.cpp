@@ -20,13 +20,12 @@ void line(fmt::format_string<Args...> format, Args&&... arguments) {
     std::fflush(stdout);
 }
 
-std::string rate(const std::optional<double>& hemicubes) {
-    return hemicubes ? fmt::format("{:.{}f}", *hemicubes, *hemicubes < 100.0 ? 1 : 0) : "-";
+std::string rate(double hemicubes) {
+    return fmt::format("{:.{}f}", hemicubes, hemicubes < 100.0 ? 1 : 0);
 }
 
 double megapixels(const Cell& cell) {
-    const double fastest = cell.all_workers.value_or(cell.one_core);
-    return 3e-6 * cell.resolution * cell.resolution * fastest;
+    return 3e-6 * cell.resolution * cell.resolution * cell.all_workers;
 }
 
 std::string bound_text(const Finding& finding) {
@@ -38,16 +37,13 @@ std::string bound_text(const Finding& finding) {
 }
 
 nlohmann::json to_json(const Cell& cell) {
-    const auto value = [](const std::optional<double>& number) {
-        return number ? nlohmann::json(*number) : nlohmann::json();
-    };
     return {{"scene", cell.scene},
             {"patches", cell.patches},
             {"resolution", cell.resolution},
             {"hemicubes_per_second",
              {{"one_core", cell.one_core},
-              {"one_worker", value(cell.one_worker)},
-              {"all_workers", value(cell.all_workers)},
+              {"one_worker", cell.one_worker},
+              {"all_workers", cell.all_workers},
               {"naive", cell.naive},
               {"embree", cell.embree},
               {"monte_carlo", cell.monte_carlo}}},

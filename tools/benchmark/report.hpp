@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +11,7 @@ namespace hemi::bench {
 struct Circumstances {
     std::string renderer;
     unsigned cores = 1;
-    std::uint32_t workers = 1; ///< 0: no worker processes, a GPU
+    std::uint32_t workers = 1;
     std::uint64_t seed = 0;
     double run_seconds = 0.0;
     unsigned rounds = 0;
@@ -24,8 +23,8 @@ struct Cell {
     std::uint32_t patches = 0;
     std::uint32_t resolution = 0;
     double one_core = 0.0; ///< one context of one thread, as naive has
-    std::optional<double> one_worker;
-    std::optional<double> all_workers;
+    double one_worker = 0.0;
+    double all_workers = 0.0;
     double naive = 0.0;
     double ratio = 0.0;       ///< one_core / naive
     double embree = 0.0;      ///< rays through the same texels, one core

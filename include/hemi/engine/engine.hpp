@@ -36,7 +36,7 @@ inline constexpr const char* cpu_device = "cpu";
 /// Where and how rows are computed; none of it changes a bit of them on the same kind of device.
 struct EngineSettings {
     std::string device = "auto"; ///< auto (a GPU if there is one, else cpu), cpu, egl, egl:N or osmesa
-    /// Threads on `cpu`, worker processes on software OpenGL; 0: one per core. A GPU is served by one.
+    /// Threads on `cpu`, worker processes on OpenGL; 0: one per core, on a GPU four at most.
     std::uint32_t jobs = 0;
     /// Program that is started for every worker, see find_worker_program(). Empty: rows are computed in this
     /// process, by one context.
@@ -45,7 +45,7 @@ struct EngineSettings {
 
 /// Form factors by hemicubes, whose item buffers are drawn by OpenGL or by the CPU rasteriser. Contexts are
 /// made on the first call of rows() or renderer(). On `cpu`, rows come from `jobs` threads, in order; on
-/// software OpenGL with a worker program from `jobs` worker processes; on a GPU from one context of this
+/// OpenGL from `jobs` worker processes where there is a worker program, else from one context of this
 /// process.
 /// @param mesh      must outlive the engine
 /// @param settings  what changes the rows

@@ -175,7 +175,7 @@ void add_drawing(CLI::App& app, RowOptions& rows) {
                  "draw every patch separately, even in coplanar lattices", false);
     add_device(app, rows.factors.engine.device, true);
     Options(app, "Computing")
-        .value("--jobs", "N", "threads on cpu, worker processes on software OpenGL (one per core)",
+        .value("--jobs", "N", "threads on cpu, worker processes on OpenGL (one per core; on a GPU four)",
                [&rows](const std::string& text) {
                    rows.factors.engine.jobs = to_index("--jobs", text, 1, 1024);
                });

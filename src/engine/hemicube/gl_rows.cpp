@@ -55,12 +55,15 @@ struct GlRows::State {
     }
 
     /// Starts as many hemicubes from `next` on as fit a batch: in slots, and in vertices where the mesh is
-    /// large. `next` moves on.
+    /// large. `next` moves on. A batch ends with a block of the matrix, as the work of a worker does: a
+    /// GPU rounds by a hemicube's place in the atlas, which must not depend on the number of workers.
     Batch begin_batch(std::span<const std::uint32_t> patches, std::size_t& next, std::uint32_t& next_eye) {
         constexpr std::size_t enough_vertices = std::size_t{1} << 20;
         Batch batch;
         stream.clear();
+        const std::uint32_t block = patches[next] / FormFactorMatrix::block_rows;
         while (batch.size() < buffers.slots() && next < patches.size() &&
+               patches[next] / FormFactorMatrix::block_rows == block &&
                (batch.empty() || stream.size() < enough_vertices)) {
             Hemicube& hemicube = batch.emplace_back(Hemicube{patches[next], next_eye, {}});
             const auto eyes = geometry.eyes.of(hemicube.patch);

@@ -202,6 +202,10 @@ private:
     SharedMemory results_;
 };
 
+/// What a hemicube shows is found on the CPU, so one process leaves a GPU idle. More than these bring little,
+/// while each takes a tenth of a second and memory for a context of its own.
+constexpr std::uint32_t gpu_processes = 4;
+
 class WorkerPool final : public RawRowProvider {
 public:
     WorkerPool(std::unique_ptr<const EngineGeometry> geometry, const HemicubeSettings& settings,
@@ -252,19 +256,12 @@ private:
             }
         };
         try {
-            // Where it may turn out to be a GPU, one process asks first: it would be served by that one
-            // alone.
+            // Where it may turn out to be a GPU, one process asks first.
             start_until(gl::is_surely_software(engine_.device) ? jobs : 1);
             const FromWorker ready = workers_[0].receive();
             renderer_ = ready.text.data();
-            if (ready.software == 0) {
-                if (engine_.jobs > 1) {
-                    throw InvalidArgument(
-                        fmt::format("{} worker processes on {}: a GPU is served by one; ask for none",
-                                    engine_.jobs, renderer_),
-                        {"jobs"});
-                }
-                jobs = 1;
+            if (ready.software == 0 && engine_.jobs == 0) {
+                jobs = std::min(jobs, gpu_processes);
             }
             start_until(jobs);
             for (std::size_t i = 1; i < workers_.size(); ++i) {

@@ -7,7 +7,8 @@
 
 namespace hemi {
 
-/// Rows from worker processes: one per core on software OpenGL, a single one on a GPU.
+/// Rows from worker processes: unless `jobs` says how many, one per core on software OpenGL, up to four on a
+/// GPU.
 /// @throws InvalidArgument, NoDevice, GlError, Error as make_hemicube_engine, on first use.
 [[nodiscard]] std::unique_ptr<RawRowProvider> make_worker_pool(std::unique_ptr<const EngineGeometry> geometry,
                                                                const HemicubeSettings& settings,
