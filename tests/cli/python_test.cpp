@@ -23,9 +23,9 @@ TEST_CASE("Python: the module reads what hemi writes, and the example draws a ro
     CHECK(module.status == 0);
     CHECK(module.out == "all equal\n");
 
-    const auto example =
-        run_command({"/usr/bin/python3", HEMI_SOURCE_DIR "/tools/python/plot_row.py", hff,
-                     directory.path("patches.csv"), "--row", "5", "-o", directory.path("row.png")});
+    const std::string plot_row = HEMI_SOURCE_DIR "/tools/python/plot_row.py";
+    const auto example = run_command({"/usr/bin/python3", plot_row, hff, directory.path("patches.csv"),
+                                      "--row", "5", "-o", directory.path("row.png")});
     INFO(example.err);
     CHECK(example.status == 0);
     CHECK(directory.read("row.png").substr(1, 3) == "PNG");

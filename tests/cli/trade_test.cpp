@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 using namespace hemi::cli_test;
 
@@ -147,6 +148,16 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
     const std::string plot = directory.read("plot.svg");
     CHECK(plot.starts_with("<svg "));
     CHECK(plot.ends_with("</svg>\n"));
+    // Letters are 7.2 wide at most on average; the title is written larger and shortened by itself.
+    const std::regex started(
+        "<text x=\"([0-9.]+)\"[^>]*text-anchor=\"start\"[^>]*fill=\"#222222\" >([^<]*)<");
+    std::size_t legends = 0;
+    for (std::sregex_iterator text(plot.begin(), plot.end(), started), end; text != end; ++text) {
+        INFO((*text)[2]);
+        CHECK(std::stod((*text)[1]) + 7.2 * static_cast<double>((*text)[2].length()) <= 960.0);
+        ++legends;
+    }
+    CHECK(legends > 3);
     CHECK(plot.find("24 patches: Box &lt;1&gt; &amp; more") != std::string::npos);
 
     const Outcome text = run_hemi(on_osmesa({"trade", scene, "--budget", "60s"}));

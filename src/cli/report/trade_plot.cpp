@@ -183,15 +183,24 @@ private:
 
     void legend() {
         double x = left;
-        constexpr double y = 52.0;
+        double y = 46.0;
+        const auto make_room = [&](double needed) { // on a second line, where the first is full
+            if (x > left && x + needed > right) {
+                x = left;
+                y += 18.0;
+            }
+        };
         for (const std::string& family : families_) {
+            make_room(15.0 + text_width(family));
             svg_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", x + 5.0,
                                 y - 4.0, marker, colour_of(family));
             write(x + 15.0, y, "start", "#222222", family);
             x += 15.0 + text_width(family) + 12.0;
         }
+        const std::string best = "the best for their time";
+        make_room(28.0 + text_width(best));
         line(x, y - 4.0, x + 22.0, y - 4.0, "#bbbbbb", 5.0);
-        write(x + 28.0, y, "start", "#222222", "the best for their time");
+        write(x + 28.0, y, "start", "#222222", best);
     }
 
     void front() {
