@@ -11,6 +11,7 @@
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/pipeline/accuracy.hpp"
+#include "hemi/pipeline/patch_size_error.hpp"
 
 #include <fmt/format.h>
 
@@ -95,6 +96,17 @@ Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loade
     return {std::move(found.factors), std::move(found.solution)};
 }
 
+/// Adds what the patches' size does, unless no estimate is wanted.
+void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loaded, Observer& observer,
+                         Solution& solution, Seconds& seconds) {
+    if (!arguments.rows.factors.estimate_error) {
+        return;
+    }
+    solution.patch_size_error =
+        estimate_patch_size_error(loaded.scene, loaded.mesh, solution, arguments.rows.factors, observer);
+    seconds["estimate"] += solution.patch_size_error ? solution.patch_size_error->seconds : 0.0;
+}
+
 void write_files(const SolveArguments& arguments, const LoadedScene& loaded, const Solution& solution) {
     if (arguments.patches) {
         io::write_patches_csv(*arguments.patches, loaded.mesh);
@@ -134,9 +146,10 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         (void)choose_camera(loaded.scene, loaded.mesh, arguments.picture);
     }
     TerminalObserver observer(terminal);
-    const auto [factors, solution] = arguments.rows.error_target
-                                         ? solve_to_target(arguments, loaded, observer, terminal, seconds)
-                                         : solve(arguments, loaded, observer, terminal, seconds);
+    auto [factors, solution] = arguments.rows.error_target
+                                   ? solve_to_target(arguments, loaded, observer, terminal, seconds)
+                                   : solve(arguments, loaded, observer, terminal, seconds);
+    estimate_patch_size(arguments, loaded, observer, solution, seconds);
     const double max_row_error = arguments.rows.max_row_error;
     const RowSums sums = row_sums(factors.matrix);
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);

@@ -36,9 +36,9 @@ TEST_CASE("sources: every public header compiles on its own", "[structure]") {
             ++proven;
             continue;
         }
-        const auto outcome =
-            run_command({"g++", "-std=c++20", "-fsyntax-only", "-w", "-I", HEMI_SOURCE_DIR "/include", "-x",
-                         "c++", std::string(HEMI_SOURCE_DIR "/") + file.path});
+        const std::string headers = HEMI_SOURCE_DIR "/include";
+        const auto outcome = run_command({"g++", "-std=c++20", "-fsyntax-only", "-w", "-I", headers, "-x",
+                                          "c++", std::string(HEMI_SOURCE_DIR "/") + file.path});
         INFO(file.path << "\n" << outcome.err);
         CHECK(outcome.status == 0);
     }

@@ -32,6 +32,21 @@ struct Names<SolverMethod> {
                                                          {SolverMethod::conjugate_gradient, "cg"}};
 };
 
+/// How far a field is from the exact one: relative to the reflected part of the radiosity, B - E. Both are
+/// taken over the patches that reflect and are not buried, by area, in the worst channel.
+struct FieldError {
+    double rms = 0.0;          ///< rms of the error over rms of B - E
+    double percentile95 = 0.0; ///< what 95 % of the area stays below, over rms of B - E
+};
+
+/// What patches of finite size do to a radiosity. @see estimate_patch_size_error
+struct PatchSizeError {
+    FieldError vertices;       ///< of the interpolated vertex values that pictures show
+    FieldError field;          ///< of one constant for each patch
+    std::uint32_t sampled = 0; ///< patches whose quarters were looked at
+    double seconds = 0.0;      ///< that took
+};
+
 /// The radiosity of every patch of a scene, and what is known of it. Arrays of N·channels hold channel c of
 /// patch i at [i·channels + c]; W/m² (or lm/m²).
 struct Solution {
@@ -57,6 +72,8 @@ struct Solution {
     std::string chosen_for; ///< why the settings are what they are, where hemi chose them; else empty
     std::optional<FactorErrorEstimate> factor_error; ///< of the form factors
     std::optional<RadiosityErrorEstimate> error;     ///< of the radiosity, from the form factors alone
+    std::optional<PatchSizeError>
+        patch_size_error; ///< of the radiosity, from the patches' size alone; not stored
 };
 
 } // namespace hemi

@@ -136,13 +136,13 @@ Report chosen_report(const std::string& chosen_for) {
 }
 
 Report error_report(const std::optional<FactorErrorEstimate>& factors,
-                    const std::optional<RadiosityErrorEstimate>& radiosity) {
+                    const std::optional<RadiosityErrorEstimate>& radiosity, bool say_radiosity) {
     Report report;
     report.json["error_estimate"] = nullptr;
     if (!factors) {
         return report;
     }
-    if (radiosity) {
+    if (radiosity && say_radiosity) {
         report.add("error", fmt::format("reflected radiosity: {:.2g} % rms, due to form factors (the size "
                                         "of the patches is not included)",
                                         100.0 * radiosity->rms));

@@ -27,9 +27,12 @@ namespace hemi::cli {
 /// Line and key "chosen_for": what the program chose the settings for. No line, and null, where the user
 /// chose them.
 [[nodiscard]] Report chosen_report(const std::string& chosen_for);
-/// Lines and key "error_estimate": estimated errors. No line, and null, where nothing is known.
+/// Lines and key "error_estimate": estimated errors of form factors and of the radiosity by them. No line,
+/// and null, where nothing is known.
+/// @param say_radiosity  whether the radiosity's has a line, or another report says more of it
 [[nodiscard]] Report error_report(const std::optional<FactorErrorEstimate>& factors,
-                                  const std::optional<RadiosityErrorEstimate>& radiosity = {});
+                                  const std::optional<RadiosityErrorEstimate>& radiosity = {},
+                                  bool say_radiosity = true);
 
 /// Errors on stderr about leaks: how many and the worst few, with the direction in which they go. Says
 /// nothing if there are none.

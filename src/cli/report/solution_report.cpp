@@ -5,6 +5,7 @@
 #include "cli/report/group_sizes.hpp"
 #include "cli/report/scene_report.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/pipeline/patch_size_error.hpp"
 
 #include <fmt/format.h>
 
@@ -55,6 +56,36 @@ Report solver_report(const Solution& solution, const std::string& steps) {
     return report;
 }
 
+/// How far the solution is from the exact one; empty where that was not estimated.
+Report solution_error_report(const Solution& solution) {
+    Report report;
+    report.json["error"] = nullptr;
+    const auto error = solution_error(solution);
+    if (!error) {
+        return report;
+    }
+    const auto percent = [](double share) { return fmt::format("{:.2g} %", 100.0 * share); };
+    const auto json = [](const FieldError& of) { return Json{{"rms", of.rms}, {"p95", of.percentile95}}; };
+    report.add(
+        "error",
+        fmt::format("the reflected light is within {} (rms) of the exact one: patch size {}, form "
+                    "factors {}, solver {}",
+                    percent(error->vertices.rms), percent(error->patch_size), percent(error->factors),
+                    percent(error->solver)),
+        {{"error",
+          {{"vertices", json(error->vertices)},
+           {"field", json(error->field)},
+           {"parts",
+            {{"patch_size", error->patch_size}, {"factors", error->factors}, {"solver", error->solver}}},
+           {"patches_sampled", solution.patch_size_error->sampled}}}});
+    report.add("",
+               fmt::format("within {} on 95 % of the area; as one constant a patch {} and {}; from {}",
+                           percent(error->vertices.percentile95), percent(error->field.rms),
+                           percent(error->field.percentile95),
+                           plural(solution.patch_size_error->sampled, "patch", "patches") + " cut in four"));
+    return report;
+}
+
 /// The solver and how it went, settings that the program chose, estimated errors.
 Report solution_report(const Solution& solution) {
     const bool gradients = solution.method == SolverMethod::conjugate_gradient;
@@ -66,7 +97,8 @@ Report solution_report(const Solution& solution) {
     report.add("", solution.reason);
     report.json["solver"]["why"] = solution.reason;
     report.add(chosen_report(solution.chosen_for));
-    report.add(error_report(solution.factor_error, solution.error));
+    report.add(solution_error_report(solution));
+    report.add(error_report(solution.factor_error, solution.error, !solution.patch_size_error));
     return report;
 }
 
@@ -110,7 +142,7 @@ Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const
         factors.matrix.all_known() ? reciprocity_json(repair.reciprocity_after) : Json(nullptr);
     report.select("hemi/solve/1", {"renderer", "patches", "channels", "groups", "areas", "radiosity",
                                    "exitance", "environment", "blocked", "solver", "row_sum", "reciprocity",
-                                   "repair", "chosen_for", "error_estimate", "seconds"});
+                                   "repair", "chosen_for", "error", "error_estimate", "seconds"});
     return report;
 }
 

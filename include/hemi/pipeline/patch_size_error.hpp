@@ -1,0 +1,48 @@
+#pragma once
+
+#include "hemi/pipeline/observer.hpp"
+#include "hemi/pipeline/settings.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/solver/solution.hpp"
+
+#include <optional>
+
+namespace hemi {
+
+/// What a radiosity is off by because patches have a size, estimated.
+///
+/// A sample of patches, more of them where the radiosity changes fast, is cut in four. The light of the
+/// solution is gathered at each quarter by a row of its own: f(s) = B_i + rho (G(s) - mean of G over i). The
+/// iterated solution converges twice as fast as the solution itself, so it stands for the exact field. As a
+/// constant a patch errs by f - B_i; four means leave out a quarter of the variance of a linear field, which
+/// is added. As a picture shows it, it errs by f less the interpolated vertex values. Patches of the sample
+/// count by the inverse of their probability.
+///
+/// Not included: errors of form factors; what the errors of other patches change in a patch's mean, which is
+/// of second order; whatever four rows do not see, such as light that falls through a gap between them.
+/// Source: I. H. Sloan, "Improvement by iteration for compact operator equations", Mathematics of
+/// Computation 30, 1976; M. F. Cohen et al., "An Efficient Radiosity Approach for Realistic Image Synthesis",
+/// IEEE CG&A 6, 1986 (patches as sources, their parts as receivers).
+/// @param scene     what the mesh was made of; gives reflectances
+/// @param mesh      N patches
+/// @param solution  radiosity, exitance and back-face shares of the mesh
+/// @param settings  by which the rows were found; the quarters' rows are found likewise
+/// @param observer  gets progress and may cancel
+/// @return nothing where nothing is reflected
+/// @throws InvalidArgument if the solution is of another mesh; as make_visibility_engine(); Cancelled
+[[nodiscard]] std::optional<PatchSizeError>
+estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
+                          const FactorSettings& settings, Observer& observer = no_observer());
+
+/// All of what a solution is off by, from estimates of its parts, which are taken to be independent.
+struct SolutionError {
+    FieldError vertices;     ///< of the interpolated vertex values that pictures show
+    FieldError field;        ///< of one constant for each patch
+    double patch_size = 0.0; ///< the part of `vertices.rms` that the patches' size brings
+    double factors = 0.0;    ///< the part of the form factors
+    double solver = 0.0;     ///< at most what the solver left
+};
+/// @return nothing where an estimate is missing that it needs
+[[nodiscard]] std::optional<SolutionError> solution_error(const Solution& solution);
+
+} // namespace hemi

@@ -1,0 +1,400 @@
+#include "hemi/pipeline/patch_size_error.hpp"
+
+#include "hemi/core/buried.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/display/vertex_colours.hpp"
+#include "hemi/engine/visibility_weighted.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace hemi {
+
+namespace {
+
+// Patches of the sample: a part of all, in these limits. Four rows each.
+constexpr double sampled_share = 1.0 / 64.0;
+constexpr double min_sampled = 64.0;
+constexpr double max_sampled = 192.0;
+// A patch in whose neighbourhood the radiosity is even may still hide something: it is drawn as if its error
+// were this share of the mean reflected radiosity.
+constexpr double least_doubt = 0.03;
+// Variance of a linear field over that of its means over four equal parts.
+constexpr double linear_over_quarters = 4.0 / 3.0;
+
+/// The scene cut twice as fine each way.
+PatchMesh quartered(const Scene& scene, const PatchMesh& mesh) {
+    Scene fine = scene;
+    for (std::uint32_t s = 0; s < fine.surfaces.size(); ++s) {
+        const Grid grid = mesh.grid(s);
+        fine.surfaces[s].patches = Grid{2 * grid.u, 2 * grid.v};
+    }
+    return PatchMesh(fine);
+}
+
+/// For every patch of `fine` the patch of `mesh` that it is a quarter of.
+std::vector<std::uint32_t> find_parents(const PatchMesh& mesh, const PatchMesh& fine) {
+    std::vector<std::uint32_t> parents(fine.size());
+    std::vector<std::uint32_t> by_cell;
+    for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
+        const Grid grid = mesh.grid(s);
+        const auto cell = [&grid](double u, double v) {
+            const double i = std::floor(u);
+            const double j = std::floor(v);
+            const std::size_t half = (u - i) + (v - j) > 1.0 + 1e-6 ? 1 : 0;
+            return 2 * (static_cast<std::size_t>(j) * grid.u + static_cast<std::size_t>(i)) + half;
+        };
+        const bool triangle = mesh.surfaces()[s].vertex_count == 3;
+        by_cell.assign(2 * std::size_t{grid.u} * grid.v, 0);
+        const std::uint32_t count = mesh.patches_per_side(s);
+        for (std::uint32_t local = 0; local < count; ++local) {
+            const auto [u, v] = mesh.grid_coordinates(mesh.first_patch(s) + local);
+            const std::size_t at = cell(u, v);
+            by_cell[at] = local;
+            if (!triangle) {
+                by_cell[at ^ 1u] = local;
+            }
+        }
+        for (std::uint32_t k = fine.first_patch(s); k < fine.first_patch(s + 1); ++k) {
+            const auto [u, v] = fine.grid_coordinates(k);
+            const std::uint32_t side = fine.is_back(k) ? count : 0;
+            parents[k] = mesh.first_patch(s) + side + by_cell[cell(0.5 * u, 0.5 * v)];
+        }
+    }
+    return parents;
+}
+
+/// The interpolated value in the middle of a patch's quarter, from the patch's corner values.
+class Interpolation {
+public:
+    Interpolation(const PatchMesh& mesh, std::vector<float> corners, std::uint32_t channels)
+        : mesh_(mesh), corners_(std::move(corners)), channels_(channels) {}
+
+    /// Of a corner of the patch, 0 to 3.
+    [[nodiscard]] double at_corner(std::uint32_t patch, std::uint32_t corner, std::uint32_t channel) const {
+        return static_cast<double>(corners_[(std::size_t{patch} * 4 + corner) * channels_ + channel]);
+    }
+
+    /// Weights of the corners at `place`, the centre of a quarter.
+    [[nodiscard]] std::array<double, 4> weights(std::uint32_t patch, const Vec3& place) const {
+        const PatchCorners corners = mesh_.corners(patch);
+        std::uint32_t nearest = 0;
+        for (std::uint32_t k = 1; k < corners.count; ++k) {
+            if (glm::distance(corners.points[k], place) < glm::distance(corners.points[nearest], place)) {
+                nearest = k;
+            }
+        }
+        std::array<double, 4> weights{};
+        if (corners.count == 4) {
+            weights[nearest] = 9.0 / 16.0;
+            weights[(nearest + 1) % 4] = weights[(nearest + 3) % 4] = 3.0 / 16.0;
+            weights[(nearest + 2) % 4] = 1.0 / 16.0;
+            return weights;
+        }
+        const double edge = glm::distance(corners.points[nearest], mesh_.centres()[patch]);
+        const bool middle = glm::distance(mesh_.centres()[patch], place) < 0.1 * edge;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            weights[k] = middle ? 1.0 / 3.0 : k == nearest ? 2.0 / 3.0 : 1.0 / 6.0;
+        }
+        return weights;
+    }
+
+    /// Of the corner values about the patch's own value, squared: how fast the field changes.
+    [[nodiscard]] double spread(std::uint32_t patch, const Solution& solution) const {
+        const std::uint32_t count = mesh_.corners(patch).count;
+        double largest = 0.0;
+        for (std::uint32_t c = 0; c < channels_; ++c) {
+            double squares = 0.0;
+            for (std::uint32_t k = 0; k < count; ++k) {
+                squares += std::pow(
+                    at_corner(patch, k, c) - solution.radiosity[std::size_t{patch} * channels_ + c], 2.0);
+            }
+            largest = std::max(largest, squares / count);
+        }
+        return largest;
+    }
+
+private:
+    const PatchMesh& mesh_;
+    std::vector<float> corners_;
+    std::uint32_t channels_;
+};
+
+/// A patch of the sample, with how many of its kind it stands for.
+struct Drawn {
+    std::uint32_t patch;
+    double weight;
+};
+
+/// Draws about `count` of `patches` with probabilities that go like `importance`, spread over them in order.
+std::vector<Drawn> draw_sample(const std::vector<std::uint32_t>& patches,
+                               const std::vector<double>& importance, double count) {
+    const double total = std::accumulate(importance.begin(), importance.end(), 0.0);
+    std::vector<Drawn> sample;
+    double sum = 0.5;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+        const double probability = std::min(1.0, count * importance[k] / total);
+        sum += probability;
+        if (sum >= 1.0) {
+            sum -= 1.0;
+            sample.push_back({patches[k], 1.0 / probability});
+        }
+    }
+    return sample;
+}
+
+/// Errors at quarters of patches, with the areas they stand for.
+class Errors {
+public:
+    void add(double error, double area) { errors_.push_back({std::abs(error), area}); }
+
+    /// @param unit  what they are relative to
+    /// @param more  by which the mean square is more than that of these errors
+    [[nodiscard]] FieldError summary(double unit, double more) {
+        double squares = 0.0;
+        double total = 0.0;
+        for (const auto& [error, area] : errors_) {
+            squares += area * error * error;
+            total += area;
+        }
+        std::sort(errors_.begin(), errors_.end());
+        FieldError result;
+        result.rms = std::sqrt(more * squares / total) / unit;
+        double below = 0.0;
+        for (const auto& [error, area] : errors_) {
+            result.percentile95 = std::sqrt(more) * error / unit;
+            below += area;
+            if (below >= 0.95 * total) {
+                break;
+            }
+        }
+        return result;
+    }
+
+private:
+    std::vector<std::pair<double, double>> errors_;
+};
+
+class PatchSizeEstimator {
+public:
+    PatchSizeEstimator(const Scene& scene, const PatchMesh& mesh, const Solution& solution)
+        : scene_(scene), mesh_(mesh), solution_(solution), channels_(solution.channels),
+          reflectance_(patch_values(mesh, scene.materials, &Material::reflectance)),
+          interpolation_(mesh, corner_values(mesh, channels_, solution.radiosity, solution.back_face_share),
+                         channels_) {
+        const std::size_t values = std::size_t{mesh.size()} * channels_;
+        if (solution.radiosity.size() != values || reflectance_.size() != values) {
+            throw InvalidArgument("patch size error: the solution belongs to another mesh");
+        }
+        find_units();
+    }
+
+    [[nodiscard]] bool anything_reflects() const {
+        return std::any_of(units_.begin(), units_.end(), [](double unit) { return unit > 0.0; });
+    }
+
+    [[nodiscard]] PatchSizeError run(const FactorSettings& settings, Observer& observer) {
+        const std::vector<Drawn> sample = draw();
+        const PatchMesh fine = quartered(scene_, mesh_);
+        const std::vector<std::uint32_t> parents = find_parents(mesh_, fine);
+        const std::vector<std::array<std::uint32_t, 4>> quarters = find_quarters(sample, parents);
+        std::vector<std::uint32_t> rows;
+        for (const auto& four : quarters) {
+            rows.insert(rows.end(), four.begin(), four.end());
+        }
+        std::sort(rows.begin(), rows.end());
+
+        RowPlan plan = plan_rows(settings, mesh_.size());
+        plan.hemicube.seed = ~plan.hemicube.seed; // not the rows that the solution rests on
+        const auto engine = make_visibility_provider(fine, plan.hemicube, settings);
+        const FormFactorMatrix factors =
+            compute_visibility_weighted(*engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure,
+                                        [&](std::size_t done, std::size_t total) {
+                                            return observer.progress(Phase::error_estimate, done, total);
+                                        });
+
+        std::vector<Errors> vertices(channels_);
+        std::vector<Errors> field(channels_);
+        for (std::size_t k = 0; k < sample.size(); ++k) {
+            add_patch(sample[k], quarters[k], fine, parents, factors, vertices, field);
+        }
+        PatchSizeError result;
+        result.sampled = static_cast<std::uint32_t>(sample.size());
+        const auto take_worst = [](FieldError& worst, const FieldError& error) {
+            worst.rms = std::max(worst.rms, error.rms);
+            worst.percentile95 = std::max(worst.percentile95, error.percentile95);
+        };
+        for (std::uint32_t c = 0; c < channels_; ++c) {
+            if (units_[c] > 0.0) {
+                take_worst(result.vertices, vertices[c].summary(units_[c], 1.0));
+                take_worst(result.field, field[c].summary(units_[c], linear_over_quarters));
+            }
+        }
+        return result;
+    }
+
+private:
+    [[nodiscard]] std::size_t at(std::uint32_t patch, std::uint32_t channel) const {
+        return std::size_t{patch} * channels_ + channel;
+    }
+
+    /// The patches that count, and the rms of what they reflect in every channel.
+    void find_units() {
+        units_.assign(channels_, 0.0);
+        double area = 0.0;
+        for (std::uint32_t i = 0; i < mesh_.size(); ++i) {
+            const bool buried =
+                !solution_.back_face_share.empty() && solution_.back_face_share[i] > buried_above;
+            const bool reflects =
+                std::any_of(reflectance_.begin() + static_cast<std::ptrdiff_t>(at(i, 0)),
+                            reflectance_.begin() + static_cast<std::ptrdiff_t>(at(i + 1, 0)),
+                            [](double rho) { return rho > 0.0; });
+            if (buried || !reflects) {
+                continue;
+            }
+            patches_.push_back(i);
+            area += mesh_.areas()[i];
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                units_[c] += mesh_.areas()[i] *
+                             std::pow(solution_.radiosity[at(i, c)] - solution_.exitance[at(i, c)], 2.0);
+            }
+        }
+        for (double& unit : units_) {
+            unit = area > 0.0 ? std::sqrt(unit / area) : 0.0;
+        }
+    }
+
+    [[nodiscard]] std::vector<Drawn> draw() const {
+        const double doubt = std::pow(least_doubt * *std::max_element(units_.begin(), units_.end()), 2.0);
+        std::vector<double> importance;
+        for (const std::uint32_t patch : patches_) {
+            // The square root of what a patch is likely to add makes the sum's variance least.
+            importance.push_back(mesh_.areas()[patch] *
+                                 std::sqrt(interpolation_.spread(patch, solution_) + doubt));
+        }
+        const double count =
+            std::clamp(sampled_share * static_cast<double>(patches_.size()), min_sampled, max_sampled);
+        return draw_sample(patches_, importance, count);
+    }
+
+    static std::vector<std::array<std::uint32_t, 4>>
+    find_quarters(const std::vector<Drawn>& sample, const std::vector<std::uint32_t>& parents) {
+        std::vector<std::array<std::uint32_t, 4>> quarters(sample.size());
+        std::vector<std::uint32_t> found(sample.size(), 0);
+        for (std::uint32_t k = 0; k < parents.size(); ++k) {
+            const auto drawn =
+                std::lower_bound(sample.begin(), sample.end(), parents[k],
+                                 [](const Drawn& entry, std::uint32_t patch) { return entry.patch < patch; });
+            if (drawn != sample.end() && drawn->patch == parents[k]) {
+                const auto index = static_cast<std::size_t>(drawn - sample.begin());
+                quarters[index][found[index]++ % 4] = k;
+            }
+        }
+        return quarters;
+    }
+
+    /// G of a quarter in one channel, by its own row and the patches' radiosity. What the row's factors miss
+    /// of the share that its texels leave for them is made up for.
+    [[nodiscard]] double gathered(const RowView& row, const std::vector<std::uint32_t>& parents,
+                                  std::uint32_t channel) const {
+        double light = 0.0;
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            light += static_cast<double>(row.values[k]) *
+                     solution_.radiosity[at(parents[row.columns[k]], channel)];
+        }
+        const double sum = row.sum();
+        const double target = 1.0 - row.environment - row.blocked;
+        if (sum > 0.0) {
+            light *= target / sum;
+        }
+        return light + (scene_.environment.empty() ? 0.0 : row.environment * scene_.environment[channel]);
+    }
+
+    void add_patch(const Drawn& drawn, const std::array<std::uint32_t, 4>& quarters, const PatchMesh& fine,
+                   const std::vector<std::uint32_t>& parents, const FormFactorMatrix& factors,
+                   std::vector<Errors>& vertices, std::vector<Errors>& field) const {
+        const std::uint32_t patch = drawn.patch;
+        const double area = mesh_.areas()[patch];
+        for (std::uint32_t c = 0; c < channels_; ++c) {
+            std::array<double, 4> light{};
+            double mean = 0.0;
+            for (std::size_t q = 0; q < 4; ++q) {
+                light[q] = gathered(factors.row(quarters[q]), parents, c);
+                mean += light[q] * fine.areas()[quarters[q]] / area;
+            }
+            for (std::size_t q = 0; q < 4; ++q) {
+                const double change = reflectance_[at(patch, c)] * (light[q] - mean);
+                const auto weights = interpolation_.weights(patch, fine.centres()[quarters[q]]);
+                double shown = -solution_.radiosity[at(patch, c)];
+                for (std::uint32_t corner = 0; corner < mesh_.corners(patch).count; ++corner) {
+                    shown += weights[corner] * interpolation_.at_corner(patch, corner, c);
+                }
+                const double stands_for = drawn.weight * fine.areas()[quarters[q]];
+                field[c].add(change, stands_for);
+                vertices[c].add(shown - change, stands_for);
+            }
+        }
+    }
+
+    const Scene& scene_;
+    const PatchMesh& mesh_;
+    const Solution& solution_;
+    std::uint32_t channels_;
+    std::vector<double> reflectance_;
+    Interpolation interpolation_;
+    std::vector<std::uint32_t> patches_; // those that reflect and are not buried, ascending
+    std::vector<double> units_;          // a channel: rms of B - E over them
+};
+
+} // namespace
+
+std::optional<PatchSizeError> estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh,
+                                                        const Solution& solution,
+                                                        const FactorSettings& settings, Observer& observer) {
+    const Stopwatch watch;
+    PatchSizeEstimator estimator(scene, mesh, solution);
+    if (!estimator.anything_reflects()) {
+        return std::nullopt;
+    }
+    PatchSizeError error = estimator.run(settings, observer);
+    error.seconds = watch.seconds();
+    observer.detail(fmt::format("patch size: {} of {} patches cut in four in {:.2g} s", error.sampled,
+                                mesh.size(), error.seconds));
+    return error;
+}
+
+std::optional<SolutionError> solution_error(const Solution& solution) {
+    if (!solution.patch_size_error || !solution.error) {
+        return std::nullopt;
+    }
+    double all = 0.0;
+    double reflected = 0.0;
+    for (std::size_t k = 0; k < solution.radiosity.size(); ++k) {
+        all += std::pow(solution.radiosity[k], 2.0);
+        reflected += std::pow(solution.radiosity[k] - solution.exitance[k], 2.0);
+    }
+    SolutionError error;
+    error.patch_size = solution.patch_size_error->vertices.rms;
+    error.factors = solution.error->rms;
+    // ||B - B*|| <= ||residual|| / (1 - dominance), and what is emitted is at most B.
+    const double amplified = solution.residual / std::max(1e-12, 1.0 - solution.dominance);
+    error.solver = reflected > 0.0 ? amplified * std::sqrt(all / reflected) : 0.0;
+    constexpr double normal95 = 1.96; // 95 % of a normal distribution, in standard deviations
+    const auto total = [&error](const FieldError& patch_size) {
+        const double others = std::hypot(error.factors, error.solver);
+        return FieldError{std::hypot(patch_size.rms, others),
+                          std::hypot(patch_size.percentile95, normal95 * others)};
+    };
+    error.vertices = total(solution.patch_size_error->vertices);
+    error.field = total(solution.patch_size_error->field);
+    return error;
+}
+
+} // namespace hemi

@@ -1,0 +1,172 @@
+#include "support/device.hpp"
+#include "support/scenes.hpp"
+
+#include "hemi/core/buried.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/display/vertex_colours.hpp"
+#include "hemi/io/scene_reader.hpp"
+#include "hemi/pipeline/form_factors.hpp"
+#include "hemi/pipeline/patch_size_error.hpp"
+#include "hemi/pipeline/radiosity.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+using namespace hemi;
+using namespace hemi::test;
+
+namespace {
+
+FactorSettings settings_of(Preset preset) {
+    FactorSettings settings;
+    settings.preset = preset;
+    settings.engine.device = test_device();
+    settings.engine.jobs = 2;
+    return settings;
+}
+
+struct Solved {
+    PatchMesh mesh;
+    Solution solution;
+};
+
+Solved solved(const Scene& scene, Preset preset) {
+    PatchMesh mesh(scene);
+    const FormFactors factors = compute_form_factors(scene, mesh, settings_of(preset));
+    Solution solution = solve_radiosity(scene, mesh, factors);
+    return {std::move(mesh), std::move(solution)};
+}
+
+/// Every grid `times` as fine each way.
+Scene refined(Scene scene, std::uint32_t times) {
+    for (Surface& surface : scene.surfaces) {
+        surface.patches = Grid{surface.patches->u * times, surface.patches->v * times};
+    }
+    return scene;
+}
+
+/// A room with blocks that a lamp below the ceiling lights: hard and soft shadows, concave corners.
+Scene lit_room(std::uint32_t cells, double reflectance, double lamp_size) {
+    Scene scene = room_with_blocks(cells);
+    scene.materials[0].reflectance = {reflectance};
+    scene.materials.push_back({"lamp", {0.3}, {10.0}});
+    const double half = 0.5 * lamp_size;
+    add_polygon(scene, "lamp",
+                {Vec3(0.6 - half, 0.5 - half, 0.78), Vec3(0.6 - half, 0.5 + half, 0.78),
+                 Vec3(0.6 + half, 0.5 + half, 0.78), Vec3(0.6 + half, 0.5 - half, 0.78)},
+                {2, 2});
+    scene.surfaces.back().material = 1;
+    return scene;
+}
+
+/// What the coarse solution is off by against one whose grids are `times` as fine, of quadrilaterals.
+/// Pictures are taken to interpolate a patch's corner values bilinearly.
+struct Truth {
+    double field;
+    double vertices;
+};
+Truth truth_of(const Solved& coarse, const Solved& fine, std::uint32_t times) {
+    const PatchMesh& mesh = coarse.mesh;
+    const auto corners = corner_values(mesh, 1, coarse.solution.radiosity, coarse.solution.back_face_share);
+    double field = 0.0;
+    double vertices = 0.0;
+    double reflected = 0.0;
+    for (std::uint32_t k = 0; k < fine.mesh.size(); ++k) {
+        const std::uint32_t s = fine.mesh.surface_of()[k];
+        const std::uint32_t local = k - fine.mesh.first_patch(s);
+        const std::uint32_t u = local % fine.mesh.grid(s).u;
+        const std::uint32_t v = local / fine.mesh.grid(s).u;
+        const std::uint32_t i = mesh.first_patch(s) + v / times * mesh.grid(s).u + u / times;
+        if (fine.solution.back_face_share[k] > buried_above ||
+            coarse.solution.back_face_share[i] > buried_above) {
+            continue;
+        }
+        const PatchCorners at = mesh.corners(i);
+        const Vec3 along = at.points[1] - at.points[0];
+        const Vec3 across = at.points[3] - at.points[0];
+        const Vec3 place = fine.mesh.centres()[k] - at.points[0];
+        const double a = glm::dot(place, along) / glm::dot(along, along);
+        const double b = glm::dot(place, across) / glm::dot(across, across);
+        const std::array<double, 4> weights{(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b};
+        double shown = 0.0;
+        for (std::size_t c = 0; c < 4; ++c) {
+            shown += weights[c] * static_cast<double>(corners[std::size_t{i} * 4 + c]);
+        }
+        const double area = fine.mesh.areas()[k];
+        const double right = fine.solution.radiosity[k];
+        field += area * std::pow(coarse.solution.radiosity[i] - right, 2.0);
+        vertices += area * std::pow(shown - right, 2.0);
+        reflected += area * std::pow(right - fine.solution.exitance[k], 2.0);
+    }
+    // Constants on the fine grid leave out what they err by themselves, 1 / times² of the square.
+    const double left_out = 1.0 - 1.0 / (static_cast<double>(times) * times);
+    return {std::sqrt(field / reflected / left_out), std::sqrt(vertices / reflected)};
+}
+
+} // namespace
+
+TEST_CASE("patch size: the error of lit rooms is that against a grid three times as fine", "[pipeline][gl]") {
+    struct Case {
+        std::uint32_t cells;
+        double reflectance;
+        double lamp_size;
+        Preset preset;
+    };
+    for (const Case& c : {Case{6, 0.5, 0.3, Preset::standard}, Case{9, 0.5, 0.3, Preset::standard},
+                          Case{6, 0.9, 0.3, Preset::fast}, Case{6, 0.2, 0.06, Preset::standard},
+                          Case{6, 0.5, 0.3, Preset::plain}}) {
+        const Scene scene = lit_room(c.cells, c.reflectance, c.lamp_size);
+        const Solved coarse = solved(scene, c.preset);
+        const Solved fine = solved(refined(scene, 3), Preset::fast);
+        const Truth truth = truth_of(coarse, fine, 3);
+        const auto error =
+            estimate_patch_size_error(scene, coarse.mesh, coarse.solution, settings_of(c.preset));
+        REQUIRE(error);
+        INFO(c.cells << " cells, reflectance " << c.reflectance << ", lamp " << c.lamp_size);
+        INFO("field " << error->field.rms << ", true " << truth.field << "; vertices " << error->vertices.rms
+                      << ", true " << truth.vertices);
+        CHECK(error->field.rms > 0.6 * truth.field);
+        CHECK(error->field.rms < 1.6 * truth.field);
+        CHECK(error->vertices.rms > 0.5 * truth.vertices);
+        CHECK(error->vertices.rms < 2.0 * truth.vertices);
+        CHECK(error->sampled >= 48);
+    }
+}
+
+TEST_CASE("patch size: none in a furnace, whatever the shape of the patches", "[pipeline][gl]") {
+    Diagnostics diagnostics;
+    for (const char* const name : {"furnace.json", "sphere"}) {
+        Scene scene = std::string(name) == "sphere"
+                          ? read_case("14_sphere_interior.obj")
+                          : io::read_scene(HEMI_SOURCE_DIR "/scenes/furnace.json", {}, diagnostics);
+        for (Material& material : scene.materials) {
+            material.reflectance.assign(material.reflectance.size(), 0.6);
+            material.exitance.assign(material.exitance.size(), 2.0);
+        }
+        scene.environment.clear();
+        const Solved coarse = solved(scene, Preset::standard);
+        const auto error =
+            estimate_patch_size_error(scene, coarse.mesh, coarse.solution, settings_of(Preset::standard));
+        REQUIRE(error);
+        INFO(name);
+        CHECK(error->field.rms < 1e-6);
+        CHECK(error->vertices.rms < 1e-6);
+    }
+}
+
+TEST_CASE("patch size: nothing where nothing reflects, refused for another mesh", "[pipeline][gl]") {
+    Scene scene = lit_room(2, 0.5, 0.3);
+    const Solved coarse = solved(scene, Preset::fast);
+    Solution other = coarse.solution;
+    other.radiosity.pop_back();
+    CHECK_THROWS_AS(estimate_patch_size_error(scene, coarse.mesh, other, settings_of(Preset::fast)),
+                    InvalidArgument);
+    for (Material& material : scene.materials) {
+        material.reflectance = {0.0};
+    }
+    const Solved black = solved(scene, Preset::fast);
+    CHECK_FALSE(estimate_patch_size_error(scene, black.mesh, black.solution, settings_of(Preset::fast)));
+}
