@@ -11,6 +11,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -48,7 +49,8 @@ Scene refined(Scene scene, std::uint32_t times) {
     return scene;
 }
 
-/// A room with blocks that a lamp below the ceiling lights: hard and soft shadows, concave corners.
+/// A room with blocks and an upright sheet that a lamp below the ceiling lights: hard and soft shadows,
+/// concave corners.
 Scene lit_room(std::uint32_t cells, double reflectance, double lamp_size) {
     Scene scene = room_with_blocks(cells);
     scene.materials[0].reflectance = {reflectance};
@@ -59,7 +61,29 @@ Scene lit_room(std::uint32_t cells, double reflectance, double lamp_size) {
                  Vec3(0.6 + half, 0.5 + half, 0.78), Vec3(0.6 + half, 0.5 - half, 0.78)},
                 {2, 2});
     scene.surfaces.back().material = 1;
+    add_polygon(scene, "sheet",
+                {Vec3(0.1, 0.1, 0.1), Vec3(0.5, 0.2, 0.1), Vec3(0.5, 0.2, 0.5), Vec3(0.1, 0.1, 0.5)},
+                {std::max(1u, cells / 2), std::max(1u, cells / 2)});
+    scene.surfaces.back().two_sided = true;
     return scene;
+}
+
+/// Every quadrilateral as two triangles, cut as many ways along their edges.
+Scene triangulated(const Scene& scene) {
+    Scene result = scene;
+    result.surfaces.clear();
+    for (const Surface& surface : scene.surfaces) {
+        const auto& p = surface.vertices;
+        const std::uint32_t n = std::max(surface.patches->u, surface.patches->v);
+        for (const auto& corners : {std::array{p[0], p[1], p[2]}, std::array{p[0], p[2], p[3]}}) {
+            Surface half = surface;
+            half.vertex_count = 3;
+            std::copy(corners.begin(), corners.end(), half.vertices.begin());
+            half.patches = Grid{n, n};
+            result.surfaces.push_back(half);
+        }
+    }
+    return result;
 }
 
 /// What the coarse solution is off by against one whose grids are `times` as fine, of quadrilaterals.
@@ -76,10 +100,11 @@ Truth truth_of(const Solved& coarse, const Solved& fine, std::uint32_t times) {
     double reflected = 0.0;
     for (std::uint32_t k = 0; k < fine.mesh.size(); ++k) {
         const std::uint32_t s = fine.mesh.surface_of()[k];
-        const std::uint32_t local = k - fine.mesh.first_patch(s);
+        const std::uint32_t local = (k - fine.mesh.first_patch(s)) % fine.mesh.patches_per_side(s);
         const std::uint32_t u = local % fine.mesh.grid(s).u;
         const std::uint32_t v = local / fine.mesh.grid(s).u;
-        const std::uint32_t i = mesh.first_patch(s) + v / times * mesh.grid(s).u + u / times;
+        const std::uint32_t side = fine.mesh.is_back(k) ? mesh.patches_per_side(s) : 0;
+        const std::uint32_t i = mesh.first_patch(s) + side + v / times * mesh.grid(s).u + u / times;
         if (fine.solution.back_face_share[k] > buried_above ||
             coarse.solution.back_face_share[i] > buried_above) {
             continue;
@@ -134,6 +159,23 @@ TEST_CASE("patch size: the error of lit rooms is that against a grid three times
         CHECK(error->vertices.rms < 2.0 * truth.vertices);
         CHECK(error->sampled >= 48);
     }
+}
+
+TEST_CASE("patch size: triangles err as the quadrilaterals that they halve, or less", "[pipeline][gl]") {
+    const Scene scene = lit_room(6, 0.5, 0.3);
+    const auto error_of = [](const Scene& of) {
+        const Solved coarse = solved(of, Preset::fast);
+        const auto error =
+            estimate_patch_size_error(of, coarse.mesh, coarse.solution, settings_of(Preset::fast));
+        REQUIRE(error);
+        return *error;
+    };
+    const PatchSizeError whole = error_of(scene);
+    const PatchSizeError halves = error_of(triangulated(scene));
+    CHECK(halves.field.rms > 0.6 * whole.field.rms);
+    CHECK(halves.field.rms < 1.1 * whole.field.rms);
+    CHECK(halves.vertices.rms > 0.6 * whole.vertices.rms);
+    CHECK(halves.vertices.rms < 1.1 * whole.vertices.rms);
 }
 
 TEST_CASE("patch size: none in a furnace, whatever the shape of the patches", "[pipeline][gl]") {
