@@ -99,7 +99,7 @@ Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loade
 /// Adds what the patches' size does, unless no estimate is wanted.
 void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loaded, Observer& observer,
                          Solution& solution, Seconds& seconds) {
-    if (!arguments.rows.factors.estimate_error) {
+    if (!arguments.rows.factors.estimate_error || !solution.error) {
         return;
     }
     solution.patch_size_error =
@@ -149,13 +149,13 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     auto [factors, solution] = arguments.rows.error_target
                                    ? solve_to_target(arguments, loaded, observer, terminal, seconds)
                                    : solve(arguments, loaded, observer, terminal, seconds);
-    estimate_patch_size(arguments, loaded, observer, solution, seconds);
     const double max_row_error = arguments.rows.max_row_error;
     const RowSums sums = row_sums(factors.matrix);
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
     report_buried(sums, terminal);
     write_files(arguments, loaded, solution);
     const Report picture = draw(arguments, loaded, solution, seconds);
+    estimate_patch_size(arguments, loaded, observer, solution, seconds); // when what was found is stored
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
     Report report = solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, seconds);
     report.text += picture.text;

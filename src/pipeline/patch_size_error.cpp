@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -82,13 +83,18 @@ public:
         return static_cast<double>(corners_[(std::size_t{patch} * 4 + corner) * channels_ + channel]);
     }
 
-    /// Weights of the corners at `place`, the centre of a quarter.
-    [[nodiscard]] std::array<double, 4> weights(std::uint32_t patch, const Vec3& place) const {
+    /// Weights of the corners in the middle of a quarter.
+    [[nodiscard]] std::array<double, 4> weights(std::uint32_t patch, const PatchCorners& quarter) const {
         const PatchCorners corners = mesh_.corners(patch);
+        // The corner that both have: in slanted patches another one may be nearer to the quarter's centre.
         std::uint32_t nearest = 0;
-        for (std::uint32_t k = 1; k < corners.count; ++k) {
-            if (glm::distance(corners.points[k], place) < glm::distance(corners.points[nearest], place)) {
-                nearest = k;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::uint32_t k = 0; k < corners.count; ++k) {
+            for (const Vec3& point : quarter.polygon()) {
+                if (const double way = glm::distance(corners.points[k], point); way < least) {
+                    least = way;
+                    nearest = k;
+                }
             }
         }
         std::array<double, 4> weights{};
@@ -98,8 +104,9 @@ public:
             weights[(nearest + 2) % 4] = 1.0 / 16.0;
             return weights;
         }
-        const double edge = glm::distance(corners.points[nearest], mesh_.centres()[patch]);
-        const bool middle = glm::distance(mesh_.centres()[patch], place) < 0.1 * edge;
+        // The quarter in the middle of a triangle has none of its corners, but half an edge to the nearest.
+        const double edge = glm::distance(corners.points[nearest], corners.points[(nearest + 1) % 3]);
+        const bool middle = least > 0.1 * edge;
         for (std::uint32_t k = 0; k < 3; ++k) {
             weights[k] = middle ? 1.0 / 3.0 : k == nearest ? 2.0 / 3.0 : 1.0 / 6.0;
         }
@@ -214,12 +221,11 @@ public:
         RowPlan plan = plan_rows(settings, mesh_.size());
         plan.hemicube.seed = ~plan.hemicube.seed; // not the rows that the solution rests on
         const auto engine = make_visibility_provider(fine, plan.hemicube, settings);
-        const FormFactorMatrix factors =
-            compute_visibility_weighted(*engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure,
-                                        [&](std::size_t done, std::size_t total) {
-                                            return observer.progress(Phase::error_estimate, done, total);
-                                        });
-
+        const Progress go_on = [&](std::size_t done, std::size_t total) {
+            return observer.progress(Phase::error_estimate, done, total);
+        };
+        const FormFactorMatrix factors = compute_visibility_weighted(
+            *engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure, go_on, go_on, go_on);
         std::vector<Errors> vertices(channels_);
         std::vector<Errors> field(channels_);
         for (std::size_t k = 0; k < sample.size(); ++k) {
@@ -331,7 +337,7 @@ private:
             }
             for (std::size_t q = 0; q < 4; ++q) {
                 const double change = reflectance_[at(patch, c)] * (light[q] - mean);
-                const auto weights = interpolation_.weights(patch, fine.centres()[quarters[q]]);
+                const auto weights = interpolation_.weights(patch, fine.corners(quarters[q]));
                 double shown = -solution_.radiosity[at(patch, c)];
                 for (std::uint32_t corner = 0; corner < mesh_.corners(patch).count; ++corner) {
                     shown += weights[corner] * interpolation_.at_corner(patch, corner, c);
