@@ -3,6 +3,7 @@
 #include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
+#include "hemi/core/text.hpp"
 #include "hemi/display/vertex_colours.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
 
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -113,15 +115,20 @@ public:
         return weights;
     }
 
-    /// Of the corner values about the patch's own value, squared: how fast the field changes.
-    [[nodiscard]] double spread(std::uint32_t patch, const Solution& solution) const {
+    /// Of the corner values about the patch's own value, squared and over the square of the channel's unit:
+    /// how fast the field changes in the channel where it does so most. Channels of unit 0 do not count.
+    [[nodiscard]] double spread(std::uint32_t patch, const Solution& solution,
+                                std::span<const double> units) const {
         const std::uint32_t count = mesh_.corners(patch).count;
         double largest = 0.0;
         for (std::uint32_t c = 0; c < channels_; ++c) {
+            if (!(units[c] > 0.0)) {
+                continue;
+            }
+            const double own = solution.radiosity[std::size_t{patch} * channels_ + c];
             double squares = 0.0;
             for (std::uint32_t k = 0; k < count; ++k) {
-                squares += std::pow(
-                    at_corner(patch, k, c) - solution.radiosity[std::size_t{patch} * channels_ + c], 2.0);
+                squares += std::pow((at_corner(patch, k, c) - own) / units[c], 2.0);
             }
             largest = std::max(largest, squares / count);
         }
@@ -133,6 +140,13 @@ private:
     std::vector<float> corners_;
     std::uint32_t channels_;
 };
+
+/// At most what rows of factors with visibility and their table of pairs take, and the finer mesh.
+std::uint64_t bytes_of(std::uint64_t rows, std::uint64_t columns) {
+    constexpr std::uint64_t pair = 4 + 9;
+    constexpr std::uint64_t patch = 500; // with what the engine knows of it
+    return rows * columns * pair + columns * patch;
+}
 
 /// A patch of the sample, with how many of its kind it stands for.
 struct Drawn {
@@ -171,8 +185,11 @@ public:
             squares += area * error * error;
             total += area;
         }
-        std::sort(errors_.begin(), errors_.end());
         FieldError result;
+        if (!(total > 0.0)) {
+            return result;
+        }
+        std::sort(errors_.begin(), errors_.end());
         result.rms = std::sqrt(more * squares / total) / unit;
         double below = 0.0;
         for (const auto& [error, area] : errors_) {
@@ -207,7 +224,7 @@ public:
         return std::any_of(units_.begin(), units_.end(), [](double unit) { return unit > 0.0; });
     }
 
-    [[nodiscard]] PatchSizeError run(const FactorSettings& settings, Observer& observer) {
+    [[nodiscard]] std::optional<PatchSizeError> run(const FactorSettings& settings, Observer& observer) {
         const std::vector<Drawn> sample = draw();
         const PatchMesh fine = quartered(scene_, mesh_);
         const std::vector<std::uint32_t> parents = find_parents(mesh_, fine);
@@ -217,6 +234,12 @@ public:
             rows.insert(rows.end(), four.begin(), four.end());
         }
         std::sort(rows.begin(), rows.end());
+        if (const auto bytes = bytes_of(rows.size(), fine.size()); bytes > memory_limit(settings)) {
+            observer.warning(fmt::format("what the patches' size does is not estimated: that needs about {}",
+                                         memory_text(bytes)),
+                             "max-memory");
+            return std::nullopt;
+        }
 
         RowPlan plan = plan_rows(settings, mesh_.size());
         plan.hemicube.seed = ~plan.hemicube.seed; // not the rows that the solution rests on
@@ -278,12 +301,12 @@ private:
     }
 
     [[nodiscard]] std::vector<Drawn> draw() const {
-        const double doubt = std::pow(least_doubt * *std::max_element(units_.begin(), units_.end()), 2.0);
         std::vector<double> importance;
         for (const std::uint32_t patch : patches_) {
             // The square root of what a patch is likely to add makes the sum's variance least.
-            importance.push_back(mesh_.areas()[patch] *
-                                 std::sqrt(interpolation_.spread(patch, solution_) + doubt));
+            importance.push_back(
+                mesh_.areas()[patch] *
+                std::sqrt(interpolation_.spread(patch, solution_, units_) + least_doubt * least_doubt));
         }
         const double count =
             std::clamp(sampled_share * static_cast<double>(patches_.size()), min_sampled, max_sampled);
@@ -306,43 +329,50 @@ private:
         return quarters;
     }
 
-    /// G of a quarter in one channel, by its own row and the patches' radiosity. What the row's factors miss
-    /// of the share that its texels leave for them is made up for.
-    [[nodiscard]] double gathered(const RowView& row, const std::vector<std::uint32_t>& parents,
-                                  std::uint32_t channel) const {
-        double light = 0.0;
+    /// G of a quarter, a value a channel, by its own row and the patches' radiosity. What the row's factors
+    /// miss of the share that its texels leave for them is made up for.
+    [[nodiscard]] std::vector<double> gathered(const RowView& row,
+                                               const std::vector<std::uint32_t>& parents) const {
+        std::vector<double> light(channels_, 0.0);
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            light += static_cast<double>(row.values[k]) *
-                     solution_.radiosity[at(parents[row.columns[k]], channel)];
+            const std::size_t source = at(parents[row.columns[k]], 0);
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                light[c] += static_cast<double>(row.values[k]) * solution_.radiosity[source + c];
+            }
         }
         const double sum = row.sum();
-        const double target = 1.0 - row.environment - row.blocked;
-        if (sum > 0.0) {
-            light *= target / sum;
+        const double scale = sum > 0.0 ? (1.0 - row.environment - row.blocked) / sum : 0.0;
+        for (std::uint32_t c = 0; c < channels_; ++c) {
+            light[c] *= scale;
+            light[c] += scene_.environment.empty() ? 0.0 : row.environment * scene_.environment[c];
         }
-        return light + (scene_.environment.empty() ? 0.0 : row.environment * scene_.environment[channel]);
+        return light;
     }
 
     void add_patch(const Drawn& drawn, const std::array<std::uint32_t, 4>& quarters, const PatchMesh& fine,
                    const std::vector<std::uint32_t>& parents, const FormFactorMatrix& factors,
                    std::vector<Errors>& vertices, std::vector<Errors>& field) const {
         const std::uint32_t patch = drawn.patch;
-        const double area = mesh_.areas()[patch];
-        for (std::uint32_t c = 0; c < channels_; ++c) {
-            std::array<double, 4> light{};
-            double mean = 0.0;
-            for (std::size_t q = 0; q < 4; ++q) {
-                light[q] = gathered(factors.row(quarters[q]), parents, c);
-                mean += light[q] * fine.areas()[quarters[q]] / area;
+        std::array<std::vector<double>, 4> light;
+        std::vector<double> mean(channels_, 0.0);
+        for (std::size_t q = 0; q < 4; ++q) {
+            light[q] = gathered(factors.row(quarters[q]), parents);
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                mean[c] += light[q][c] * fine.areas()[quarters[q]] / mesh_.areas()[patch];
             }
-            for (std::size_t q = 0; q < 4; ++q) {
-                const double change = reflectance_[at(patch, c)] * (light[q] - mean);
-                const auto weights = interpolation_.weights(patch, fine.corners(quarters[q]));
+        }
+        for (std::size_t q = 0; q < 4; ++q) {
+            if (factors.row(quarters[q]).blocked > buried_above) {
+                continue; // nobody sees it; the patch's mean has its part of it all the same
+            }
+            const auto weights = interpolation_.weights(patch, fine.corners(quarters[q]));
+            const double stands_for = drawn.weight * fine.areas()[quarters[q]];
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                const double change = reflectance_[at(patch, c)] * (light[q][c] - mean[c]);
                 double shown = -solution_.radiosity[at(patch, c)];
                 for (std::uint32_t corner = 0; corner < mesh_.corners(patch).count; ++corner) {
                     shown += weights[corner] * interpolation_.at_corner(patch, corner, c);
                 }
-                const double stands_for = drawn.weight * fine.areas()[quarters[q]];
                 field[c].add(change, stands_for);
                 vertices[c].add(shown - change, stands_for);
             }
@@ -369,15 +399,18 @@ std::optional<PatchSizeError> estimate_patch_size_error(const Scene& scene, cons
     if (!estimator.anything_reflects()) {
         return std::nullopt;
     }
-    PatchSizeError error = estimator.run(settings, observer);
-    error.seconds = watch.seconds();
-    observer.detail(fmt::format("patch size: {} of {} patches cut in four in {:.2g} s", error.sampled,
-                                mesh.size(), error.seconds));
+    std::optional<PatchSizeError> error = estimator.run(settings, observer);
+    if (error) {
+        error->seconds = watch.seconds();
+        observer.detail(fmt::format("patch size: {} of {} patches cut in four in {:.2g} s", error->sampled,
+                                    mesh.size(), error->seconds));
+    }
     return error;
 }
 
 std::optional<SolutionError> solution_error(const Solution& solution) {
-    if (!solution.patch_size_error || !solution.error) {
+    // Where a row reflects more than it gets, the residual says nothing of what is left.
+    if (!solution.patch_size_error || !solution.error || solution.dominance >= 1.0) {
         return std::nullopt;
     }
     double all = 0.0;
@@ -389,8 +422,8 @@ std::optional<SolutionError> solution_error(const Solution& solution) {
     SolutionError error;
     error.patch_size = solution.patch_size_error->vertices.rms;
     error.factors = solution.error->rms;
-    // ||B - B*|| <= ||residual|| / (1 - dominance), and what is emitted is at most B.
-    const double amplified = solution.residual / std::max(1e-12, 1.0 - solution.dominance);
+    // About ||B - B*|| = ||residual|| / (1 - dominance) at worst, and what is emitted is at most B.
+    const double amplified = solution.residual / (1.0 - solution.dominance);
     error.solver = reflected > 0.0 ? amplified * std::sqrt(all / reflected) : 0.0;
     constexpr double normal95 = 1.96; // 95 % of a normal distribution, in standard deviations
     const auto total = [&error](const FieldError& patch_size) {

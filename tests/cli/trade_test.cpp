@@ -47,9 +47,27 @@ TEST_CASE("solve, factors: an estimate of errors is told, stored and shown", "[c
     const Json shown = run_hemi({"info", directory.path("a.hres"), "--json"}).json()["error_estimate"];
     CHECK(shown == error);
 
+    // The whole of it has the patches' size in it, which is the larger part here.
+    const Json whole = solved.json()["error"];
+    const Json parts = whole["parts"];
+    CHECK(parts["factors"] == error["radiosity"]["rms"]);
+    CHECK(parts["patch_size"] > parts["factors"]);
+    CHECK(whole["vertices"]["rms"].get<double>() ==
+          Approx(std::hypot(parts["patch_size"].get<double>(), parts["factors"].get<double>(),
+                            parts["solver"].get<double>())));
+    CHECK(whole["field"]["rms"] > 0.01);
+    CHECK(whole["field"]["p95"] > whole["field"]["rms"]);
+    CHECK(whole["patches_sampled"] >= 48);
+    const Outcome told =
+        run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "-o", directory.path("a.png")});
+    CHECK(told.out_has("the reflected light is within"));
+    CHECK(told.out_has("cut in four"));
+    CHECK_FALSE(told.out_has("is not included"));
+
     const Outcome without = run_hemi(quick({"solve", scene, "--no-estimate", "--json"}));
     CHECK(without.status == 0);
     CHECK(without.json()["error_estimate"].is_null());
+    CHECK(without.json()["error"].is_null());
     CHECK(run_hemi(quick({"check", scene, "--no-estimate"})).status == 2);
 }
 

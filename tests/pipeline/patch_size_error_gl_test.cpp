@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <string_view>
 #include <vector>
 
 using namespace hemi;
@@ -113,8 +115,9 @@ Truth truth_of(const Solved& coarse, const Solved& fine, std::uint32_t times) {
         const Vec3 along = at.points[1] - at.points[0];
         const Vec3 across = at.points[3] - at.points[0];
         const Vec3 place = fine.mesh.centres()[k] - at.points[0];
-        const double a = glm::dot(place, along) / glm::dot(along, along);
-        const double b = glm::dot(place, across) / glm::dot(across, across);
+        const Vec3 normal = glm::cross(along, across);
+        const double a = glm::dot(glm::cross(place, across), normal) / glm::dot(normal, normal);
+        const double b = glm::dot(glm::cross(along, place), normal) / glm::dot(normal, normal);
         const std::array<double, 4> weights{(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b};
         double shown = 0.0;
         for (std::size_t c = 0; c < 4; ++c) {
@@ -139,11 +142,17 @@ TEST_CASE("patch size: the error of lit rooms is that against a grid three times
         double reflectance;
         double lamp_size;
         Preset preset;
+        double slant = 0.0; ///< by which y moves x: patches become parallelograms
     };
     for (const Case& c : {Case{6, 0.5, 0.3, Preset::standard}, Case{9, 0.5, 0.3, Preset::standard},
                           Case{6, 0.9, 0.3, Preset::fast}, Case{6, 0.2, 0.06, Preset::standard},
-                          Case{6, 0.5, 0.3, Preset::plain}}) {
-        const Scene scene = lit_room(c.cells, c.reflectance, c.lamp_size);
+                          Case{6, 0.5, 0.3, Preset::plain}, Case{6, 0.5, 0.3, Preset::standard, 1.5}}) {
+        Scene scene = lit_room(c.cells, c.reflectance, c.lamp_size);
+        for (Surface& surface : scene.surfaces) {
+            for (Vec3& vertex : surface.vertices) {
+                vertex.x += c.slant * vertex.y;
+            }
+        }
         const Solved coarse = solved(scene, c.preset);
         const Solved fine = solved(refined(scene, 3), Preset::fast);
         const Truth truth = truth_of(coarse, fine, 3);
@@ -211,4 +220,67 @@ TEST_CASE("patch size: nothing where nothing reflects, refused for another mesh"
     }
     const Solved black = solved(scene, Preset::fast);
     CHECK_FALSE(estimate_patch_size_error(scene, black.mesh, black.solution, settings_of(Preset::fast)));
+}
+
+TEST_CASE("patch size: can be cancelled, and is left out where the memory is short", "[pipeline][gl]") {
+    const Scene scene = lit_room(3, 0.5, 0.3);
+    const Solved coarse = solved(scene, Preset::fast);
+    class Stops : public Observer {
+    public:
+        bool progress(Phase, std::size_t, std::size_t) override { return false; }
+    } stops;
+    CHECK_THROWS_AS(
+        estimate_patch_size_error(scene, coarse.mesh, coarse.solution, settings_of(Preset::fast), stops),
+        Cancelled);
+    class Warned : public Observer {
+    public:
+        void warning(std::string_view, std::string_view setting) override { settings.emplace_back(setting); }
+        std::vector<std::string> settings;
+    } warned;
+    FactorSettings little = settings_of(Preset::fast);
+    little.max_memory = 1024;
+    CHECK_FALSE(estimate_patch_size_error(scene, coarse.mesh, coarse.solution, little, warned));
+    CHECK(warned.settings == std::vector<std::string>{"max-memory"});
+}
+
+TEST_CASE("solution error: parts combine as the root of the sum of squares", "[pipeline]") {
+    Solution solution;
+    solution.radiosity = {2.0, 1.0};
+    solution.exitance = {1.0, 0.0};
+    solution.residual = 1e-3;
+    solution.dominance = 0.5;
+    CHECK_FALSE(solution_error(solution));
+    solution.error = RadiosityErrorEstimate{0.03, {}};
+    CHECK_FALSE(solution_error(solution));
+    solution.patch_size_error = PatchSizeError{{0.04, 0.05}, {0.08, 0.09}, 64, 0.0};
+    const auto error = solution_error(solution);
+    REQUIRE(error);
+    CHECK(error->patch_size == 0.04);
+    CHECK(error->factors == 0.03);
+    CHECK(error->solver == Approx(2e-3 * std::sqrt(2.5)));
+    CHECK(error->vertices.rms == Approx(std::hypot(0.04, 0.03, error->solver)));
+    CHECK(error->field.rms == Approx(std::hypot(0.08, 0.03, error->solver)));
+    CHECK(error->vertices.percentile95 > error->vertices.rms);
+    solution.dominance = 1.0; // the residual says nothing then
+    CHECK_FALSE(solution_error(solution));
+}
+
+TEST_CASE("patch size: corner values of slanted patches are interpolated as those of others",
+          "[pipeline][gl]") {
+    // A floor beside a lamp: light changes evenly, and most patches lie within.
+    for (const double slant : {0.0, 3.0}) {
+        Scene scene = empty_scene();
+        add_polygon(scene, "floor", {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1 + slant, 1, 0), Vec3(slant, 1, 0)},
+                    {40, 40});
+        add_polygon(scene, "lamp", {Vec3(-3, -2, 1), Vec3(-3, -1, 1), Vec3(-2, -1, 1), Vec3(-2, -2, 1)},
+                    {2, 2});
+        scene.materials.push_back({"lamp", {0.0}, {10.0}});
+        scene.surfaces.back().material = 1;
+        const Solved coarse = solved(scene, Preset::fast);
+        const auto error =
+            estimate_patch_size_error(scene, coarse.mesh, coarse.solution, settings_of(Preset::fast));
+        REQUIRE(error);
+        INFO("slant " << slant << ": field " << error->field.rms << ", vertices " << error->vertices.rms);
+        CHECK(error->vertices.rms < 0.5 * error->field.rms);
+    }
 }

@@ -4,6 +4,7 @@
 #include "benchmark/frames.hpp"
 #include "benchmark/measurements.hpp"
 #include "benchmark/program.hpp"
+#include "engine/workers/worker_pool.hpp"
 #include "gl/context.hpp"
 
 #include <CLI/CLI.hpp>
@@ -93,7 +94,7 @@ Setup make_setup(const Options& options, const gl::Context& context, unsigned co
     setup.device = context.name();
     setup.software = context.software();
     setup.worker_program = find_worker_program();
-    setup.workers = context.software() ? cores : std::min(cores, 4u); // as an engine that is asked for 0
+    setup.workers = context.software() ? cores : std::min(cores, gpu_processes);
     setup.effort.seconds = options.quick ? 0.2 : 0.5;
     return setup;
 }

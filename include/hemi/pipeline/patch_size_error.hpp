@@ -26,9 +26,11 @@ namespace hemi {
 /// @param scene     what the mesh was made of; gives reflectances
 /// @param mesh      N patches
 /// @param solution  radiosity, exitance and back-face shares of the mesh
-/// @param settings  by which the rows were found; the quarters' rows are found likewise
-/// @param observer  gets progress and may cancel
-/// @return nothing where nothing is reflected
+/// Quarters under other geometry do not count. Memory: up to 768 rows over 4 N patches, 13 bytes an entry.
+/// @param settings  sample points and texels of the quarters' rows, which are unoccluded factors times
+///   visibility whatever the preset; device, workers and the limit of memory
+/// @param observer  gets progress and may cancel; gets a warning where the memory does not allow it
+/// @return nothing where nothing is reflected, or where memory is short
 /// @throws InvalidArgument if the solution is of another mesh; as make_visibility_engine(); Cancelled
 [[nodiscard]] std::optional<PatchSizeError>
 estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
@@ -40,9 +42,9 @@ struct SolutionError {
     FieldError field;        ///< of one constant for each patch
     double patch_size = 0.0; ///< the part of `vertices.rms` that the patches' size brings
     double factors = 0.0;    ///< the part of the form factors
-    double solver = 0.0;     ///< at most what the solver left
+    double solver = 0.0;     ///< about what the solver left, at worst
 };
-/// @return nothing where an estimate is missing that it needs
+/// @return nothing where an estimate is missing that it needs, or where reflectance times row sum reaches 1
 [[nodiscard]] std::optional<SolutionError> solution_error(const Solution& solution);
 
 } // namespace hemi

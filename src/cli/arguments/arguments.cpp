@@ -229,7 +229,7 @@ void add_repair(CLI::App& app, std::optional<Repair>& repair) {
 void add_estimate(CLI::App& app, RowOptions& rows) {
     Options options(app, "Form factors");
     options.flag("--no-estimate", rows.factors.estimate_error,
-                 "skip the error estimate, which takes a tenth of the time", false);
+                 "skip the error estimates, which take a tenth of the time of new form factors", false);
     auto* target = options.value(
         "--error-target", "T", "choose the cheapest settings whose estimated error is at most T",
         [&rows](const std::string& text) { rows.error_target = parse_positive("--error-target", text); });

@@ -202,10 +202,6 @@ private:
     SharedMemory results_;
 };
 
-/// What a hemicube shows is found on the CPU, so one process leaves a GPU idle. More than these bring little,
-/// while each takes a tenth of a second and memory for a context of its own.
-constexpr std::uint32_t gpu_processes = 4;
-
 class WorkerPool final : public RawRowProvider {
 public:
     WorkerPool(std::unique_ptr<const EngineGeometry> geometry, const HemicubeSettings& settings,
