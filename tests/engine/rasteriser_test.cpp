@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -52,40 +53,71 @@ void check_against_rays(const PatchMesh& mesh, const HemicubeSettings& settings,
     }
 }
 
-/// A closed surface of triangles of which no two lie in one plane: a wavy sphere, seen from within, round a
-/// wavy body.
-Scene bumpy_cave(std::uint32_t n) {
-    Scene scene = empty_scene();
-    const auto add_ball = [&](const char* name, double radius, bool inward) {
-        const auto at = [&](std::uint32_t ring, std::uint32_t sector) {
-            const double theta = M_PI * ring / n;
-            const double phi = 2.0 * M_PI * (sector % (2 * n)) / (2 * n);
-            const Vec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
-            return d * radius *
-                   (1.0 + 0.06 * std::sin(5.0 * d.x + 1.0) * std::sin(7.0 * d.y) +
-                    0.04 * std::sin(9.0 * d.z + d.x));
-        };
-        const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-            add_polygon(scene, name, inward ? std::vector{a, c, b} : std::vector{a, b, c});
-        };
-        for (std::uint32_t ring = 0; ring < n; ++ring) {
-            for (std::uint32_t sector = 0; sector < 2 * n; ++sector) {
-                const Vec3 a = at(ring, sector);
-                const Vec3 b = at(ring + 1, sector);
-                const Vec3 c = at(ring + 1, sector + 1);
-                const Vec3 d = at(ring, sector + 1);
-                if (ring + 1 < n) {
-                    add(a, b, c);
-                }
-                if (ring > 0) {
-                    add(a, c, d);
-                }
+/// A wavy sphere of triangles of which no two lie in one plane, 2n round and n high.
+/// @param inward  whether it is seen from within
+void add_wavy_ball(Scene& scene, const char* name, const Vec3& centre, double radius, std::uint32_t n,
+                   bool inward) {
+    const auto at = [&](std::uint32_t ring, std::uint32_t sector) {
+        const double theta = M_PI * ring / n;
+        const double phi = 2.0 * M_PI * (sector % (2 * n)) / (2 * n);
+        const Vec3 d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+        return centre + d * radius *
+                            (1.0 + 0.06 * std::sin(5.0 * d.x + 1.0) * std::sin(7.0 * d.y) +
+                             0.04 * std::sin(9.0 * d.z + d.x));
+    };
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+        add_polygon(scene, name, inward ? std::vector{a, c, b} : std::vector{a, b, c});
+    };
+    for (std::uint32_t ring = 0; ring < n; ++ring) {
+        for (std::uint32_t sector = 0; sector < 2 * n; ++sector) {
+            const Vec3 a = at(ring, sector);
+            const Vec3 b = at(ring + 1, sector);
+            const Vec3 c = at(ring + 1, sector + 1);
+            const Vec3 d = at(ring, sector + 1);
+            if (ring + 1 < n) {
+                add(a, b, c);
+            }
+            if (ring > 0) {
+                add(a, c, d);
             }
         }
-    };
-    add_ball("cave", 1.0, true);
-    add_ball("body", 0.35, false);
+    }
+}
+
+/// A closed surface of triangles: a wavy sphere, seen from within, round a wavy body.
+Scene bumpy_cave(std::uint32_t n) {
+    Scene scene = empty_scene();
+    add_wavy_ball(scene, "cave", Vec3(0.0), 1.0, n, true);
+    add_wavy_ball(scene, "body", Vec3(0.0), 0.35, n, false);
     return scene;
+}
+
+/// Blocks of different heights in rows, from the floor to the ceiling some of them, and wavy balls where the
+/// streets cross: most of it is hidden from most of it.
+Scene streets() {
+    constexpr int blocks = 6;
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(blocks, blocks, 1.0), 6);
+    for (int x = 0; x < blocks; ++x) {
+        for (int y = 0; y < blocks; ++y) {
+            const Vec3 lower(x + 0.15, y + 0.15, 0.0);
+            add_block(scene, "block", lower, lower + Vec3(0.7, 0.7, 0.4 + 0.1 * ((3 * x + 5 * y) % 7)), 3);
+            if (x > 0 && y > 0) {
+                add_wavy_ball(scene, "ball", Vec3(x, y, 0.3), 0.12, 5, false);
+            }
+        }
+    }
+    return scene;
+}
+
+/// Weights and numbers of the texels of every draw id.
+std::vector<TexelTally> tally(std::span<const std::uint32_t> ids, const TileWeights& weights,
+                              std::size_t draw_ids) {
+    std::vector<TexelTally> sums(draw_ids, 0);
+    for (std::size_t texel = 0; texel < ids.size(); ++texel) {
+        sums[ids[texel]] += weights.texel[texel];
+    }
+    return sums;
 }
 
 /// A room with needles on its floor and under its ceiling.
@@ -152,6 +184,12 @@ TEST_CASE("Rasteriser: item buffers equal rays through the texel centres", "[eng
     SECTION("a bumpy cave") {
         check_against_rays(PatchMesh(bumpy_cave(16)), settings, 101);
     }
+    SECTION("what is hidden as a whole") {
+        check_against_rays(PatchMesh(streets()), settings, 97);
+    }
+    SECTION("what is hidden as a whole, face by face") {
+        check_against_rays(PatchMesh(streets()), {.resolution = 50, .merge_lattices = false}, 193);
+    }
     SECTION("needles") {
         check_against_rays(PatchMesh(needle_room()), settings, 5);
     }
@@ -215,6 +253,72 @@ TEST_CASE("Rasteriser: every instruction set draws the same items", "[engine]") 
                 }
                 CHECK(items == expected[k]);
             }
+        }
+    }
+}
+
+TEST_CASE("Rasteriser: a polygon's coverage is what it shows where it is drawn alone", "[engine]") {
+    for (const Scene& scene : {room_with_blocks(4), tapered_box(3), sheets(), needle_room(), bumpy_cave(5)}) {
+        const PatchMesh mesh(scene);
+        const HemicubeSettings settings{.resolution = 44};
+        const EngineGeometry geometry = make_engine_geometry(mesh, settings);
+        const DrawList& list = geometry.list;
+        const TexelTiles tiles(settings.resolution);
+        const TileWeights weights(tiles, DeltaFormFactors(settings.resolution));
+        const RasterScene all(list);
+        const auto rasteriser = make_rasteriser(all, tiles);
+        // Every polygon among the same vertices, so that all positions are the same bits.
+        std::vector<DrawList> single_lists(list.polygons.size(), list);
+        for (std::size_t p = 0; p < list.polygons.size(); ++p) {
+            single_lists[p].polygons = {list.polygons[p]};
+            single_lists[p].polygon_of_surface.assign(list.polygon_of_surface.size(), 1); // none
+        }
+        for (std::uint32_t patch = 0; patch < mesh.size(); patch += 1 + mesh.size() / 6) {
+            const EyePoint& eye = geometry.eyes.of(patch)[0];
+            const EyeFrame frame(eye.normal, patch, 0, settings.seed);
+            Coverage coverage(list.item_of_id.size());
+            rasteriser->draw(eye, frame, &weights, &coverage);
+            const std::vector<TexelTally> seen = tally(rasteriser->ids(), weights, list.item_of_id.size());
+            for (std::uint32_t p = 0; p < list.polygons.size(); ++p) {
+                const DrawPolygon& polygon = list.polygons[p];
+                if (p == list.polygon_of_surface[eye.surface]) {
+                    continue;
+                }
+                const RasterScene scene_of_one(single_lists[p]);
+                const auto alone = make_rasteriser(scene_of_one, tiles);
+                alone->draw(eye, frame, nullptr, nullptr);
+                const std::vector<TexelTally> covered = tally(alone->ids(), weights, list.item_of_id.size());
+                const bool cells = polygon.grid.u * polygon.grid.v > 1 || polygon.split != 0;
+                const std::uint32_t cell_ids = polygon.grid.u * polygon.grid.v << polygon.split;
+                for (const std::uint32_t first : {polygon.front_id, polygon.back_id}) {
+                    for (std::uint32_t id = first; id != item_blocked && id < first + cell_ids; ++id) {
+                        INFO("patch " << patch << ", polygon " << p << ", draw id " << id);
+                        CHECK(coverage.of_id[id] + (cells ? seen[id] : 0) == covered[id]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("Rasteriser: leaving out what is hidden as a whole changes no texel", "[engine]") {
+    const PatchMesh mesh(streets());
+    for (const bool merged : {true, false}) {
+        const HemicubeSettings settings{.resolution = 56, .merge_lattices = merged}; // without padding
+        const EngineGeometry geometry = make_engine_geometry(mesh, settings);
+        const RasterScene scene(geometry.list);
+        const TexelTiles tiles(settings.resolution);
+        const TileWeights weights(tiles, DeltaFormFactors(settings.resolution));
+        const auto rasteriser = make_rasteriser(scene, tiles);
+        const auto all = make_rasteriser(scene, tiles); // where coverage is wanted, everything is drawn
+        for (std::uint32_t patch = 0; patch < mesh.size(); patch += 7) {
+            const EyePoint& eye = geometry.eyes.of(patch)[0];
+            const EyeFrame frame(eye.normal, patch, 0, settings.seed);
+            Coverage coverage(geometry.list.item_of_id.size());
+            rasteriser->draw(eye, frame, nullptr, nullptr);
+            all->draw(eye, frame, &weights, &coverage);
+            INFO("patch " << patch);
+            CHECK(std::ranges::equal(rasteriser->ids(), all->ids()));
         }
     }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #if defined(__SSE2__)
@@ -41,7 +42,8 @@ std::uint64_t nonzeros_of_64(const std::uint32_t* sums) {
 
 RowAccumulator::RowAccumulator(std::span<const std::uint32_t> item_of_id, std::uint32_t patches)
     : item_of_id_(item_of_id), identity_(true),
-      sums_((std::size_t{item_first_patch} + patches + 63) / 64 * 64), columns_(patches), values_(patches) {
+      sums_((std::size_t{item_first_patch} + patches + 511) / 512 * 512), touched_(sums_.size() / 64),
+      columns_(patches), values_(patches) {
     for (std::uint32_t id = 0; id < item_of_id.size() && identity_; ++id) {
         identity_ = item_of_id[id] == id;
     }
@@ -62,6 +64,7 @@ void RowAccumulator::add_rows(const std::uint32_t* ids, const DeltaFormFactors& 
     // Local copies, so that the compiler need not fear that a sum overwrites them.
     const std::uint32_t* const item_of_id = item_of_id_.data();
     std::uint32_t* const sums = sums_.data();
+    std::uint8_t* const touched = touched_.data();
     for (std::uint32_t y = 0; y < weights.rows(); ++y) {
         const std::uint32_t* const row = ids + std::size_t{y} * resolution;
         const std::uint32_t* const prefix = weights.prefix_row(y).data();
@@ -70,6 +73,7 @@ void RowAccumulator::add_rows(const std::uint32_t* ids, const DeltaFormFactors& 
             const std::uint32_t item = identity ? row[last] : item_of_id[row[last]];
             const std::uint32_t upto = prefix[last + 1];
             sums[item] += upto - before;
+            touched[item / 64] = 1;
             before = upto;
         };
         for_each_run_end(row, resolution, end_run);
@@ -89,9 +93,13 @@ template <bool identity>
 void RowAccumulator::add_all_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights) {
     const std::uint32_t* const item_of_id = item_of_id_.data();
     std::uint32_t* const sums = sums_.data();
-    sum_by_id<std::uint32_t>(
-        ids, weights.weight, weights.tile_weight,
-        [=](std::uint32_t id, std::uint32_t weight) { sums[identity ? id : item_of_id[id]] += weight; });
+    std::uint8_t* const touched = touched_.data();
+    sum_by_id<std::uint32_t>(ids, weights.weight, weights.tile_weight,
+                             [=](std::uint32_t id, std::uint32_t weight) {
+                                 const std::uint32_t item = identity ? id : item_of_id[id];
+                                 sums[item] += weight;
+                                 touched[item / 64] = 1;
+                             });
 }
 
 RowView RowAccumulator::take() {
@@ -102,7 +110,7 @@ RowView RowAccumulator::take() {
     sums_[item_nothing] = sums_[item_blocked] = 0;
     double sum = 0.0;
     std::size_t entries = 0;
-    for (std::size_t first = 0; first < sums_.size(); first += 64) {
+    const auto take_block = [&](std::size_t first) {
         for (std::uint64_t mask = nonzeros_of_64(sums_.data() + first); mask != 0; mask &= mask - 1) {
             const std::size_t item = first + static_cast<std::size_t>(std::countr_zero(mask));
             const auto value = static_cast<float>(sums_[item] * unit);
@@ -111,6 +119,18 @@ RowView RowAccumulator::take() {
             ++entries;
             sums_[item] = 0;
             sum += static_cast<double>(value);
+        }
+    };
+    for (std::size_t block = 0; block < touched_.size(); block += sizeof(std::uint64_t)) {
+        std::uint64_t any = 0;
+        std::memcpy(&any, touched_.data() + block, sizeof any);
+        if (any == 0) {
+            continue;
+        }
+        for (std::size_t k = block; k < block + sizeof any; ++k) {
+            if (std::exchange(touched_[k], std::uint8_t{0}) != 0) {
+                take_block(64 * k);
+            }
         }
     }
     row.columns = {columns_.data(), entries};

@@ -36,9 +36,10 @@ private:
     void add_all_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights);
 
     std::span<const std::uint32_t> item_of_id_;
-    bool identity_;                   ///< draw ids are items: no look-up is needed
-    std::vector<std::uint32_t> sums_; ///< per item; padded to whole groups of 64
-    std::uint32_t total_ = 0;         ///< of the weights so far
+    bool identity_;                     ///< draw ids are items: no look-up is needed
+    std::vector<std::uint32_t> sums_;   ///< per item; padded to whole groups of 512
+    std::vector<std::uint8_t> touched_; ///< per 64 items: whether anything was added to them
+    std::uint32_t total_ = 0;           ///< of the weights so far
     std::vector<std::uint32_t> columns_;
     std::vector<float> values_;
 };

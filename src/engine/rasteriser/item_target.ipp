@@ -47,6 +47,24 @@ public:
     [[nodiscard]] const TexelTiles& tiles() const { return tiles_; }
     [[nodiscard]] Coverage* coverage() const { return coverage_; }
 
+    /// Whether everything in a box of texels is nearer than `nearest`, 1 / depth.
+    /// @param box  left, right, low and high
+    [[nodiscard]] bool hides(int face, const std::array<int, 4>& box, float nearest) const {
+        const Vec limit = set(nearest);
+        const auto tile = [&box](std::size_t side) { return static_cast<std::uint32_t>(box[side]) / 4; };
+        for (std::uint32_t ty = tile(2); ty <= tile(3); ++ty) {
+            std::uint32_t at = tiles_.first(face) + (ty * across_ + tile(0)) * tile_size;
+            for (std::uint32_t tx = tile(0); tx <= tile(1); ++tx, at += tile_size) {
+                for (std::uint32_t k = 0; k < tile_size; k += lanes) {
+                    if (!hn::AllTrue(floats, hn::Gt(hn::Load(floats, &depth_[at + k]), limit))) {
+                        return false;
+                    }
+                }
+            }
+        }
+        return true;
+    }
+
     template <bool covering>
     HWY_INLINE void put(std::uint32_t texel, float depth, std::uint32_t id) {
         if constexpr (covering) {
@@ -120,15 +138,16 @@ public:
 
     /// A convex outline tile by tile.
     /// @param inverse  1 / depth of its plane
+    /// @param nearest  the largest 1 / depth of its vertices: rounding beyond it is cut off
     template <bool covering>
-    void draw_outline(int face, const FaceOutline& outline, const Affine& inverse, const Shown& shown,
-                      bool front) {
+    void draw_outline(int face, const FaceOutline& outline, const Affine& inverse, float nearest,
+                      const Shown& shown, bool front) {
         const float bias = front ? front_bias : 1.0f;
         Covered covered{hn::Zero(ids_of), 0};
         for_tiles(face, outline, [&](std::uint32_t at, double x, double y, Vec in_x, Vec in_y, Mask inside) {
             const Vec z = affine(inverse, x, y, in_x, in_y);
             inside = hn::And(inside, hn::Gt(z, set(0.0f)));
-            const Vec depth = hn::Mul(z, set(bias));
+            const Vec depth = hn::Mul(hn::Min(z, set(nearest)), set(bias));
             if (shown.cells) {
                 put_lanes(at, inside, depth, ids_at(shown, z, x, y, in_x, in_y));
                 return;

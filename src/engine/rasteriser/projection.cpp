@@ -41,18 +41,6 @@ void Projection::set(const EyePoint& eye, const EyeFrame& frame) {
     }
 }
 
-std::array<float, 3> Projection::in_eye_frame(const RasterScene::SplitPosition& position) const {
-    std::array<float, 3> offset{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        offset[axis] = (position.high[axis] - high_[axis]) + (position.low[axis] - low_[axis]);
-    }
-    std::array<float, 3> at{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        at[axis] = (axes_[axis][0] * offset[0] + axes_[axis][1] * offset[1]) + axes_[axis][2] * offset[2];
-    }
-    return at;
-}
-
 std::uint32_t Projection::faces_of(const std::array<float, 3>& centre, float radius) const {
     constexpr float slope = 0.70710678f;
     std::array<float, 3> p{};

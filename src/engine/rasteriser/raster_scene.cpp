@@ -25,7 +25,7 @@ std::vector<Triangle> collect_triangles(const DrawList& list,
     for (std::uint32_t p = 0; p < list.polygons.size(); ++p) {
         const DrawPolygon& polygon = list.polygons[p];
         if (polygon.grid.u * polygon.grid.v > 1 || polygon.split != 0) {
-            grid_polygons.push_back({.polygon = p, .map = make_grid_map(list, p)});
+            grid_polygons.push_back({.polygon = p});
             continue;
         }
         for (std::uint32_t t = 0; t < polygon.triangle_count; ++t) {
@@ -38,6 +38,43 @@ std::vector<Triangle> collect_triangles(const DrawList& list,
         }
     }
     return triangles;
+}
+
+/// Sorts things by halves along the longest side of the box of their centres, and calls `take` with every
+/// part that `fits`.
+/// @param most  things in a part, where it is full: halves are cut so that parts are
+/// @param order  (centre, number) of a thing; equal for none
+template <class Thing, class Order, class Fits, class Take>
+void halve(std::span<Thing> things, std::size_t most, const Order& order, const Fits& fits,
+           const Take& take) {
+    if (things.empty()) {
+        return;
+    }
+    if (things.size() <= most && fits(things)) {
+        take(things);
+        return;
+    }
+    Vec3 lower(std::numeric_limits<double>::infinity());
+    Vec3 upper = -lower;
+    for (const Thing& thing : things) {
+        lower = glm::min(lower, order(thing).first);
+        upper = glm::max(upper, order(thing).first);
+    }
+    const Vec3 extent = upper - lower;
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    std::size_t half = things.size() / 2;
+    if (things.size() > most) {
+        half = std::max(most, (half + most / 2) / most * most);
+    }
+    half = half < things.size() ? half : things.size() / 2;
+    std::nth_element(things.begin(), things.begin() + static_cast<std::ptrdiff_t>(half), things.end(),
+                     [&](const Thing& a, const Thing& b) {
+                         const auto [centre_a, number_a] = order(a);
+                         const auto [centre_b, number_b] = order(b);
+                         return std::pair(centre_a[axis], number_a) < std::pair(centre_b[axis], number_b);
+                     });
+    halve(things.first(half), most, order, fits, take);
+    halve(things.subspan(half), most, order, fits, take);
 }
 
 /// Whether a polygon has three or four corners, none of them straight.
@@ -75,40 +112,13 @@ class ClusterBuilder {
 public:
     explicit ClusterBuilder(RasterScene& scene) : scene_(scene) {}
 
-    /// Halves the triangles along the longest side of their box until they fit clusters.
     void add(std::span<Triangle> triangles) {
         constexpr std::size_t most = RasterScene::cluster_size;
-        if (triangles.empty()) {
-            return;
-        }
-        if (triangles.size() <= most) {
-            const std::vector<std::uint32_t> vertices = vertices_of(triangles);
-            if (vertices.size() <= most) {
-                add_cluster(triangles, vertices);
-                return;
-            }
-        }
-        Vec3 lower(std::numeric_limits<double>::infinity());
-        Vec3 upper = -lower;
-        for (const Triangle& triangle : triangles) {
-            lower = glm::min(lower, triangle.centre);
-            upper = glm::max(upper, triangle.centre);
-        }
-        const Vec3 extent = upper - lower;
-        const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-        // Halves that fill clusters, where there are several.
-        std::size_t half = triangles.size() / 2;
-        if (triangles.size() > most) {
-            half = std::max(most, (half + most / 2) / most * most);
-        }
-        half = half < triangles.size() ? half : triangles.size() / 2;
-        std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half),
-                         triangles.end(), [axis](const Triangle& a, const Triangle& b) {
-                             return std::pair(a.centre[axis], a.polygon) <
-                                    std::pair(b.centre[axis], b.polygon);
-                         });
-        add(triangles.first(half));
-        add(triangles.subspan(half));
+        halve(
+            triangles, most,
+            [](const Triangle& triangle) { return std::pair(triangle.centre, triangle.polygon); },
+            [](std::span<Triangle> some) { return vertices_of(some).size() <= most; },
+            [this](std::span<Triangle> some) { add_cluster(some, vertices_of(some)); });
     }
 
 private:
@@ -118,21 +128,11 @@ private:
         TriangleCluster cluster;
         cluster.triangles = static_cast<std::uint32_t>(triangles.size());
         cluster.vertices = static_cast<std::uint32_t>(vertices.size());
-        Vec3 lower(std::numeric_limits<double>::infinity());
-        Vec3 upper = -lower;
+        std::vector<Vec3> positions;
         for (const std::uint32_t vertex : vertices) {
-            lower = glm::min(lower, raster(vertex));
-            upper = glm::max(upper, raster(vertex));
+            positions.push_back(scene_.list.vertices[vertex]);
         }
-        const Vec3 centre = 0.5 * (lower + upper);
-        double radius = 0.0;
-        for (const std::uint32_t vertex : vertices) {
-            radius = std::max(radius, glm::length(raster(vertex) - centre));
-        }
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            cluster.centre[axis] = static_cast<float>(centre[static_cast<int>(axis)]);
-        }
-        cluster.radius = static_cast<float>(radius * 1.0001) + sphere_rounding;
+        scene_.add_bounds(positions);
         for (std::size_t k = 0; k < size; ++k) {
             const auto position =
                 scene_.split(scene_.list.vertices[vertices[std::min(k, vertices.size() - 1)]]);
@@ -187,16 +187,76 @@ RasterScene::RasterScene(const DrawList& the_list) : list(the_list) {
         scale = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest) - 1) : 1.0;
     }
     std::vector<Triangle> triangles = collect_triangles(list, grid_polygons);
+    add_groups();
     ClusterBuilder(*this).add(triangles);
-    for (GridPolygon& drawn : grid_polygons) {
-        const DrawPolygon& outline = list.polygons[drawn.polygon];
-        drawn.centre = split(outline.centre).high;
-        drawn.radius = static_cast<float>(outline.radius * scale * 1.0001) + sphere_rounding;
-        drawn.whole = has_no_straight_corner(list, outline);
-        drawn.first_corner = static_cast<std::uint32_t>(grid_corners.size());
-        for (std::uint32_t k = 0; k < outline.corner_count; ++k) {
-            grid_corners.push_back(split(list.vertices[list.corners[outline.first_corner + k].vertex]));
-        }
+    constexpr std::size_t most_lanes = 16;
+    for (std::size_t k = 0; k < spheres.size(); ++k) {
+        spheres[k].resize((parts() + most_lanes - 1) / most_lanes * most_lanes, k < 3 ? 0.0f : -1e6f);
+    }
+}
+
+/// Sorts the grid polygons into groups, and fills in what depends on that.
+void RasterScene::add_groups() {
+    halve(
+        std::span(grid_polygons), group_size,
+        [this](const GridPolygon& drawn) {
+            return std::pair(list.polygons[drawn.polygon].centre, drawn.polygon);
+        },
+        [](std::span<GridPolygon> /*some*/) { return true; },
+        [this](std::span<GridPolygon> some) {
+            groups.push_back({static_cast<std::uint32_t>(some.data() - grid_polygons.data()),
+                              static_cast<std::uint32_t>(some.size())});
+            std::vector<Vec3> vertices;
+            for (GridPolygon& drawn : some) {
+                const DrawPolygon& outline = list.polygons[drawn.polygon];
+                drawn.centre = split(outline.centre).high;
+                drawn.radius = static_cast<float>(outline.radius * scale * 1.0001) + sphere_rounding;
+                drawn.whole = has_no_straight_corner(list, outline);
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    drawn.plane[axis] = static_cast<float>(outline.normal[static_cast<int>(axis)]);
+                }
+                const Vec3& on_plane = list.vertices[list.corners[outline.first_corner].vertex];
+                drawn.plane[3] = static_cast<float>(glm::dot(outline.normal, (on_plane - origin) * scale));
+                drawn.first_corner = static_cast<std::uint32_t>(corner_high[0].size());
+                drawn.corner_count = outline.corner_count;
+                drawn.corner_slots = (outline.corner_count + corner_slots - 1) / corner_slots * corner_slots;
+                grid_maps.push_back(make_grid_map(list, drawn.polygon));
+                for (std::uint32_t k = 0; k < drawn.corner_slots; ++k) {
+                    const std::uint32_t corner = outline.first_corner + std::min(k, outline.corner_count - 1);
+                    const Vec3& vertex = list.vertices[list.corners[corner].vertex];
+                    vertices.push_back(vertex);
+                    const SplitPosition position = split(vertex);
+                    for (std::size_t axis = 0; axis < 3; ++axis) {
+                        corner_high[axis].push_back(position.high[axis]);
+                        corner_low[axis].push_back(position.low[axis]);
+                    }
+                }
+            }
+            add_bounds(vertices);
+        });
+}
+
+void RasterScene::add_bounds(std::span<const Vec3> vertices) {
+    Vec3 lower(std::numeric_limits<double>::infinity());
+    Vec3 upper = -lower;
+    for (const Vec3& vertex : vertices) {
+        lower = glm::min(lower, vertex);
+        upper = glm::max(upper, vertex);
+    }
+    const Vec3 centre = 0.5 * (lower + upper);
+    double radius = 0.0;
+    for (const Vec3& vertex : vertices) {
+        radius = std::max(radius, glm::length(vertex - centre));
+    }
+    const auto at = split(centre).high;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        spheres[axis].push_back(at[axis]);
+    }
+    spheres[3].push_back(static_cast<float>(radius * scale * 1.0001) + sphere_rounding);
+    std::array<float, 3>& extent = extents.emplace_back();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto k = static_cast<int>(axis);
+        extent[axis] = static_cast<float>(0.5 * (upper[k] - lower[k]) * scale * 1.0001) + sphere_rounding;
     }
 }
 

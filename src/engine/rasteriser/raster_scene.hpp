@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <new>
+#include <span>
 #include <vector>
 
 namespace hemi {
@@ -34,8 +35,6 @@ using CacheLineVector = std::vector<T, CacheLineAllocator<T>>;
 
 /// Triangles that lie near one another: culled and transformed together.
 struct TriangleCluster {
-    std::array<float, 3> centre{}; ///< with `radius`: a sphere round it, in raster coordinates
-    float radius = 0.0f;
     std::uint32_t triangles = 0; ///< in slots [64 c, 64 c + triangles) of cluster c
     std::uint32_t vertices = 0;  ///< in slots [64 c, 64 c + vertices)
 };
@@ -50,6 +49,8 @@ struct RasterScene {
     explicit RasterScene(const DrawList& the_list);
 
     static constexpr std::uint32_t cluster_size = 64; ///< most triangles, and most vertices, of a cluster
+    static constexpr std::uint32_t group_size = 16;   ///< most grid polygons of a group
+    static constexpr std::uint32_t corner_slots = 8;
 
     /// A position as two floats.
     struct SplitPosition {
@@ -71,19 +72,47 @@ struct RasterScene {
     CacheLineVector<std::uint32_t> back_id;
     CacheLineVector<std::uint32_t> polygon; ///< into the draw list; 64 slots a cluster
 
-    /// A polygon of several cells.
+    /// A polygon of several cells: what tells whether it can be seen.
     struct GridPolygon {
-        std::uint32_t polygon; ///< into the draw list
-        GridMap map;
+        std::uint32_t polygon;         ///< into the draw list
         std::array<float, 3> centre{}; ///< with `radius`: a sphere round it, in raster coordinates
         float radius = 0.0f;
-        std::uint32_t first_corner = 0; ///< into grid_corners; as many as the polygon has
+        std::array<float, 4> plane{};   ///< height(p) = normal · p - plane[3], in raster coordinates
+        std::uint32_t first_corner = 0; ///< into corner_high and corner_low
+        std::uint32_t corner_count = 0;
+        std::uint32_t corner_slots = 0;
         /// Drawn as one outline of three or four edges. Others have corners along their edges and are drawn
         /// triangle by triangle: a short edge says little about points far along its line.
         bool whole = false;
     };
-    std::vector<GridPolygon> grid_polygons;
-    std::vector<SplitPosition> grid_corners;
+    std::vector<GridPolygon> grid_polygons; ///< group by group
+    std::vector<GridMap> grid_maps;         ///< of the grid polygons
+    /// Corners of the grid polygons: x, y, z; the last one again up to a multiple of corner_slots.
+    std::array<CacheLineVector<float>, 3> corner_high;
+    std::array<CacheLineVector<float>, 3> corner_low;
+
+    /// Grid polygons that lie near one another.
+    struct PolygonGroup {
+        std::uint32_t first; ///< into grid_polygons
+        std::uint32_t count;
+    };
+    std::vector<PolygonGroup> groups;
+
+    /// What is culled as a whole: the groups, and after them the clusters.
+    [[nodiscard]] std::uint32_t parts() const noexcept {
+        return static_cast<std::uint32_t>(groups.size() + clusters.size());
+    }
+    /// Spheres round the parts, in raster coordinates: x, y and z of the centres, and radii. A multiple of 16
+    /// elements, those beyond parts() with a radius below 0 that nothing reaches.
+    std::array<CacheLineVector<float>, 4> spheres;
+    /// Half the edges of boxes along the axes that hold the parts, about the same centres.
+    std::vector<std::array<float, 3>> extents;
+
+    /// Adds the bounds of a part that has these vertices, in scene units.
+    void add_bounds(std::span<const Vec3> vertices);
+
+private:
+    void add_groups();
 };
 
 } // namespace hemi

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 // One source for all instruction sets: this file is compiled once for each by foreach_target.h.
 #undef HWY_TARGET_INCLUDE
@@ -18,6 +19,7 @@
 
 // Must come after foreach_target.h.
 #include "engine/rasteriser/item_target.ipp"
+#include "engine/rasteriser/visible_parts.ipp"
 
 HWY_BEFORE_NAMESPACE();
 namespace hemi::HWY_NAMESPACE {
@@ -42,7 +44,7 @@ struct SmallTriangles {
 class SimdRasteriser final : public Rasteriser {
 public:
     SimdRasteriser(const RasterScene& scene, const TexelTiles& tiles)
-        : scene_(scene), projection_(scene, tiles.resolution()), target_(tiles),
+        : scene_(scene), projection_(scene, tiles.resolution()), target_(tiles), parts_(scene, projection_),
           texels_(projection_.texels()), half_(projection_.half()), guard_(projection_.guard()),
           slack_(std::max(1e-3f, 2e-6f * texels_)), tolerance_(scene.list.tolerance),
           near_plane_(static_cast<float>(tolerance_ * scene.scale) + 2e-6f) {}
@@ -63,39 +65,38 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> ids() const override { return target_.ids(); }
 
 private:
-    struct Candidate {
-        std::uint32_t cluster;
-        std::uint32_t faces;
-    };
-
     template <bool covering>
     void draw_all() {
-        for (const RasterScene::GridPolygon& polygon : scene_.grid_polygons) {
-            draw_grid_polygon<covering>(polygon);
+        parts_.find();
+        // What is hidden counts where coverage is wanted.
+        const bool occlusion = !covering && occlusion_.is_on();
+        if (occlusion) {
+            parts_.sort();
         }
-        find_candidates();
-        for (const Candidate& candidate : candidates_) {
-            draw_cluster<covering>(candidate);
+        for (const VisiblePart& part : parts_.parts()) {
+            std::uint32_t faces = part.faces;
+            if (occlusion) {
+                points_.set_box(projection_, part.centre, scene_.extents[part.part]);
+                faces = unhidden_faces(faces, points_, projection_, target_, slack_);
+                occlusion_.count(faces == 0);
+            }
+            if (faces == 0) {
+                continue;
+            }
+            if (part.part < scene_.groups.size()) {
+                draw_group<covering>(scene_.groups[part.part], faces, occlusion);
+            } else {
+                draw_cluster<covering>(part.part - static_cast<std::uint32_t>(scene_.groups.size()), faces);
+            }
         }
         flush<covering>(small_.count);
+        occlusion_.next_hemicube();
         if constexpr (covering) {
             target_.count_hidden();
         }
     }
 
-    /// Clusters that reach into the faces' pyramids.
-    void find_candidates() {
-        candidates_.clear();
-        for (std::uint32_t c = 0; c < scene_.clusters.size(); ++c) {
-            const TriangleCluster& cluster = scene_.clusters[c];
-            if (const std::uint32_t faces = projection_.faces_of(cluster.centre, cluster.radius);
-                faces != 0) {
-                candidates_.push_back({c, faces});
-            }
-        }
-    }
-
-    /// Positions of vertices in the eye's frame. The same arithmetic as projection_.in_eye_frame().
+    /// Positions of vertices in the eye's frame. The same arithmetic as FramePoints::set_corners().
     void transform(std::size_t first, std::uint32_t count) {
         const std::array<Vec, 3> high{set(projection_.high()[0]), set(projection_.high()[1]),
                                       set(projection_.high()[2])};
@@ -117,12 +118,12 @@ private:
         }
     }
     template <bool covering>
-    void draw_cluster(const Candidate& candidate) {
-        const TriangleCluster& cluster = scene_.clusters[candidate.cluster];
-        const std::size_t first = std::size_t{candidate.cluster} * cluster_size;
+    void draw_cluster(std::uint32_t index, std::uint32_t faces) {
+        const TriangleCluster& cluster = scene_.clusters[index];
+        const std::size_t first = std::size_t{index} * cluster_size;
         transform(first, cluster.vertices);
         find_sides(first, cluster.triangles);
-        for (std::uint32_t faces = candidate.faces; faces != 0; faces &= faces - 1) {
+        for (; faces != 0; faces &= faces - 1) {
             draw_cluster_on<covering>(std::countr_zero(faces), first, cluster);
         }
     }
@@ -450,51 +451,60 @@ private:
         }
         Shown shown;
         shown.first_id = front ? scene_.front_id[first + triangle] : scene_.back_id[first + triangle];
-        draw_outline<covering>(face, outline, projection_.on_texels(face, normal, 1.0 / height), shown,
-                               front);
-    }
-
-    /// A convex outline, counter-clockwise on the face.
-    template <bool covering>
-    void draw_outline(int face, std::span<const FaceVertex> outline, const Affine& inverse, Shown& shown,
-                      bool front) {
         const std::array<int, 4> box = projection_.box_of(face, outline);
-        if (box[0] > box[1] || box[2] > box[3]) {
-            return;
+        if (box[0] <= box[1] && box[2] <= box[3]) {
+            target_.draw_outline<covering>(face, FaceOutline(outline, box),
+                                           projection_.on_texels(face, normal, 1.0 / height),
+                                           nearest_of(outline), shown, front);
         }
-        if (shown.cells) {
-            move_base(inverse, shown, box);
+    }
+
+    /// The largest 1 / depth of an outline's vertices; infinity where it reaches behind the eye.
+    static float nearest_of(std::span<const FaceVertex> outline) {
+        float least = outline[0].hw;
+        for (const FaceVertex& vertex : outline) {
+            least = std::min(least, vertex.hw);
         }
-        target_.draw_outline<covering>(face, FaceOutline(outline, box), inverse, shown, front);
+        return least > 0.0f ? 1.0f / least : std::numeric_limits<float>::infinity();
     }
 
     template <bool covering>
-    void draw_grid_polygon(const RasterScene::GridPolygon& drawn) {
-        const DrawList& list = scene_.list;
-        const std::uint32_t index = drawn.polygon;
-        const DrawPolygon& polygon = list.polygons[index];
-        if (index == own_polygon_ || glm::dot(projection_.eye().position - polygon.centre,
-                                              projection_.eye().normal) > polygon.radius) {
+    void draw_group(const RasterScene::PolygonGroup& group, std::uint32_t faces, bool occlusion) {
+        for (std::uint32_t k = 0; k < group.count; ++k) {
+            draw_grid_polygon<covering>(group.first + k, faces, occlusion);
+        }
+    }
+
+    /// @param grid         of RasterScene::grid_polygons
+    /// @param group_faces  the only faces that matter
+    template <bool covering>
+    void draw_grid_polygon(std::uint32_t grid, std::uint32_t group_faces, bool occlusion) {
+        const RasterScene::GridPolygon& drawn = scene_.grid_polygons[grid];
+        if (drawn.polygon == own_polygon_) {
             return;
         }
-        const double height = projection_.height_above(index);
-        if (std::abs(height) <= tolerance_) {
-            return; // edge-on
-        }
-        const bool front = height > 0.0;
-        bool drawn_once = false;
-        const std::uint32_t faces = projection_.faces_of(drawn.centre, drawn.radius);
+        std::uint32_t faces = group_faces & projection_.faces_of(drawn.centre, drawn.radius);
         if (faces == 0) {
             return;
         }
-        corners_.clear();
-        float highest = -1.0f;
-        for (std::uint32_t k = 0; k < polygon.corner_count; ++k) {
-            corners_.push_back(projection_.in_eye_frame(scene_.grid_corners[drawn.first_corner + k]));
-            highest = std::max(highest, corners_.back()[2]);
-        }
-        if (highest <= static_cast<float>(tolerance_ * scene_.scale)) {
+        points_.set_corners(scene_, projection_, drawn);
+        if (points_.highest() <= static_cast<float>(tolerance_ * scene_.scale)) {
             return; // on or behind the eye's plane
+        }
+        const std::array<float, 3>& eye = projection_.high();
+        const float about =
+            (drawn.plane[0] * eye[0] + drawn.plane[1] * eye[1]) + drawn.plane[2] * eye[2] - drawn.plane[3];
+        auto height = static_cast<double>(about);
+        if (std::abs(about) < near_plane_) {
+            height = projection_.height_above(drawn.polygon);
+            if (std::abs(height) <= tolerance_) {
+                return; // edge-on
+            }
+        }
+        const bool front = height > 0.0;
+        bool drawn_once = false;
+        if (occlusion) {
+            faces = unhidden_faces(faces, points_, projection_, target_, slack_);
         }
         for (std::uint32_t left = faces; left != 0; left &= left - 1) {
             const int face = std::countr_zero(left);
@@ -502,36 +512,52 @@ private:
             Affine inverse;
             bool ready = false;
             const bool whole = drawn.whole;
-            const std::uint32_t pieces = whole ? 1 : polygon.triangle_count;
+            const DrawList& list = scene_.list;
+            const std::uint32_t pieces = whole ? 1 : list.polygons[drawn.polygon].triangle_count;
             for (std::uint32_t piece = 0; piece < pieces; ++piece) {
                 std::array<FaceVertex, 4> outline;
-                const std::uint32_t count = whole ? polygon.corner_count : 3;
+                const std::uint32_t count = whole ? drawn.corner_count : 3;
                 for (std::uint32_t k = 0; k < count; ++k) {
                     const std::uint32_t corner =
-                        whole ? k : list.triangles[polygon.first_triangle + piece][k];
-                    outline[front ? count - 1 - k : k] = projection_.on_face(face, corners_[corner]);
+                        whole ? k : list.triangles[list.polygons[drawn.polygon].first_triangle + piece][k];
+                    outline[front ? count - 1 - k : k] = projection_.on_face(face, points_.point(corner));
                 }
-                if (projection_.outside(face, std::span(outline).first(count))) {
+                const std::span<const FaceVertex> vertices = std::span(outline).first(count);
+                if (projection_.outside(face, vertices)) {
+                    continue;
+                }
+                const std::array<int, 4> box = projection_.box_of(face, vertices);
+                const float nearest = nearest_of(vertices);
+                drawn_once = true;
+                if (box[0] > box[1] || box[2] > box[3]) {
                     continue;
                 }
                 if (!ready) {
-                    inverse = projection_.on_texels(face, projection_.in_frame(polygon.normal),
+                    const Vec3& normal = list.polygons[drawn.polygon].normal;
+                    height = projection_.height_above(drawn.polygon);
+                    inverse = projection_.on_texels(face, projection_.in_frame(normal),
                                                     -1.0 / (height * scene_.scale));
-                    shown = shown_cells(scene_, projection_, face, drawn, front, inverse);
+                    shown = shown_cells(scene_, projection_, face, grid, front, inverse);
                     ready = true;
                 }
-                draw_outline<covering>(face, std::span(outline).first(count), inverse, shown, front);
-                drawn_once = true;
+                if (shown.cells) {
+                    move_base(inverse, shown, box);
+                }
+                target_.draw_outline<covering>(face, FaceOutline(vertices, box), inverse, nearest, shown,
+                                               front);
             }
         }
-        if (covering && drawn_once && (front || polygon.back_id != item_blocked)) {
-            target_.coverage()->sides.push_back({index, !front});
+        if (covering && drawn_once &&
+            (front || scene_.list.polygons[drawn.polygon].back_id != item_blocked)) {
+            target_.coverage()->sides.push_back({drawn.polygon, !front});
         }
     }
 
     const RasterScene& scene_;
     Projection projection_;
     ItemTarget target_;
+    VisibleParts parts_;
+    OcclusionSwitch occlusion_;
     float texels_; ///< of a face's edge, and half of it; vertices project where they are nearer than guard_
     float half_;
     float guard_;
@@ -549,8 +575,7 @@ private:
     alignas(64) std::array<float, cluster_size> side_{};    ///< by triangle
 
     std::uint32_t own_polygon_ = 0;
-    std::vector<Candidate> candidates_;
-    std::vector<std::array<float, 3>> corners_; ///< of the polygon that is being drawn, in the eye's frame
+    FramePoints points_; ///< of what is being culled or drawn
     SmallTriangles small_{};
 };
 

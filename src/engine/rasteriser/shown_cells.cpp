@@ -5,16 +5,16 @@
 
 namespace hemi {
 
-Shown shown_cells(const RasterScene& scene, const Projection& projection, int face,
-                  const RasterScene::GridPolygon& drawn, bool front, const Affine& inverse) {
-    const DrawPolygon& polygon = scene.list.polygons[drawn.polygon];
+Shown shown_cells(const RasterScene& scene, const Projection& projection, int face, std::uint32_t grid,
+                  bool front, const Affine& inverse) {
+    const DrawPolygon& polygon = scene.list.polygons[scene.grid_polygons[grid].polygon];
     Shown shown;
     shown.first_id = front ? polygon.front_id : polygon.back_id;
     shown.cells = shown.first_id != item_blocked;
     if (!shown.cells) {
         return shown;
     }
-    const GridMap& map = drawn.map;
+    const GridMap& map = scene.grid_maps[grid];
     const Vec3 offset = projection.eye().position - map.origin;
     // u at the eye and its change along a ray; both over depth.
     const auto over_depth = [&](const Vec3& gradient, double at_origin) {

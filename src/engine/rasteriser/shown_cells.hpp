@@ -18,9 +18,10 @@ struct Shown {
 };
 
 /// What a polygon of several cells shows on a face.
+/// @param grid     of RasterScene::grid_polygons
 /// @param inverse  1 / depth of its plane
 [[nodiscard]] Shown shown_cells(const RasterScene& scene, const Projection& projection, int face,
-                                const RasterScene::GridPolygon& drawn, bool front, const Affine& inverse);
+                                std::uint32_t grid, bool front, const Affine& inverse);
 
 /// Counts cells from the one at the nearest corner of the box, where they are largest on the face.
 /// @param box  left, right, low and high texel
