@@ -97,13 +97,14 @@ Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loade
 }
 
 /// Adds what the patches' size does, unless no estimate is wanted.
-void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loaded, Observer& observer,
-                         Solution& solution, Seconds& seconds) {
+void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loaded,
+                         const FormFactors& factors, Observer& observer, Solution& solution,
+                         Seconds& seconds) {
     if (!arguments.rows.factors.estimate_error || !solution.error) {
         return;
     }
-    solution.patch_size_error =
-        estimate_patch_size_error(loaded.scene, loaded.mesh, solution, arguments.rows.factors, observer);
+    solution.patch_size_error = estimate_patch_size_error(loaded.scene, loaded.mesh, factors, solution,
+                                                          arguments.rows.factors, observer);
     seconds["estimate"] += solution.patch_size_error ? solution.patch_size_error->seconds : 0.0;
 }
 
@@ -155,7 +156,8 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     report_buried(sums, terminal);
     write_files(arguments, loaded, solution);
     const Report picture = draw(arguments, loaded, solution, seconds);
-    estimate_patch_size(arguments, loaded, observer, solution, seconds); // when what was found is stored
+    estimate_patch_size(arguments, loaded, factors, observer, solution,
+                        seconds); // when what was found is stored
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
     Report report = solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, seconds);
     report.text += picture.text;

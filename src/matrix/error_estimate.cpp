@@ -364,4 +364,24 @@ estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix
     return estimate;
 }
 
+IrradianceErrors irradiance_errors(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
+                                   std::uint32_t channels, std::span<const double> radiosity) {
+    if (radiosity.size() != std::size_t{factors.size()} * channels) {
+        throw InvalidArgument(fmt::format("{} radiosities for {} patches of {} channels", radiosity.size(),
+                                          factors.size(), channels));
+    }
+    IrradianceErrors result{sampled_rows(factors, reference), {}};
+    result.errors.resize(result.rows.size() * channels);
+    for (std::size_t k = 0; k < result.rows.size(); ++k) {
+        compare(factors.row(result.rows[k]), reference.row(result.rows[k]), {},
+                [&](std::uint32_t j, double difference, double /*should*/) {
+                    for (std::uint32_t c = 0; c < channels; ++c) {
+                        result.errors[k * channels + c] +=
+                            difference * radiosity[std::size_t{j} * channels + c];
+                    }
+                });
+    }
+    return result;
+}
+
 } // namespace hemi

@@ -6,6 +6,9 @@
 #include "hemi/core/text.hpp"
 #include "hemi/display/vertex_colours.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
+#include "hemi/matrix/error_estimate.hpp"
+#include "hemi/solver/solver.hpp"
+#include "pipeline/group_importance.hpp"
 
 #include <fmt/format.h>
 
@@ -206,15 +209,38 @@ private:
     std::vector<std::pair<double, double>> errors_;
 };
 
+/// A sum over all patches, from those of a sample.
+class SampledSum {
+public:
+    /// @param weight  how many of its kind the value stands for
+    void add(double value, double weight) {
+        sum_ += weight * value;
+        squares_ += weight * weight * value * value;
+        count_ += 1.0;
+    }
+    /// The sum's magnitude and the standard error that it has, together.
+    [[nodiscard]] double with_standard_error() const {
+        const double spread = count_ > 1.0 ? squares_ - sum_ * sum_ / count_ : 0.0;
+        return std::sqrt(sum_ * sum_ + std::max(0.0, spread * count_ / (count_ - 1.0)));
+    }
+
+private:
+    double sum_ = 0.0;
+    double squares_ = 0.0;
+    double count_ = 0.0;
+};
+
 class PatchSizeEstimator {
 public:
-    PatchSizeEstimator(const Scene& scene, const PatchMesh& mesh, const Solution& solution)
-        : scene_(scene), mesh_(mesh), solution_(solution), channels_(solution.channels),
+    PatchSizeEstimator(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
+                       const Solution& solution)
+        : scene_(scene), mesh_(mesh), factors_(factors), solution_(solution), channels_(solution.channels),
           reflectance_(patch_values(mesh, scene.materials, &Material::reflectance)),
           interpolation_(mesh, corner_values(mesh, channels_, solution.radiosity, solution.back_face_share),
                          channels_) {
         const std::size_t values = std::size_t{mesh.size()} * channels_;
-        if (solution.radiosity.size() != values || reflectance_.size() != values) {
+        if (solution.radiosity.size() != values || reflectance_.size() != values ||
+            factors.matrix.size() != mesh.size()) {
             throw InvalidArgument("patch size error: the solution belongs to another mesh");
         }
         find_units();
@@ -249,12 +275,15 @@ public:
         };
         const FormFactorMatrix factors = compute_visibility_weighted(
             *engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure, go_on, go_on, go_on);
+        find_importance(go_on);
         std::vector<Errors> vertices(channels_);
         std::vector<Errors> field(channels_);
+        std::vector<SampledSum> groups(std::size_t{importance_.groups()} * channels_);
         for (std::size_t k = 0; k < sample.size(); ++k) {
-            add_patch(sample[k], quarters[k], fine, parents, factors, vertices, field);
+            add_patch(sample[k], quarters[k], fine, parents, factors, vertices, field, groups);
         }
         PatchSizeError result;
+        result.groups = group_errors(groups);
         result.sampled = static_cast<std::uint32_t>(sample.size());
         const auto take_worst = [](FieldError& worst, const FieldError& error) {
             worst.rms = std::max(worst.rms, error.rms);
@@ -329,42 +358,133 @@ private:
         return quarters;
     }
 
-    /// G of a quarter, a value a channel, by its own row and the patches' radiosity. What the row's factors
-    /// miss of the share that its texels leave for them is made up for.
-    [[nodiscard]] std::vector<double> gathered(const RowView& row,
-                                               const std::vector<std::uint32_t>& parents) const {
-        std::vector<double> light(channels_, 0.0);
+    /// Importance of every patch for every group, where there are not too many groups.
+    void find_importance(const Progress& go_on) {
+        if (factors_.groups.size() > GroupImportance::most_groups) {
+            return;
+        }
+        importance_ = GroupImportance(factors_, reflectance_, channels_,
+                                      [&go_on](std::uint32_t, double, const auto&) { return go_on(0, 1); });
+    }
+
+    /// What a quarter gets of a field of the patches by its own row. What the row's factors miss of the share
+    /// that its texels leave for them is made up for.
+    /// @param field  values of a patch, as many for each
+    template <class Field>
+    static std::vector<double> gathered(const RowView& row, const std::vector<std::uint32_t>& parents,
+                                        std::size_t values, const Field& field) {
+        std::vector<double> light(values, 0.0);
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            const std::size_t source = at(parents[row.columns[k]], 0);
-            for (std::uint32_t c = 0; c < channels_; ++c) {
-                light[c] += static_cast<double>(row.values[k]) * solution_.radiosity[source + c];
+            const std::span<const double> source = field(parents[row.columns[k]]);
+            for (std::size_t c = 0; c < values; ++c) {
+                light[c] += static_cast<double>(row.values[k]) * source[c];
             }
         }
         const double sum = row.sum();
         const double scale = sum > 0.0 ? (1.0 - row.environment - row.blocked) / sum : 0.0;
+        for (double& value : light) {
+            value *= scale;
+        }
+        return light;
+    }
+
+    /// G of a quarter, a value a channel.
+    [[nodiscard]] std::vector<double> irradiance_at(const RowView& row,
+                                                    const std::vector<std::uint32_t>& parents) const {
+        std::vector<double> light = gathered(row, parents, channels_, [this](std::uint32_t patch) {
+            return std::span(solution_.radiosity).subspan(at(patch, 0), channels_);
+        });
         for (std::uint32_t c = 0; c < channels_; ++c) {
-            light[c] *= scale;
             light[c] += scene_.environment.empty() ? 0.0 : row.environment * scene_.environment[c];
         }
         return light;
     }
 
+    /// Errors of the mean irradiance of the groups.
+    /// @param sums  of A rho (G - mean of G) z over the sample: channel c of group g at [g·channels + c]
+    [[nodiscard]] std::vector<GroupError> group_errors(const std::vector<SampledSum>& sums) const {
+        if (importance_.groups() == 0) {
+            return {};
+        }
+        RadiosityProblem problem;
+        problem.factors = &factors_.matrix;
+        problem.channels = channels_;
+        problem.reflectance = reflectance_;
+        problem.exitance = solution_.exitance;
+        problem.environment = scene_.environment;
+        const std::vector<double> irradiance = hemi::irradiance(problem, solution_.radiosity);
+        std::vector<double> light(sums.size(), 0.0); // irradiance times area, of the rows that are known
+        for (std::uint32_t i = 0; i < mesh_.size(); ++i) {
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                light[std::size_t{mesh_.group(i)} * channels_ + c] += mesh_.areas()[i] * irradiance[at(i, c)];
+            }
+        }
+        const std::vector<SampledSum> by_factors = factor_error_sums();
+        std::vector<GroupError> errors(importance_.groups());
+        for (std::size_t g = 0; g < errors.size(); ++g) {
+            bool lit = false;
+            for (std::size_t k = g * channels_; k < (g + 1) * channels_; ++k) {
+                if (light[k] > 0.0) {
+                    lit = true;
+                    errors[g].patch_size =
+                        std::max(errors[g].patch_size,
+                                 linear_over_quarters * sums[k].with_standard_error() / light[k]);
+                    errors[g].factors =
+                        std::max(errors[g].factors, by_factors[k].with_standard_error() / light[k]);
+                }
+            }
+            if (!lit) {
+                errors[g] = {std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::quiet_NaN()};
+            }
+        }
+        return errors;
+    }
+
+    /// Errors of the sampled rows' irradiance, times area and importance: channel c of group g at
+    /// [g·channels + c].
+    [[nodiscard]] std::vector<SampledSum> factor_error_sums() const {
+        std::vector<SampledSum> sums(std::size_t{importance_.groups()} * channels_);
+        const IrradianceErrors errors =
+            irradiance_errors(factors_.matrix, factors_.reference, channels_, solution_.radiosity);
+        double known = 0.0;
+        for (std::uint32_t i = 0; i < mesh_.size(); ++i) {
+            known += factors_.matrix.known(i) ? 1.0 : 0.0;
+        }
+        const double weight = known / static_cast<double>(errors.rows.size());
+        for (std::size_t k = 0; k < errors.rows.size(); ++k) {
+            const std::uint32_t i = errors.rows[k];
+            const std::span<const double> importance = importance_.of(i);
+            for (std::size_t column = 0; column < sums.size(); ++column) {
+                sums[column].add(mesh_.areas()[i] * importance[column] *
+                                     errors.errors[k * channels_ + column % channels_],
+                                 weight);
+            }
+        }
+        return sums;
+    }
+
     void add_patch(const Drawn& drawn, const std::array<std::uint32_t, 4>& quarters, const PatchMesh& fine,
                    const std::vector<std::uint32_t>& parents, const FormFactorMatrix& factors,
-                   std::vector<Errors>& vertices, std::vector<Errors>& field) const {
+                   std::vector<Errors>& vertices, std::vector<Errors>& field,
+                   std::vector<SampledSum>& groups) const {
         const std::uint32_t patch = drawn.patch;
         std::array<std::vector<double>, 4> light;
         std::vector<double> mean(channels_, 0.0);
         for (std::size_t q = 0; q < 4; ++q) {
-            light[q] = gathered(factors.row(quarters[q]), parents);
+            light[q] = irradiance_at(factors.row(quarters[q]), parents);
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 mean[c] += light[q][c] * fine.areas()[quarters[q]] / mesh_.areas()[patch];
             }
         }
+        std::vector<double> for_groups(groups.size(), 0.0);
         for (std::size_t q = 0; q < 4; ++q) {
-            if (factors.row(quarters[q]).blocked > buried_above) {
+            const RowView row = factors.row(quarters[q]);
+            if (row.blocked > buried_above) {
                 continue; // nobody sees it; the patch's mean has its part of it all the same
             }
+            const std::vector<double> importance = gathered(
+                row, parents, groups.size(), [this](std::uint32_t source) { return importance_.of(source); });
             const auto weights = interpolation_.weights(patch, fine.corners(quarters[q]));
             const double stands_for = drawn.weight * fine.areas()[quarters[q]];
             for (std::uint32_t c = 0; c < channels_; ++c) {
@@ -375,27 +495,35 @@ private:
                 }
                 field[c].add(change, stands_for);
                 vertices[c].add(shown - change, stands_for);
+                for (std::size_t column = c; column < groups.size(); column += channels_) {
+                    for_groups[column] += fine.areas()[quarters[q]] * change * importance[column];
+                }
             }
+        }
+        for (std::size_t column = 0; column < groups.size(); ++column) {
+            groups[column].add(for_groups[column], drawn.weight);
         }
     }
 
     const Scene& scene_;
     const PatchMesh& mesh_;
+    const FormFactors& factors_;
     const Solution& solution_;
     std::uint32_t channels_;
     std::vector<double> reflectance_;
     Interpolation interpolation_;
     std::vector<std::uint32_t> patches_; // those that reflect and are not buried, ascending
     std::vector<double> units_;          // a channel: rms of B - E over them
+    GroupImportance importance_;
 };
 
 } // namespace
 
 std::optional<PatchSizeError> estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh,
-                                                        const Solution& solution,
+                                                        const FormFactors& factors, const Solution& solution,
                                                         const FactorSettings& settings, Observer& observer) {
     const Stopwatch watch;
-    PatchSizeEstimator estimator(scene, mesh, solution);
+    PatchSizeEstimator estimator(scene, mesh, factors, solution);
     if (!estimator.anything_reflects()) {
         return std::nullopt;
     }
@@ -433,6 +561,9 @@ std::optional<SolutionError> solution_error(const Solution& solution) {
     };
     error.vertices = total(solution.patch_size_error->vertices);
     error.field = total(solution.patch_size_error->field);
+    for (const GroupError& group : solution.patch_size_error->groups) {
+        error.groups.push_back(std::hypot(group.patch_size, group.factors, error.solver));
+    }
     return error;
 }
 

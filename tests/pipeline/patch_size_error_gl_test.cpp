@@ -33,14 +33,15 @@ FactorSettings settings_of(Preset preset) {
 
 struct Solved {
     PatchMesh mesh;
+    FormFactors factors;
     Solution solution;
 };
 
 Solved solved(const Scene& scene, Preset preset) {
     PatchMesh mesh(scene);
-    const FormFactors factors = compute_form_factors(scene, mesh, settings_of(preset));
+    FormFactors factors = compute_form_factors(scene, mesh, settings_of(preset));
     Solution solution = solve_radiosity(scene, mesh, factors);
-    return {std::move(mesh), std::move(solution)};
+    return {std::move(mesh), std::move(factors), std::move(solution)};
 }
 
 /// Every grid `times` as fine each way.
@@ -156,8 +157,8 @@ TEST_CASE("patch size: the error of lit rooms is that against a grid three times
         const Solved coarse = solved(scene, c.preset);
         const Solved fine = solved(refined(scene, 3), Preset::fast);
         const Truth truth = truth_of(coarse, fine, 3);
-        const auto error =
-            estimate_patch_size_error(scene, coarse.mesh, coarse.solution, settings_of(c.preset));
+        const auto error = estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution,
+                                                     settings_of(c.preset));
         REQUIRE(error);
         INFO(c.cells << " cells, reflectance " << c.reflectance << ", lamp " << c.lamp_size);
         INFO("field " << error->field.rms << ", true " << truth.field << "; vertices " << error->vertices.rms
@@ -174,8 +175,8 @@ TEST_CASE("patch size: triangles err as the quadrilaterals that they halve, or l
     const Scene scene = lit_room(6, 0.5, 0.3);
     const auto error_of = [](const Scene& of) {
         const Solved coarse = solved(of, Preset::fast);
-        const auto error =
-            estimate_patch_size_error(of, coarse.mesh, coarse.solution, settings_of(Preset::fast));
+        const auto error = estimate_patch_size_error(of, coarse.mesh, coarse.factors, coarse.solution,
+                                                     settings_of(Preset::fast));
         REQUIRE(error);
         return *error;
     };
@@ -199,8 +200,8 @@ TEST_CASE("patch size: none in a furnace, whatever the shape of the patches", "[
         }
         scene.environment.clear();
         const Solved coarse = solved(scene, Preset::standard);
-        const auto error =
-            estimate_patch_size_error(scene, coarse.mesh, coarse.solution, settings_of(Preset::standard));
+        const auto error = estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution,
+                                                     settings_of(Preset::standard));
         REQUIRE(error);
         INFO(name);
         CHECK(error->field.rms < 1e-6);
@@ -213,13 +214,15 @@ TEST_CASE("patch size: nothing where nothing reflects, refused for another mesh"
     const Solved coarse = solved(scene, Preset::fast);
     Solution other = coarse.solution;
     other.radiosity.pop_back();
-    CHECK_THROWS_AS(estimate_patch_size_error(scene, coarse.mesh, other, settings_of(Preset::fast)),
-                    InvalidArgument);
+    CHECK_THROWS_AS(
+        estimate_patch_size_error(scene, coarse.mesh, coarse.factors, other, settings_of(Preset::fast)),
+        InvalidArgument);
     for (Material& material : scene.materials) {
         material.reflectance = {0.0};
     }
     const Solved black = solved(scene, Preset::fast);
-    CHECK_FALSE(estimate_patch_size_error(scene, black.mesh, black.solution, settings_of(Preset::fast)));
+    CHECK_FALSE(estimate_patch_size_error(scene, black.mesh, black.factors, black.solution,
+                                          settings_of(Preset::fast)));
 }
 
 TEST_CASE("patch size: can be cancelled, and is left out where the memory is short", "[pipeline][gl]") {
@@ -229,9 +232,9 @@ TEST_CASE("patch size: can be cancelled, and is left out where the memory is sho
     public:
         bool progress(Phase, std::size_t, std::size_t) override { return false; }
     } stops;
-    CHECK_THROWS_AS(
-        estimate_patch_size_error(scene, coarse.mesh, coarse.solution, settings_of(Preset::fast), stops),
-        Cancelled);
+    CHECK_THROWS_AS(estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution,
+                                              settings_of(Preset::fast), stops),
+                    Cancelled);
     class Warned : public Observer {
     public:
         void warning(std::string_view, std::string_view setting) override { settings.emplace_back(setting); }
@@ -239,7 +242,8 @@ TEST_CASE("patch size: can be cancelled, and is left out where the memory is sho
     } warned;
     FactorSettings little = settings_of(Preset::fast);
     little.max_memory = 1024;
-    CHECK_FALSE(estimate_patch_size_error(scene, coarse.mesh, coarse.solution, little, warned));
+    CHECK_FALSE(
+        estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution, little, warned));
     CHECK(warned.settings == std::vector<std::string>{"max-memory"});
 }
 
@@ -252,7 +256,7 @@ TEST_CASE("solution error: parts combine as the root of the sum of squares", "[p
     CHECK_FALSE(solution_error(solution));
     solution.error = RadiosityErrorEstimate{0.03, {}};
     CHECK_FALSE(solution_error(solution));
-    solution.patch_size_error = PatchSizeError{{0.04, 0.05}, {0.08, 0.09}, 64, 0.0};
+    solution.patch_size_error = PatchSizeError{{0.04, 0.05}, {0.08, 0.09}, {{0.03, 0.04}}, 64, 0.0};
     const auto error = solution_error(solution);
     REQUIRE(error);
     CHECK(error->patch_size == 0.04);
@@ -260,6 +264,8 @@ TEST_CASE("solution error: parts combine as the root of the sum of squares", "[p
     CHECK(error->solver == Approx(2e-3 * std::sqrt(2.5)));
     CHECK(error->vertices.rms == Approx(std::hypot(0.04, 0.03, error->solver)));
     CHECK(error->field.rms == Approx(std::hypot(0.08, 0.03, error->solver)));
+    REQUIRE(error->groups.size() == 1);
+    CHECK(error->groups[0] == Approx(std::hypot(0.03, 0.04, error->solver)));
     CHECK(error->vertices.percentile95 > error->vertices.rms);
     solution.dominance = 1.0; // the residual says nothing then
     CHECK_FALSE(solution_error(solution));
@@ -277,8 +283,8 @@ TEST_CASE("patch size: corner values of slanted patches are interpolated as thos
         scene.materials.push_back({"lamp", {0.0}, {10.0}});
         scene.surfaces.back().material = 1;
         const Solved coarse = solved(scene, Preset::fast);
-        const auto error =
-            estimate_patch_size_error(scene, coarse.mesh, coarse.solution, settings_of(Preset::fast));
+        const auto error = estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution,
+                                                     settings_of(Preset::fast));
         REQUIRE(error);
         INFO("slant " << slant << ": field " << error->field.rms << ", vertices " << error->vertices.rms);
         CHECK(error->vertices.rms < 0.5 * error->field.rms);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/settings.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/solver/solution.hpp"
 
 #include <optional>
+#include <vector>
 
 namespace hemi {
 
@@ -18,31 +20,39 @@ namespace hemi {
 /// is added. As a picture shows it, it errs by f less the interpolated vertex values. Patches of the sample
 /// count by the inverse of their probability.
 ///
+/// The mean irradiance of a group errs by the sum of A rho (G(s) - mean of G) z(s) over its area, z being the
+/// importance of light that leaves s for the group: by an adjoint solution a group, gathered with the same
+/// rows. To what the sample shows its own standard error is added.
+///
 /// Not included: errors of form factors; what the errors of other patches change in a patch's mean, which is
 /// of second order; whatever four rows do not see, such as light that falls through a gap between them.
-/// Source: I. H. Sloan, "Improvement by iteration for compact operator equations", Mathematics of
-/// Computation 30, 1976; M. F. Cohen et al., "An Efficient Radiosity Approach for Realistic Image Synthesis",
-/// IEEE CG&A 6, 1986 (patches as sources, their parts as receivers).
+/// Quarters under other geometry do not count. Memory: up to 768 rows over 4 N patches, 13 bytes an entry,
+/// and 8 bytes a patch, channel and group of up to 64. Source: I. H. Sloan, "Improvement by iteration for
+/// compact operator equations", Mathematics of Computation 30, 1976; M. F. Cohen et al., "An Efficient
+/// Radiosity Approach for Realistic Image Synthesis", IEEE CG&A 6, 1986 (patches as sources, their parts as
+/// receivers); B. Smits, J. Arvo, D. Salesin, "An Importance-Driven Radiosity Algorithm", SIGGRAPH 1992.
 /// @param scene     what the mesh was made of; gives reflectances
 /// @param mesh      N patches
+/// @param factors   N rows, those that the solution rests on
 /// @param solution  radiosity, exitance and back-face shares of the mesh
-/// Quarters under other geometry do not count. Memory: up to 768 rows over 4 N patches, 13 bytes an entry.
 /// @param settings  sample points and texels of the quarters' rows, which are unoccluded factors times
 ///   visibility whatever the preset; device, workers and the limit of memory
 /// @param observer  gets progress and may cancel; gets a warning where the memory does not allow it
 /// @return nothing where nothing is reflected, or where memory is short
 /// @throws InvalidArgument if the solution is of another mesh; as make_visibility_engine(); Cancelled
 [[nodiscard]] std::optional<PatchSizeError>
-estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
-                          const FactorSettings& settings, Observer& observer = no_observer());
+estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
+                          const Solution& solution, const FactorSettings& settings,
+                          Observer& observer = no_observer());
 
 /// All of what a solution is off by, from estimates of its parts, which are taken to be independent.
 struct SolutionError {
-    FieldError vertices;     ///< of the interpolated vertex values that pictures show
-    FieldError field;        ///< of one constant for each patch
-    double patch_size = 0.0; ///< the part of `vertices.rms` that the patches' size brings
-    double factors = 0.0;    ///< the part of the form factors
-    double solver = 0.0;     ///< about what the solver left, at worst
+    FieldError vertices;        ///< of the interpolated vertex values that pictures show
+    FieldError field;           ///< of one constant for each patch
+    std::vector<double> groups; ///< of the mean irradiance of every group, relative to it; see GroupError
+    double patch_size = 0.0;    ///< the part of `vertices.rms` that the patches' size brings
+    double factors = 0.0;       ///< the part of the form factors
+    double solver = 0.0;        ///< about what the solver left, at worst
 };
 /// @return nothing where an estimate is missing that it needs, or where reflectance times row sum reaches 1
 [[nodiscard]] std::optional<SolutionError> solution_error(const Solution& solution);

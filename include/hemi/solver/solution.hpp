@@ -39,12 +39,20 @@ struct FieldError {
     double percentile95 = 0.0; ///< what 95 % of the area stays below, over rms of B - E
 };
 
+/// What the mean irradiance of a group is off by, relative to it, in the worst channel. Not a number where
+/// the group gets no light or its rows are unknown.
+struct GroupError {
+    double patch_size = 0.0; ///< from the patches' size
+    double factors = 0.0;    ///< from the form factors
+};
+
 /// What patches of finite size do to a radiosity. @see estimate_patch_size_error
 struct PatchSizeError {
-    FieldError vertices;       ///< of the interpolated vertex values that pictures show
-    FieldError field;          ///< of one constant for each patch
-    std::uint32_t sampled = 0; ///< patches whose quarters were looked at
-    double seconds = 0.0;      ///< that took
+    FieldError vertices;            ///< of the interpolated vertex values that pictures show
+    FieldError field;               ///< of one constant for each patch
+    std::vector<GroupError> groups; ///< of every group; empty where there are too many
+    std::uint32_t sampled = 0;      ///< patches whose quarters were looked at
+    double seconds = 0.0;           ///< that took
 };
 
 /// The radiosity of every patch of a scene, and what is known of it. Arrays of N·channels hold channel c of

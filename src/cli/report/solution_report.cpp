@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace hemi::cli {
 
 namespace {
@@ -56,8 +58,30 @@ Report solver_report(const Solution& solution, const std::string& steps) {
     return report;
 }
 
+/// Null where it is not a number.
+Json groups_json(const std::vector<double>& errors) {
+    Json json = Json::array();
+    for (const double error : errors) {
+        json.push_back(std::isfinite(error) ? Json(error) : Json());
+    }
+    return json;
+}
+
+/// Of the group whose mean irradiance is off the most; empty where there is none.
+std::string worst_group(const std::vector<double>& errors, const std::vector<std::string>& names) {
+    std::size_t worst = errors.size();
+    for (std::size_t g = 0; g < errors.size(); ++g) {
+        if (std::isfinite(errors[g]) && (worst == errors.size() || errors[g] > errors[worst])) {
+            worst = g;
+        }
+    }
+    return worst == errors.size() ? std::string()
+                                  : fmt::format("mean irradiance of groups within {:.2g} % ({})",
+                                                100.0 * errors[worst], names[worst]);
+}
+
 /// How far the solution is from the exact one; empty where that was not estimated.
-Report solution_error_report(const Solution& solution) {
+Report solution_error_report(const Solution& solution, const std::vector<std::string>& groups) {
     Report report;
     report.json["error"] = nullptr;
     const auto error = solution_error(solution);
@@ -75,6 +99,7 @@ Report solution_error_report(const Solution& solution) {
         {{"error",
           {{"vertices", json(error->vertices)},
            {"field", json(error->field)},
+           {"groups", groups_json(error->groups)},
            {"parts",
             {{"patch_size", error->patch_size}, {"factors", error->factors}, {"solver", error->solver}}},
            {"patches_sampled", solution.patch_size_error->sampled}}}});
@@ -83,11 +108,14 @@ Report solution_error_report(const Solution& solution) {
                            percent(error->vertices.percentile95), percent(error->field.rms),
                            percent(error->field.percentile95),
                            plural(solution.patch_size_error->sampled, "patch", "patches") + " cut in four"));
+    if (const std::string worst = worst_group(error->groups, groups); !worst.empty()) {
+        report.add("", worst);
+    }
     return report;
 }
 
 /// The solver and how it went, settings that the program chose, estimated errors.
-Report solution_report(const Solution& solution) {
+Report solution_report(const Solution& solution, const std::vector<std::string>& groups) {
     const bool gradients = solution.method == SolverMethod::conjugate_gradient;
     Report report;
     report.add("dominance",
@@ -97,7 +125,7 @@ Report solution_report(const Solution& solution) {
     report.add("", solution.reason);
     report.json["solver"]["why"] = solution.reason;
     report.add(chosen_report(solution.chosen_for));
-    report.add(solution_error_report(solution));
+    report.add(solution_error_report(solution, groups));
     report.add(error_report(solution.factor_error, solution.error, !solution.patch_size_error));
     return report;
 }
@@ -135,7 +163,7 @@ Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const
     Report report = scene_size_report(loaded.mesh);
     report.add(rows);
     report.add(repair_report(repair, seconds["repair"]));
-    report.add(solution_report(solution));
+    report.add(solution_report(solution, loaded.mesh.groups()));
     report.add(seconds.report());
     report.json.update(group_means_json(loaded, factors.matrix, solution));
     report.json["reciprocity"] =
