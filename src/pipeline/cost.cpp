@@ -22,12 +22,12 @@ template <class Estimate>
 FactorCost measure(const Estimate& estimate, std::uint32_t patches, const FactorSettings& settings) {
     FactorCost cost;
     cost.cores = usable_cores(settings);
-    std::uint32_t samples = std::min(usual_rows, 2 * cost.cores);
-    auto found = estimate(samples);
-    if (found.seconds / patches * usual_rows < most_seconds) {
-        samples = usual_rows;
-        found = estimate(samples);
-    }
+    const std::uint32_t few = std::min(usual_rows, 2 * cost.cores);
+    // Starts contexts and workers, which do not count.
+    const double row_seconds = estimate(few).seconds / patches;
+    const auto samples =
+        static_cast<std::uint32_t>(std::clamp<double>(most_seconds / row_seconds, few, usual_rows));
+    const auto found = estimate(samples);
     cost.sampled_rows = std::min(samples, patches);
     cost.entries_per_row = found.entries_per_row;
     cost.memory = found.memory_bytes;

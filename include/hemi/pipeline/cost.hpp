@@ -17,8 +17,7 @@ struct FactorCost {
     std::string renderer;           ///< what computed them
     unsigned cores = 1;             ///< that it could use: the machine's, or `jobs` of the settings if fewer
 };
-/// Computes up to 64 rows spread evenly over the patches; only a few where 64 would take more than about a
-/// second.
+/// Computes up to 64 rows spread evenly over the patches; fewer where 64 would take more than about a second.
 /// @throws as make_row_provider() and make_visibility_provider(); NoDevice, GlError; Cancelled
 [[nodiscard]] FactorCost measure_cost(const PatchMesh& mesh, const FactorSettings& settings);
 
