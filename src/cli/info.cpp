@@ -18,10 +18,8 @@ namespace {
 
 Report scene_info(const InfoArguments& arguments, const Terminal& terminal) {
     const LoadedScene loaded = load_scene(arguments.scene, terminal);
-    const FactorCost cost = arguments.measure ? measure_cost(loaded.mesh, arguments.rows.factors)
-                                              : estimate_cost(loaded.mesh, arguments.rows.factors);
-    Report report =
-        contents_report(loaded.scene, loaded.mesh, cost_report(cost, loaded.mesh, arguments.measure));
+    const FactorCost cost = measure_cost(loaded.mesh, arguments.rows.factors);
+    Report report = contents_report(loaded.scene, loaded.mesh, cost_report(cost, loaded.mesh));
     report.json["kind"] = "scene";
     report.select("hemi/info/1",
                   {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels", "bounds",

@@ -181,7 +181,7 @@ TEST_CASE("info: what a scene holds and what it would cost", "[cli]") {
     const Outcome text = run_hemi({"info", path});
     CHECK(text.status == 0);
     CHECK(text.out_has("1 triangle, 6 quadrilaterals"));
-    CHECK(text.out_has("rule of thumb"));
+    CHECK(text.out_has("measured on 62 rows"));
     CHECK(text.out_has("sail"));
     const Json info = run_hemi({"info", path, "--json"}).json();
     CHECK(info["schema"] == "hemi/info/1");
@@ -196,14 +196,47 @@ TEST_CASE("info: what a scene holds and what it would cost", "[cli]") {
     CHECK(info["materials"].size() == 2);
     CHECK(info["bounds"]["upper"] == Json({1.0, 1.0, 1.0}));
     CHECK(info["enclosure"] == "closed");
-    CHECK(info["estimate"]["measured"] == false);
+    CHECK(info["estimate"]["measured"] == true);
+    CHECK(info["estimate"]["rows"] == 62);
+    CHECK(info["estimate"]["entries_per_row"] > 10);
     CHECK(info["estimate"]["memory"] > 0);
+    CHECK(info["estimate"]["seconds"] > 0);
+}
 
-    const Json measured =
-        run_hemi({"info", path, "--json", "--measure", "--device", "osmesa", "--jobs", "1"}).json();
-    CHECK(measured["estimate"]["measured"] == true);
-    CHECK(measured["estimate"]["renderer"].is_string());
-    CHECK(measured["estimate"]["entries_per_row"] > 10);
+TEST_CASE("info: rows are measured on the device and by the method that are named", "[cli]") {
+    const Directory directory;
+    const std::string path = directory.write("cube.json", cube(5));
+    const auto estimate = [&](const Words& options) {
+        Words words{"info", path, "--json"};
+        words.insert(words.end(), options.begin(), options.end());
+        return Json(run_hemi(words).json()["estimate"]);
+    };
+    const Json cpu = estimate({"--device", "cpu", "--jobs", "1"});
+    CHECK(cpu["renderer"].get<std::string>().starts_with("hemi CPU rasteriser"));
+    CHECK(cpu["cores"] == 1);
+    CHECK(cpu["rows"] == 64);
+    CHECK(estimate({"--device", "osmesa", "--jobs", "1"})["renderer"].get<std::string>().find("llvmpipe") !=
+          std::string::npos);
+    const Json plain = estimate({"--device", "cpu", "--preset", "plain"});
+    CHECK(plain["memory"] < cpu["memory"]); // no pairs
+    CHECK(estimate({"--method", "montecarlo", "--rays", "64"})["renderer"] != cpu["renderer"]);
+
+    const Outcome missing = run_hemi({"info", path, "--device", "egl:99"});
+    CHECK(missing.status == 4);
+    CHECK(missing.err_has("egl:99"));
+    REQUIRE(run_hemi({"factors", path, "--preset", "plain", "-o", directory.path("a.mtx")}).status == 0);
+    const Outcome file = run_hemi({"info", directory.path("a.mtx"), "--device", "cpu"});
+    CHECK(file.status == 2);
+    CHECK(file.err_has("--device does not apply"));
+}
+
+TEST_CASE("info: a scene whose only patch sees nothing", "[cli]") {
+    const Directory directory;
+    const std::string path = directory.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const Outcome run = run_hemi({"info", path});
+    CHECK(run.status == 0);
+    CHECK(run.out_has("measured on 1 row,"));
+    CHECK(run_hemi({"info", path, "--json"}).json()["estimate"]["entries_per_row"] == 0.0);
 }
 
 TEST_CASE("OBJ: --two-sided and --skip-degenerate", "[cli]") {

@@ -71,7 +71,6 @@ TEST_CASE("Command line: options that do not apply are refused", "[cli]") {
     refuses({"info", "x.json", "--repair", "closure"}, "--repair does not apply to `hemi info`");
     refuses({"solve", "x.json", "--size", "80x60"}, "--size"); // no picture to be of that size
     refuses({"solve", "x.json", "--flat"}, "--flat");
-    refuses({"info", "x.json", "--device", "osmesa"}, "--measure"); // nothing is computed
     refuses({"solve", "x.json", "--patch-size", "1", "--patches-per-face", "4"}, "--patch");
     refuses({"factors", "x.json", "--row", "1", "--by-group"}, "--by-group");
     refuses({"view", "x.json", "--json"}, "--json");

@@ -455,3 +455,88 @@ TEST_CASE("make-city: refuses arguments out of range and unknown ones with statu
     CHECK(nowhere.err.find("/nonexistent/city.obj") != std::string::npos);
     CHECK(run_command({program, "--help"}).status == 0);
 }
+
+namespace {
+
+/// Whether every edge between two vertices is that of two surfaces, once in each direction.
+bool is_welded_and_closed(const PatchMesh& mesh) {
+    using Point = std::array<double, 3>;
+    std::map<std::pair<Point, Point>, int> edges; // from the lower vertex: 1 along it, 2 against it
+    const auto point = [](const Vec3& v) { return Point{v.x, v.y, v.z}; };
+    for (const Surface& surface : mesh.surfaces()) {
+        for (std::uint32_t k = 0; k < surface.vertex_count; ++k) {
+            const Point from = point(surface.vertices[k]);
+            const Point to = point(surface.vertices[(k + 1) % surface.vertex_count]);
+            int& directions = edges[std::minmax(from, to)];
+            const int direction = from < to ? 1 : 2;
+            if ((directions & direction) != 0) {
+                return false;
+            }
+            directions |= direction;
+        }
+    }
+    return std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second == 3; });
+}
+
+} // namespace
+
+TEST_CASE("make-pillars: a closed room of about that size, without lattices and slivers", "[scenes]") {
+    const cli_test::Directory directory;
+    std::vector<std::string> texts;
+    for (const int triangles : {2000, 2500, 6001}) {
+        for (const int seed : {0, 7}) {
+            const std::vector<std::string> words{HEMI_SOURCE_DIR "/tools/make-pillars", "--triangles",
+                                                 std::to_string(triangles), "--seed", std::to_string(seed)};
+            std::vector<std::string> to_file = words;
+            to_file.insert(to_file.end(), {"-o", directory.path("pillars.obj")});
+            INFO(triangles << " triangles of seed " << seed);
+            REQUIRE(run_command(to_file).status == 0);
+            texts.push_back(directory.read("pillars.obj"));
+            CHECK(run_command(words).out == texts.back());
+
+            Diagnostics diagnostics;
+            const PatchMesh mesh(io::read_scene(directory.path("pillars.obj"), {}, diagnostics));
+            CHECK(diagnostics.warnings().empty());
+            CHECK(std::abs(static_cast<int>(mesh.size()) - triangles) <= 0.03 * triangles);
+            CHECK(is_welded_and_closed(mesh));
+            CHECK(count_draw_polygons(mesh, true) == mesh.size());
+            double least_angle = 180.0;
+            for (const Surface& surface : mesh.surfaces()) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Vec3 a = surface.vertices[(k + 1) % 3] - surface.vertices[k];
+                    const Vec3 b = surface.vertices[(k + 2) % 3] - surface.vertices[k];
+                    least_angle =
+                        std::min(least_angle, std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) *
+                                                  180.0 / std::numbers::pi);
+                }
+            }
+            CHECK(least_angle > 7.0);
+            const std::vector<std::uint32_t> sample{0, mesh.size() / 2, mesh.size() - 1};
+            const FormFactorMatrix factors = hemicube_rows(mesh, 64, sample);
+            for (const std::uint32_t i : sample) { // fronts face the air, and nothing leaks
+                CHECK(factors.row(i).environment == 0.0);
+                CHECK(factors.row(i).blocked == 0.0);
+            }
+        }
+    }
+    std::sort(texts.begin(), texts.end());
+    CHECK(std::unique(texts.begin(), texts.end()) == texts.end());
+}
+
+TEST_CASE("make-pillars: refuses arguments out of range with status 2", "[scenes]") {
+    const std::string program = HEMI_SOURCE_DIR "/tools/make-pillars";
+    const std::vector<std::pair<std::vector<std::string>, const char*>> cases{
+        {{"--triangles", "5000"}, "--seed"},
+        {{"--triangles", "1999", "--seed", "7"}, "2000 to 200000"},
+        {{"--triangles", "200001", "--seed", "7"}, "2000 to 200000"},
+        {{"--triangles", "5000", "--seed", "-1"}, "negative"}};
+    for (const auto& [arguments, message] : cases) {
+        std::vector<std::string> words{program};
+        words.insert(words.end(), arguments.begin(), arguments.end());
+        const CommandOutcome outcome = run_command(words);
+        INFO(outcome.err);
+        CHECK(outcome.status == 2);
+        CHECK(outcome.out.empty());
+        CHECK(outcome.err.find(message) != std::string::npos);
+    }
+}

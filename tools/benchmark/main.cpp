@@ -33,8 +33,7 @@ struct Options {
 
 void declare(CLI::App& app, Options& options) {
     app.add_option("--device", options.device, "OpenGL: auto, egl, egl:N or osmesa (default auto)");
-    app.add_option("--meshes", options.meshes, "folder of bumpy-5k.obj, bumpy-20k.obj and bumpy-80k.obj")
-        ->required();
+    app.add_option("--meshes", options.meshes, "folder of the meshes that tools/bench makes")->required();
     app.add_option("--scenes", options.scenes, "folder of the scene files (default scenes)");
     app.add_option("--json", options.json, "write the figures to this file too");
     app.add_flag("--quick", options.quick, "no table, small samples");
@@ -66,14 +65,15 @@ void print_findings(Measurements& measurements, Report& report, const Case& offi
     frame_target(this_program(), options.device, report);
 }
 
+Case read_mesh(const Options& options, const char* name) {
+    return read_case(std::filesystem::path(options.meshes) / name);
+}
+
 /// The CPU rasteriser: meshes without flat lattices, and merged scenes.
 void print_cpu_findings(Measurements& measurements, const Case& office, const Options& options) {
-    const auto read_mesh = [&](const char* name) {
-        return read_case(std::filesystem::path(options.meshes) / name);
-    };
-    const Case bumpy_5k = read_mesh("bumpy-5k.obj");
-    const Case bumpy_20k = read_mesh("bumpy-20k.obj");
-    const Case bumpy_80k = read_mesh("bumpy-80k.obj");
+    const Case bumpy_5k = read_mesh(options, "bumpy-5k.obj");
+    const Case bumpy_20k = read_mesh(options, "bumpy-20k.obj");
+    const Case bumpy_80k = read_mesh(options, "bumpy-80k.obj");
     measurements.cpu_target(bumpy_5k, 200, 6.0, 4.0);
     measurements.cpu_target(bumpy_20k, 200, 5.0, 8.0);
     if (!options.quick) {
@@ -87,6 +87,27 @@ void print_cpu_findings(Measurements& measurements, const Case& office, const Op
             measurements.cpu_target(scene, resolution, 0.0, 2.0);
         }
     }
+}
+
+/// The CPU rasteriser on cities of many triangles.
+void print_city_findings(Measurements& measurements, const Options& options) {
+    for (const char* name : {"city-22k.obj", "city-100k.obj"}) {
+        const Case city = read_mesh(options, name);
+        for (const std::uint32_t resolution : {64u, 128u}) {
+            measurements.cpu_target(city, resolution, 0.0, 0.0);
+        }
+    }
+    if (!options.quick) {
+        measurements.cpu_target(read_mesh(options, "city-1000k.obj"), 32, 0.0, 10.0);
+    }
+}
+
+/// The whole program on dense meshes, by the default preset.
+void print_program_findings(Measurements& measurements, const Options& options) {
+    const std::filesystem::path hemi = this_program().parent_path() / "hemi";
+    const std::filesystem::path meshes = options.meshes;
+    measurements.factors_target(hemi, meshes / "pillars-18k.obj", options.quick ? 1 : 3, 40.0, 0.0);
+    measurements.factors_target(hemi, meshes / "bumpy-20k.obj", 1, 0.0, options.quick ? 0.0 : 8.0);
 }
 
 Setup make_setup(const Options& options, const gl::Context& context, unsigned cores) {
@@ -127,6 +148,8 @@ void run(const Options& options) {
     if (!options.files) {
         print_findings(measurements, report, office, city, options);
         print_cpu_findings(measurements, office, options);
+        print_city_findings(measurements, options);
+        print_program_findings(measurements, options);
     }
     measure_files(report, setup.effort.rounds);
     write_json();

@@ -253,6 +253,30 @@ void Measurements::solve_target(const std::filesystem::path& hemi, const std::fi
                      median(series[0]), "s", Bound::at_most, most_seconds});
 }
 
+void Measurements::factors_target(const std::filesystem::path& hemi, const std::filesystem::path& mesh,
+                                  unsigned runs, double most_seconds, double least_over_osmesa) {
+    const auto run_on = [&](const char* device) {
+        return Subject([=] { return run_timed(hemi, {"factors", mesh.string(), "-q", "--device", device}); });
+    };
+    const auto what = [&](const char* device) {
+        return fmt::format("hemi factors {} --device {}, wall time, median of {}", mesh.filename().string(),
+                           device, runs);
+    };
+    const bool with_osmesa = least_over_osmesa > 0.0;
+    std::vector<Subject> subjects{run_on(cpu_device)};
+    if (with_osmesa) {
+        subjects.push_back(run_on("osmesa"));
+    }
+    const auto series = time_interleaved(subjects, runs);
+    report_.finding({what(cpu_device), median(series[0]), "s",
+                     most_seconds > 0.0 ? Bound::at_most : Bound::none, most_seconds});
+    if (with_osmesa) {
+        report_.finding({what("osmesa"), median(series[1]), "s"});
+        report_.finding({"  speed on cpu over it", median_ratio(series[1], series[0]), "x", Bound::at_least,
+                         least_over_osmesa});
+    }
+}
+
 std::unique_ptr<RowProvider> Measurements::cpu_engine(const Case& scene, std::uint32_t resolution,
                                                       std::uint32_t threads) const {
     return make_hemicube_engine(scene.mesh, settings(resolution), {cpu_device, threads, {}});

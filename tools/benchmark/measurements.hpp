@@ -41,6 +41,12 @@ public:
     void workers_target(std::uint32_t patches, double least_ratio);
     void scene_rate(const Case& scene);
     void merging_target(const Case& scene, double least_ratio);
+    /// Wall time of `hemi factors MESH --device cpu` by the default preset: everything is computed, nothing
+    /// written.
+    /// @param most_seconds       0: no aim
+    /// @param least_over_osmesa  speed over `--device osmesa`, which takes minutes; 0: that is not run
+    void factors_target(const std::filesystem::path& hemi, const std::filesystem::path& mesh, unsigned runs,
+                        double most_seconds, double least_over_osmesa);
     /// Wall time of `hemi solve SCENE --preset PRESET --device auto -o PICTURE`.
     void solve_target(const std::filesystem::path& hemi, const std::filesystem::path& scene,
                       const std::string& preset, unsigned runs, double most_seconds);

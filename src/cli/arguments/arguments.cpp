@@ -540,13 +540,9 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
 void add_info(CLI::App& app, InfoArguments& a) {
     add_scene(app, a.scene, "SCENE|FILE", ".hff, .hres, .mtx, .csv, .npz, .txt, .vf, .dat, .bin");
     add_rows(app, a.rows);
-    Options(app, "Output").flag("--measure", a.measure, "compute up to 64 rows for the estimate");
-    for (const char* name : {"--device", "--seed", "--no-merge"}) {
-        app.get_option(name)->needs(app.get_option("--measure"));
-    }
     add_common(app, a.common);
     app.footer("Examples:\n"
-               "  hemi info scenes/office.json --measure\n"
+               "  hemi info scenes/office.json --preset exact\n"
                "  hemi info room.hff --json");
 }
 

@@ -144,7 +144,6 @@ struct InfoArguments {
     CommonOptions common;
     SceneOptions scene;
     RowOptions rows;
-    bool measure = false;
 };
 
 struct DevicesArguments {

@@ -103,18 +103,17 @@ Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& 
     return report;
 }
 
-Report cost_report(const FactorCost& cost, const PatchMesh& mesh, bool measured) {
-    const std::string cores = cost.cores == 1 ? "1 core" : fmt::format("{} cores", cost.cores);
-    const std::string basis =
-        cost.renderer.empty()
-            ? fmt::format("rule of thumb for software OpenGL on {}; --measure times 64 rows", cores)
-            : fmt::format("measured on {}", cost.renderer);
+Report cost_report(const FactorCost& cost, const PatchMesh& mesh) {
     Report report;
     report.add("memory", fmt::format("about {} for {} rows of {:.0f} entries", memory_text(cost.memory),
                                      count_text(mesh.size()), cost.entries_per_row));
-    report.add("time", fmt::format("about {} ({})", seconds_text(cost.seconds), basis));
-    report.json["estimate"] = {{"measured", measured},
-                               {"renderer", measured ? Json(cost.renderer) : Json(nullptr)},
+    report.add("time", fmt::format("about {} for the rows (measured on {}, {}, {})",
+                                   seconds_text(cost.seconds), plural(cost.sampled_rows, "row", "rows"),
+                                   cost.renderer, plural(cost.cores, "core", "cores")));
+    report.json["estimate"] = {{"measured", true},
+                               {"rows", cost.sampled_rows},
+                               {"renderer", cost.renderer},
+                               {"cores", cost.cores},
                                {"entries_per_row", cost.entries_per_row},
                                {"memory", cost.memory},
                                {"seconds", cost.seconds}};

@@ -12,7 +12,6 @@ namespace hemi::cli {
 /// Contents of a scene. `more` is added before the tables of groups and materials, the end of the text.
 [[nodiscard]] Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& more);
 /// Memory and time that its form factors will need.
-/// @param measured  whether rows were timed
-[[nodiscard]] Report cost_report(const FactorCost& cost, const PatchMesh& mesh, bool measured);
+[[nodiscard]] Report cost_report(const FactorCost& cost, const PatchMesh& mesh);
 
 } // namespace hemi::cli
