@@ -58,6 +58,11 @@ TEST_CASE("solve, factors: an estimate of errors is told, stored and shown", "[c
     CHECK(whole["field"]["rms"] > 0.01);
     CHECK(whole["field"]["p95"] > whole["field"]["rms"]);
     CHECK(whole["patches_sampled"] >= 48);
+    REQUIRE(whole["groups"].size() == solved.json()["groups"].size());
+    for (const Json& group : whole["groups"]) {
+        CHECK(group > 0.0);
+        CHECK(group < 0.2);
+    }
     const Outcome told =
         run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "-o", directory.path("a.png")});
     CHECK(told.out_has("the reflected light is within"));

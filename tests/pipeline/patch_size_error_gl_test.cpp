@@ -40,7 +40,7 @@ struct Solved {
 Solved solved(const Scene& scene, Preset preset) {
     PatchMesh mesh(scene);
     FormFactors factors = compute_form_factors(scene, mesh, settings_of(preset));
-    Solution solution = solve_radiosity(scene, mesh, factors);
+    Solution solution = solve_radiosity(scene, mesh, factors, {}, no_observer(), true);
     return {std::move(mesh), std::move(factors), std::move(solution)};
 }
 
@@ -135,9 +135,27 @@ Truth truth_of(const Solved& coarse, const Solved& fine, std::uint32_t times) {
     return {std::sqrt(field / reflected / left_out), std::sqrt(vertices / reflected)};
 }
 
+/// Mean irradiance of every group, buried patches left out.
+std::vector<double> group_irradiance(const Solved& solved) {
+    std::vector<double> light(solved.mesh.groups().size(), 0.0);
+    std::vector<double> area(light.size(), 0.0);
+    for (std::uint32_t i = 0; i < solved.mesh.size(); ++i) {
+        light[solved.mesh.group(i)] += solved.mesh.areas()[i] * solved.solution.irradiance[i];
+        area[solved.mesh.group(i)] += solved.mesh.areas()[i];
+    }
+    for (std::size_t g = 0; g < light.size(); ++g) {
+        light[g] /= area[g];
+    }
+    return light;
+}
+
 } // namespace
 
 TEST_CASE("patch size: the error of lit rooms is that against a grid three times as fine", "[pipeline][gl]") {
+    std::uint32_t groups = 0;
+    std::uint32_t too_small = 0;
+    double true_squares = 0.0;
+    double patch_size_squares = 0.0;
     struct Case {
         std::uint32_t cells;
         double reflectance;
@@ -168,7 +186,26 @@ TEST_CASE("patch size: the error of lit rooms is that against a grid three times
         CHECK(error->vertices.rms > 0.5 * truth.vertices);
         CHECK(error->vertices.rms < 2.0 * truth.vertices);
         CHECK(error->sampled >= 48);
+        REQUIRE(error->groups.size() == coarse.mesh.groups().size());
+        const std::vector<double> is = group_irradiance(coarse);
+        const std::vector<double> should = group_irradiance(fine);
+        for (std::size_t g = 0; g < is.size(); ++g) {
+            const double true_error = std::abs(is[g] / should[g] - 1.0);
+            const double printed = std::hypot(error->groups[g].patch_size, error->groups[g].factors);
+            ++groups;
+            // The finer rows err, too: by some 1e-4.
+            too_small += true_error > 2.0 * printed + 2e-4 ? 1 : 0;
+            true_squares += true_error * true_error;
+            patch_size_squares += std::pow(error->groups[g].patch_size, 2.0);
+        }
     }
+    INFO(too_small << " of " << groups << " errors of groups are too small");
+    CHECK(groups >= 60);
+    CHECK(too_small <= groups / 10);
+    INFO("groups, rms: true " << std::sqrt(true_squares / groups) << ", from patch size alone "
+                              << std::sqrt(patch_size_squares / groups));
+    CHECK(patch_size_squares > true_squares / 4.0);
+    CHECK(patch_size_squares < 4.0 * true_squares);
 }
 
 TEST_CASE("patch size: triangles err as the quadrilaterals that they halve, or less", "[pipeline][gl]") {
