@@ -70,12 +70,13 @@ void convert_result(const ConvertArguments& arguments, const Terminal& terminal)
     } else {
         io::write_radiosity_csv(arguments.output, mesh, result.scene.channels,
                                 patch_values(mesh, result.scene.materials, &Material::exitance),
-                                result.solution.irradiance, result.solution.radiosity);
+                                result.solution.irradiance, result.solution.radiosity,
+                                radiosity_errors(result.solution));
         report(arguments, {{"patches", mesh.size()}});
     }
-    terminal.note(fmt::format("not in {}: names of materials, subdivision, environment, camera, solver{}",
-                              output_name(arguments),
-                              to_paraview ? "" : ", corners, reflectance, row balance and estimated errors"));
+    terminal.note(fmt::format(
+        "not in {}: names of materials, subdivision, environment, camera, solver{}", output_name(arguments),
+        to_paraview ? "" : ", corners, reflectance, row balance and the parts of the errors"));
 }
 
 /// Whether IN and OUT go together.

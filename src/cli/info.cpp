@@ -30,13 +30,16 @@ Report scene_info(const InfoArguments& arguments, const Terminal& terminal) {
 Report file_info(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
     if (extension == ".hres") {
-        const io::ResultFile result = io::read_hres(path);
+        io::ResultFile result = io::read_hres(path);
         const PatchMesh mesh(result.scene, result.subdivision);
-        Report report = contents_report(result.scene, mesh, stored_solution_report(result.solution));
+        result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+        Report report =
+            contents_report(result.scene, mesh, stored_solution_report(result.solution, mesh.groups()));
         report.json["kind"] = "result";
-        report.select("hemi/info/1", {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches",
-                                      "channels", "bounds", "enclosure", "environment", "camera", "groups",
-                                      "materials", "renderer", "solver", "chosen_for", "error_estimate"});
+        report.select("hemi/info/1",
+                      {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels",
+                       "bounds", "enclosure", "environment", "camera", "groups", "materials", "renderer",
+                       "solver", "chosen_for", "error", "error_estimate"});
         return report;
     }
     if (extension == ".hff") {

@@ -96,18 +96,6 @@ Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loade
     return {std::move(found.factors), std::move(found.solution)};
 }
 
-/// Adds what the patches' size does, unless no estimate is wanted.
-void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loaded,
-                         const FormFactors& factors, Observer& observer, Solution& solution,
-                         Seconds& seconds) {
-    if (!arguments.rows.factors.estimate_error || !solution.error) {
-        return;
-    }
-    solution.patch_size_error = estimate_patch_size_error(loaded.scene, loaded.mesh, factors, solution,
-                                                          arguments.rows.factors, observer);
-    seconds["estimate"] += solution.patch_size_error ? solution.patch_size_error->seconds : 0.0;
-}
-
 void write_files(const SolveArguments& arguments, const LoadedScene& loaded, const Solution& solution) {
     if (arguments.patches) {
         io::write_patches_csv(*arguments.patches, loaded.mesh);
@@ -117,7 +105,22 @@ void write_files(const SolveArguments& arguments, const LoadedScene& loaded, con
     }
     if (arguments.radiosity) {
         io::write_radiosity_csv(*arguments.radiosity, loaded.mesh, loaded.scene.channels, solution.exitance,
-                                solution.irradiance, solution.radiosity);
+                                solution.irradiance, solution.radiosity, radiosity_errors(solution));
+    }
+}
+
+/// Adds what the patches' size does, unless no estimate is wanted; then files are written again, with it.
+void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loaded,
+                         const FormFactors& factors, Observer& observer, Solution& solution,
+                         Seconds& seconds) {
+    if (!arguments.rows.factors.estimate_error || !solution.error) {
+        return;
+    }
+    solution.patch_size_error = estimate_patch_size_error(loaded.scene, loaded.mesh, factors, solution,
+                                                          arguments.rows.factors, observer);
+    if (solution.patch_size_error) {
+        seconds["estimate"] += solution.patch_size_error->seconds;
+        write_files(arguments, loaded, solution);
     }
 }
 

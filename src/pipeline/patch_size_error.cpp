@@ -122,20 +122,24 @@ public:
     /// how fast the field changes in the channel where it does so most. Channels of unit 0 do not count.
     [[nodiscard]] double spread(std::uint32_t patch, const Solution& solution,
                                 std::span<const double> units) const {
-        const std::uint32_t count = mesh_.corners(patch).count;
         double largest = 0.0;
         for (std::uint32_t c = 0; c < channels_; ++c) {
-            if (!(units[c] > 0.0)) {
-                continue;
+            if (units[c] > 0.0) {
+                largest = std::max(largest, square(patch, solution, c) / (units[c] * units[c]));
             }
-            const double own = solution.radiosity[std::size_t{patch} * channels_ + c];
-            double squares = 0.0;
-            for (std::uint32_t k = 0; k < count; ++k) {
-                squares += std::pow((at_corner(patch, k, c) - own) / units[c], 2.0);
-            }
-            largest = std::max(largest, squares / count);
         }
         return largest;
+    }
+
+    /// Of the corner values about the patch's own value in one channel, mean square.
+    [[nodiscard]] double square(std::uint32_t patch, const Solution& solution, std::uint32_t channel) const {
+        const std::uint32_t count = mesh_.corners(patch).count;
+        const double own = solution.radiosity[std::size_t{patch} * channels_ + channel];
+        double squares = 0.0;
+        for (std::uint32_t k = 0; k < count; ++k) {
+            squares += std::pow(at_corner(patch, k, channel) - own, 2.0);
+        }
+        return squares / count;
     }
 
 private:
@@ -179,13 +183,20 @@ class Errors {
 public:
     void add(double error, double area) { errors_.push_back({std::abs(error), area}); }
 
+    /// Sum of their squares times areas.
+    [[nodiscard]] double squares() const {
+        double sum = 0.0;
+        for (const auto& [error, area] : errors_) {
+            sum += area * error * error;
+        }
+        return sum;
+    }
+
     /// @param unit  what they are relative to
     /// @param more  by which the mean square is more than that of these errors
     [[nodiscard]] FieldError summary(double unit, double more) {
-        double squares = 0.0;
         double total = 0.0;
         for (const auto& [error, area] : errors_) {
-            squares += area * error * error;
             total += area;
         }
         FieldError result;
@@ -193,7 +204,7 @@ public:
             return result;
         }
         std::sort(errors_.begin(), errors_.end());
-        result.rms = std::sqrt(more * squares / total) / unit;
+        result.rms = std::sqrt(more * squares() / total) / unit;
         double below = 0.0;
         for (const auto& [error, area] : errors_) {
             result.percentile95 = std::sqrt(more) * error / unit;
@@ -284,6 +295,7 @@ public:
         }
         PatchSizeError result;
         result.groups = group_errors(groups);
+        result.patches = model_patches(sample, vertices);
         result.sampled = static_cast<std::uint32_t>(sample.size());
         const auto take_worst = [](FieldError& worst, const FieldError& error) {
             worst.rms = std::max(worst.rms, error.rms);
@@ -356,6 +368,33 @@ private:
             }
         }
         return quarters;
+    }
+
+    /// What makes a patch's error large, squared and absolute: how fast the field changes there, and a little
+    /// everywhere.
+    [[nodiscard]] double expected_square(std::uint32_t patch, std::uint32_t channel) const {
+        constexpr double least = 1e-3; // of the channel's unit
+        const double even = least * units_[channel];
+        return interpolation_.square(patch, solution_, channel) + even * even;
+    }
+
+    /// Errors of all patches that count: what is expected of them, scaled to the errors of the sample.
+    [[nodiscard]] std::vector<double> model_patches(const std::vector<Drawn>& sample,
+                                                    const std::vector<Errors>& errors) const {
+        std::vector<double> result(std::size_t{mesh_.size()} * channels_, 0.0);
+        for (std::uint32_t c = 0; c < channels_; ++c) {
+            double expected = 0.0;
+            for (const Drawn& drawn : sample) {
+                expected += drawn.weight * mesh_.areas()[drawn.patch] * expected_square(drawn.patch, c);
+            }
+            const double scale = expected > 0.0 ? errors[c].squares() / expected : 0.0;
+            for (const std::uint32_t patch : patches_) {
+                if (reflectance_[at(patch, c)] > 0.0) {
+                    result[at(patch, c)] = std::sqrt(scale * expected_square(patch, c));
+                }
+            }
+        }
+        return result;
     }
 
     /// Importance of every patch for every group, where there are not too many groups.

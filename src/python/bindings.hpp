@@ -4,6 +4,7 @@
 #include "hemi/core/names.hpp"
 #include "hemi/core/nearest_word.hpp"
 #include "hemi/matrix/form_factors.hpp"
+#include "hemi/pipeline/settings.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/solver/solution.hpp"
 
@@ -34,6 +35,7 @@ using ScenePointer = std::shared_ptr<PatchedScene>;
 struct FactorsOfScene {
     ScenePointer scene;                   ///< may be null: from a file
     FormFactors factors;                  ///< prepared
+    FactorSettings settings;              ///< they were computed by; of a file: the usual ones
     std::optional<FormFactors> raw;       ///< as computed, for `.hff`; none where the file had no more than F
     std::optional<py::object> csr;        ///< `matrix`, once it was asked for
     std::optional<py::object> visibility; ///< likewise
@@ -60,7 +62,7 @@ Enum argument_word(const char* argument, const std::string& word) {
 /// Radiosity of a scene, or of patches with these values.
 SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectance,
                       const py::object& exitance, const py::object& environment, const std::string& method,
-                      double tolerance, bool irradiance, const py::object& progress);
+                      double tolerance, bool irradiance, bool estimate, const py::object& progress);
 
 /// What hemi.load() makes of a `.hres`.
 SolutionOfScene read_solution(const std::string& path);

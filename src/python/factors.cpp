@@ -73,12 +73,13 @@ std::optional<Repair> repair_argument(const std::optional<std::string>& word) {
 }
 
 /// Prepares raw form factors, and keeps them as they are, too: a `.hff` holds raw rows.
-FactorsPointer prepared(ScenePointer scene, FormFactors raw, std::optional<Repair> wanted) {
+FactorsPointer prepared(ScenePointer scene, FormFactors raw, const FactorSettings& settings) {
     auto result = std::make_shared<FactorsOfScene>();
+    result->settings = settings;
     result->scene = std::move(scene);
     result->factors = raw;
     result->raw = std::move(raw);
-    prepare_form_factors(result->factors, wanted);
+    prepare_form_factors(result->factors, settings.repair);
     return result;
 }
 
@@ -110,9 +111,8 @@ form_factors(const ScenePointer& scene, const std::string& preset, std::optional
     }
     PythonObserver observer(progress);
     return run([&] {
-        return prepared(scene,
-                        compute_raw_form_factors(scene->scene, scene->mesh, wanted, settings, observer),
-                        settings.repair);
+        return prepared(
+            scene, compute_raw_form_factors(scene->scene, scene->mesh, wanted, settings, observer), settings);
     });
 }
 
@@ -135,8 +135,10 @@ void describe_by_scene(FormFactors& factors, const PatchedScene& scene, const st
 FactorsPointer read_form_factors_of(const std::string& path, const ScenePointer& scene,
                                     std::optional<Repair> wanted) {
     if (io::extension_of(path) == ".hff") {
+        FactorSettings settings;
+        settings.repair = wanted;
         return prepared(
-            scene, scene ? read_form_factors(path, scene->scene, scene->mesh) : io::read_hff(path), wanted);
+            scene, scene ? read_form_factors(path, scene->scene, scene->mesh) : io::read_hff(path), settings);
     }
     if (wanted) {
         throw InvalidArgument(
@@ -445,7 +447,7 @@ dict
     type.def("solve", &solve, py::kw_only(), py::arg("reflectance") = py::none(),
              py::arg("exitance") = py::none(), py::arg("environment") = py::none(),
              py::arg("method") = "auto", py::arg("tolerance") = 1e-6, py::arg("irradiance") = true,
-             py::arg("progress") = py::none(), R"(
+             py::arg("estimate") = true, py::arg("progress") = py::none(), R"(
 Radiosity B = E + reflectance·(F B + e B_env) of all patches.
 
 Parameters
@@ -461,6 +463,9 @@ tolerance : float
     On the relative residual.
 irradiance : bool
     Whether the irradiance is found, too.
+estimate : bool
+    Whether the error that the patches' size makes is estimated, too, where the form factors have an estimate, and
+    the values are the scene's. It takes rows of some more patches.
 progress : None, True or callable
     As of form_factors().
 

@@ -1,6 +1,7 @@
 #include "hemi/io/paths.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/vtp_file.hpp"
+#include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/picture.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 #include "python/arrays.hpp"
@@ -90,7 +91,7 @@ void save(const SolutionOfScene& self, const py::object& path) {
     run([&] {
         if (extension == ".csv") {
             io::write_radiosity_csv(file, scene.mesh, channels_of(self), solution.exitance,
-                                    solution.irradiance, solution.radiosity);
+                                    solution.irradiance, solution.radiosity, radiosity_errors(solution));
             return;
         }
         if (extension != ".hres" && extension != ".vtp") {
@@ -180,11 +181,27 @@ py::array_t<std::uint8_t> draw(const SolutionOfScene& self, const py::object& pa
     return owned(std::move(drawn.picture.srgb), {drawn.picture.height, drawn.picture.width, 3});
 }
 
+py::object errors_of(const SolutionOfScene& self) {
+    const auto error = solution_error(self.solution);
+    if (!error) {
+        return py::none();
+    }
+    const auto field = [](const FieldError& of) {
+        return py::dict(py::arg("rms") = of.rms, py::arg("p95") = of.percentile95);
+    };
+    const std::size_t groups = error->groups.size();
+    return py::dict(
+        py::arg("vertices") = field(error->vertices), py::arg("field") = field(error->field),
+        py::arg("groups") = owned(std::vector<double>(error->groups), {static_cast<py::ssize_t>(groups)}),
+        py::arg("parts") = py::dict(py::arg("patch_size") = error->patch_size,
+                                    py::arg("factors") = error->factors, py::arg("solver") = error->solver));
+}
+
 } // namespace
 
 SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectance,
                       const py::object& exitance, const py::object& environment, const std::string& method,
-                      double tolerance, bool irradiance, const py::object& progress) {
+                      double tolerance, bool irradiance, bool estimate, const py::object& progress) {
     SolutionOfScene result;
     result.scene = factors.scene;
     result.scene_values =
@@ -194,8 +211,16 @@ SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectan
     settings.tolerance = tolerance;
     PatchValues values = given_values(factors, reflectance, exitance, environment);
     PythonObserver observer(progress);
-    result.solution = run(
-        [&] { return solve_radiosity(factors.factors, std::move(values), settings, observer, irradiance); });
+    result.solution = run([&] {
+        Solution solution =
+            solve_radiosity(factors.factors, std::move(values), settings, observer, irradiance);
+        if (estimate && result.scene_values && solution.error) {
+            solution.patch_size_error =
+                estimate_patch_size_error(factors.scene->scene, factors.scene->mesh, factors.factors,
+                                          solution, factors.settings, observer);
+        }
+        return solution;
+    });
     return result;
 }
 
@@ -266,11 +291,23 @@ The radiosity of all patches, W/m² or lm/m². Arrays have the shape [N, channel
             return self.solution.error ? std::optional(self.solution.error->rms) : std::nullopt;
         },
         "float or None : estimated error, rms, relative to what is reflected, from the form factors alone.");
+    property("errors", &errors_of, R"(dict or None : estimated errors of the reflected light, all parts.
+
+"vertices" (values interpolated between the patches' corners) and "field" (one value a patch), each with "rms" and
+"p95", what 95 % of the area stays below, over the rms of what is reflected; "groups", ndarray: of the mean
+irradiance of every group, relative to it, nan where that is dark; "parts" of vertices' rms: "patch_size", "factors"
+and "solver". None where it was not estimated.)");
     property(
         "patch_errors",
         [](const py::object& self) {
-            const auto& error = py::cast<const SolutionOfScene&>(self).solution.error;
-            return error ? by_channel(self, error->patches) : py::object(py::none());
+            const SolutionOfScene& solution = py::cast<const SolutionOfScene&>(self);
+            if (!solution.solution.error) {
+                return py::object(py::none());
+            }
+            return py::object(owned(
+                radiosity_errors(solution.solution),
+                {static_cast<py::ssize_t>(solution.solution.radiosity.size() / solution.solution.channels),
+                 static_cast<py::ssize_t>(solution.solution.channels)}));
         },
         "ndarray, [N, channels], or None : estimated error of every radiosity, absolute.");
     type.def("__len__", [](const SolutionOfScene& self) {

@@ -8,7 +8,7 @@ namespace hemi::viewer {
 
 namespace {
 
-constexpr std::array<QuantityName, 10> names{
+constexpr std::array<QuantityName, 12> names{
     {{Quantity::picture, "picture", "Light"},
      {Quantity::outlines, "outlines", "Patch wireframe"},
      {Quantity::items, "items", "Item ids"},
@@ -17,6 +17,8 @@ constexpr std::array<QuantityName, 10> names{
      {Quantity::exitance, "exitance", "Exitance"},
      {Quantity::row_error, "row-error", "Form factors: row-sum error"},
      {Quantity::estimated_error, "error", "Radiosity: estimated error"},
+     {Quantity::factor_error, "error-factors", "Estimated error: form factors"},
+     {Quantity::patch_size_error, "error-patch-size", "Estimated error: patch size"},
      {Quantity::row, "row", "Picked patch: row of F"},
      {Quantity::column, "column", "Picked patch: column of F"}}};
 
@@ -80,6 +82,26 @@ std::string channel_text(const ViewerInput& input, const Look& look) {
     return look.channel ? ", " + input.scene->channels[*look.channel] : ", mean of channels";
 }
 
+/// Estimated errors of the patches, and what they are called.
+struct Error {
+    std::string title;
+    std::vector<double> values;
+};
+std::optional<Error> error_of(Quantity quantity, const Solution& solution) {
+    switch (quantity) {
+    case Quantity::estimated_error:
+        return Error{solution.patch_size_error ? "Radiosity, estimated error"
+                                               : "Radiosity, estimated error from form factors alone",
+                     radiosity_errors(solution)};
+    case Quantity::factor_error:
+        return Error{"Radiosity, error from form factors", solution.error->patches};
+    case Quantity::patch_size_error:
+        return Error{"Radiosity, error from patch size", solution.patch_size_error->patches};
+    default:
+        return std::nullopt;
+    }
+}
+
 Field light_field(const Look& look, const ViewerInput& input, const Light& light) {
     const auto take = [&](const std::vector<double>& values) {
         return one_channel(values, input.channels(), look.channel);
@@ -93,8 +115,8 @@ Field light_field(const Look& look, const ViewerInput& input, const Light& light
         field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
         return field;
     }
-    if (look.quantity == Quantity::estimated_error) {
-        Field field{"Radiosity, estimated error" + channel, "W/m²", take(input.solution.error->patches), {}};
+    if (const std::optional<Error> error = error_of(look.quantity, input.solution)) {
+        Field field{error->title + channel, "W/m²", take(error->values), {}};
         field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
         return field;
     }
@@ -135,8 +157,12 @@ const char* quantity_title(Quantity quantity) {
 }
 
 const char* why_not(Quantity quantity, const ViewerInput& input, std::optional<std::uint32_t> picked) {
-    if (quantity == Quantity::estimated_error && !input.solution.error) {
+    const bool of_factors = quantity == Quantity::estimated_error || quantity == Quantity::factor_error;
+    if (of_factors && !input.solution.error) {
         return "no errors were estimated of this light";
+    }
+    if (quantity == Quantity::patch_size_error && !input.solution.patch_size_error) {
+        return "estimated by `hemi solve`: open its result";
     }
     if (quantity == Quantity::row_error && input.solution.row_sum.empty()) {
         return "needs form factors";
@@ -216,6 +242,8 @@ std::optional<Field> make_field(const Look& look, const ViewerInput& input, cons
     case Quantity::reflectance:
     case Quantity::exitance:
     case Quantity::estimated_error:
+    case Quantity::factor_error:
+    case Quantity::patch_size_error:
         break;
     }
     return light_field(look, input, light);

@@ -24,6 +24,8 @@ enum class Quantity {
     exitance,
     row_error,
     estimated_error,
+    factor_error, ///< the part of it that the form factors bring
+    patch_size_error,
     row,    ///< F(i, j) of the picked patch i, at j
     column, ///< F(j, i), at j
 };

@@ -113,6 +113,8 @@ void show_section(const PanelContent& content, Choices& choices) {
     case Quantity::radiosity:
     case Quantity::exitance:
     case Quantity::estimated_error:
+    case Quantity::factor_error:
+    case Quantity::patch_size_error:
         channel_choice(content.document.input(), look);
         scale_choice(look.logarithmic);
         break;

@@ -63,6 +63,7 @@ TEST_CASE("solve, factors: an estimate of errors is told, stored and shown", "[c
         CHECK(group > 0.0);
         CHECK(group < 0.2);
     }
+    CHECK(run_hemi({"info", directory.path("a.hres"), "--json"}).json()["error"] == whole);
     const Outcome told =
         run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "-o", directory.path("a.png")});
     CHECK(told.out_has("the reflected light is within"));

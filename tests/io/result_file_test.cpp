@@ -46,6 +46,10 @@ io::ResultFile sample() {
     result.solution.factor_error =
         FactorErrorEstimate{5, 1e-5, 0.25, 2e-4, 0.5, std::vector<double>(patches, 1e-3)};
     result.solution.error = RadiosityErrorEstimate{1.0 / 3.0, std::vector<double>(patches * 2, 0.125)};
+    result.solution.dominance = 0.7;
+    result.solution.patch_size_error =
+        PatchSizeError{{0.1, 1.0 / 7.0}, {0.2, 0.3}, {{0.01, 0.02}, {NAN, NAN}}, {}, 64, 0.0};
+    result.solution.patch_size_error->patches.assign(patches * 2, 1.0 / 9.0);
     return result;
 }
 
@@ -85,6 +89,20 @@ TEST_CASE("HRES: what is written is read back bit for bit", "[io]") {
     REQUIRE(a.solution.factor_error->row_max == b.solution.factor_error->row_max);
     REQUIRE(a.solution.factor_error->rows == b.solution.factor_error->rows);
     REQUIRE(a.solution.error->rms == b.solution.error->rms);
+    REQUIRE(a.solution.dominance == b.solution.dominance);
+    REQUIRE(b.solution.patch_size_error.has_value());
+    const PatchSizeError& is = *b.solution.patch_size_error;
+    const PatchSizeError& was = *a.solution.patch_size_error;
+    REQUIRE(is.vertices.rms == was.vertices.rms);
+    REQUIRE(is.vertices.percentile95 == was.vertices.percentile95);
+    REQUIRE(is.field.rms == was.field.rms);
+    REQUIRE(is.field.percentile95 == was.field.percentile95);
+    REQUIRE(is.sampled == was.sampled);
+    REQUIRE(is.patches == was.patches);
+    REQUIRE(is.groups.size() == was.groups.size());
+    REQUIRE(is.groups[0].patch_size == was.groups[0].patch_size);
+    REQUIRE(is.groups[0].factors == was.groups[0].factors);
+    REQUIRE(std::isnan(is.groups[1].patch_size));
     REQUIRE(a.solution.error->patches == b.solution.error->patches);
     REQUIRE(a.solution.row_sum == b.solution.row_sum);
     REQUIRE(a.solution.environment_share == b.solution.environment_share);
@@ -208,6 +226,13 @@ TEST_CASE("Patch tables: one line a patch, names in quotes where needed, numbers
         "index,group,area,cx,cy,cz,nx,ny,nz,exitance_short,\"exitance_long, far\",irradiance_short,"
         "\"irradiance_long, far\",radiosity_short,\"radiosity_long, far\"\n"));
     REQUIRE(table.find(",1,0.5,0,1,1,0.5\n") != std::string::npos);
+    const std::vector<double> errors(result.solution.radiosity.size(), 0.25);
+    io::write_radiosity_csv(folder / "r.csv", mesh, result.scene.channels, result.solution.radiosity,
+                            result.solution.irradiance, result.solution.radiosity, errors);
+    const std::string with_errors = io::read_file(folder / "r.csv");
+    REQUIRE(with_errors.find(",\"radiosity_long, far\",error_short,\"error_long, far\"\n") !=
+            std::string::npos);
+    REQUIRE(with_errors.find(",1,0.5,0,1,1,0.5,0.25,0.25\n") != std::string::npos);
     REQUIRE_THROWS_AS(io::write_radiosity_csv(folder / "x.csv", mesh, result.scene.channels, {}, {}, {}),
                       InvalidArgument);
     REQUIRE(folder.files() == 2);

@@ -293,7 +293,7 @@ TEST_CASE("solution error: parts combine as the root of the sum of squares", "[p
     CHECK_FALSE(solution_error(solution));
     solution.error = RadiosityErrorEstimate{0.03, {}};
     CHECK_FALSE(solution_error(solution));
-    solution.patch_size_error = PatchSizeError{{0.04, 0.05}, {0.08, 0.09}, {{0.03, 0.04}}, 64, 0.0};
+    solution.patch_size_error = PatchSizeError{{0.04, 0.05}, {0.08, 0.09}, {{0.03, 0.04}}, {}, 64, 0.0};
     const auto error = solution_error(solution);
     REQUIRE(error);
     CHECK(error->patch_size == 0.04);

@@ -28,6 +28,10 @@ def test_a_solution_is_the_programs(scenes, program, tmp_path):
     for name in ("radiosity", "irradiance", "exitance", "row_sums", "environment", "back_faces", "patch_errors"):
         assert numpy.array_equal(getattr(stored, name), getattr(solution, name)), name
     assert stored.residual == solution.residual and stored.error == solution.error
+    assert solution.errors["vertices"]["rms"] > solution.errors["parts"]["factors"] == solution.error
+    assert len(solution.errors["groups"]) == len(solution.scene.groups)
+    assert (solution.patch_errors > 0).all()
+    numpy.testing.assert_equal(stored.errors, solution.errors)
     assert (tmp_path / "module.hres").read_bytes() == (tmp_path / "program.hres").read_bytes()
 
 

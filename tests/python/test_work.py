@@ -66,7 +66,7 @@ def test_progress_tells_phases_and_their_ends(small_box):
         assert {total for name, _, total in calls if name == phase} == {54}
     calls.clear()
     factors.solve(progress=lambda *call: calls.append(call))
-    assert {phase for phase, _, _ in calls} == {"radiosity"}
+    assert {phase for phase, _, _ in calls} == {"radiosity", "estimate of errors"}
 
 
 def test_false_cancels(large_box):

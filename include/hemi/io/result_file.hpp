@@ -30,13 +30,16 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result);
 
 /// One line a patch: index,group,area,cx,cy,cz,nx,ny,nz (index from 0; shortest digits that read back equal).
 void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh);
-/// The same columns, then exitance_C, irradiance_C, radiosity_C for every channel name C.
+/// The same columns, then exitance_C, irradiance_C, radiosity_C for every channel name C, and error_C where
+/// errors of the radiosity are given.
 /// @param path      of the file
 /// @param mesh      N patches
 /// @param channels  their names
-/// @param exitance,irradiance,radiosity  N·channels each, channel c of patch i at [i·channels + c]
+/// @param exitance,irradiance,radiosity,errors  N·channels each, channel c of patch i at [i·channels + c];
+///   errors may be empty
 void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
                          std::span<const std::string> channels, std::span<const double> exitance,
-                         std::span<const double> irradiance, std::span<const double> radiosity);
+                         std::span<const double> irradiance, std::span<const double> radiosity,
+                         std::span<const double> errors = {});
 
 } // namespace hemi::io

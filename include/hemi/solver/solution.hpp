@@ -51,8 +51,11 @@ struct PatchSizeError {
     FieldError vertices;            ///< of the interpolated vertex values that pictures show
     FieldError field;               ///< of one constant for each patch
     std::vector<GroupError> groups; ///< of every group; empty where there are too many
-    std::uint32_t sampled = 0;      ///< patches whose quarters were looked at
-    double seconds = 0.0;           ///< that took
+    /// Absolute, as RadiosityErrorEstimate::patches: rms of the interpolated values over a patch. Modelled,
+    /// from how fast the radiosity changes there, to agree with the sample.
+    std::vector<double> patches;
+    std::uint32_t sampled = 0; ///< patches whose quarters were looked at
+    double seconds = 0.0;      ///< that took
 };
 
 /// The radiosity of every patch of a scene, and what is known of it. Arrays of N·channels hold channel c of
@@ -80,8 +83,11 @@ struct Solution {
     std::string chosen_for; ///< why the settings are what they are, where hemi chose them; else empty
     std::optional<FactorErrorEstimate> factor_error; ///< of the form factors
     std::optional<RadiosityErrorEstimate> error;     ///< of the radiosity, from the form factors alone
-    std::optional<PatchSizeError>
-        patch_size_error; ///< of the radiosity, from the patches' size alone; not stored
+    std::optional<PatchSizeError> patch_size_error;  ///< of the radiosity, from the patches' size alone
 };
+
+/// Estimated error of every patch's radiosity, absolute, channel c of patch i at [i·channels + c]: from the
+/// form factors, and from the patches' size where that is known. Empty where neither is.
+[[nodiscard]] std::vector<double> radiosity_errors(const Solution& solution);
 
 } // namespace hemi

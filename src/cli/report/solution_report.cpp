@@ -147,13 +147,14 @@ Json group_means_json(const LoadedScene& loaded, const FormFactorMatrix& factors
 
 } // namespace
 
-Report stored_solution_report(const Solution& solution) {
+Report stored_solution_report(const Solution& solution, const std::vector<std::string>& groups) {
     Report report;
     report.add("renderer", solution.renderer, {{"renderer", solution.renderer}});
     report.add(solver_report(solution, plural(solution.sweeps, "sweep", "sweeps")));
     report.add(chosen_report(solution.chosen_for));
     report.json["chosen_for"] = solution.chosen_for; // "" rather than null, as the file has it
-    report.add(error_report(solution.factor_error, solution.error));
+    report.add(solution_error_report(solution, groups));
+    report.add(error_report(solution.factor_error, solution.error, !solution.patch_size_error));
     return report;
 }
 

@@ -33,7 +33,11 @@ std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh
         arrays.push_back({"row_error", solution.factor_error->rows, {}});
     }
     if (solution.error) {
-        arrays.push_back({"radiosity_error", solution.error->patches, names});
+        arrays.push_back({"radiosity_error", radiosity_errors(solution), names});
+    }
+    if (solution.error && solution.patch_size_error) {
+        arrays.push_back({"radiosity_error_factors", solution.error->patches, names});
+        arrays.push_back({"radiosity_error_patch_size", solution.patch_size_error->patches, names});
     }
     return arrays;
 }

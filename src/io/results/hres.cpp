@@ -33,6 +33,20 @@ Json point(const Vec3& p) {
     return Json::array({p.x, p.y, p.z});
 }
 
+/// Groups whose error is not a number are null.
+Json patch_size_json(const PatchSizeError& error) {
+    const auto field = [](const FieldError& of) { return Json{{"rms", of.rms}, {"p95", of.percentile95}}; };
+    Json groups = Json::array();
+    for (const GroupError& group : error.groups) {
+        groups.push_back(std::isfinite(group.patch_size) ? Json::array({group.patch_size, group.factors})
+                                                         : Json());
+    }
+    return {{"vertices", field(error.vertices)},
+            {"field", field(error.field)},
+            {"groups", std::move(groups)},
+            {"sampled", error.sampled}};
+}
+
 Json header(const ResultFile& result, const PatchMesh& mesh) {
     const Scene& scene = result.scene;
     Json materials = Json::array();
@@ -59,6 +73,10 @@ Json header(const ResultFile& result, const PatchMesh& mesh) {
         head["error"] = {{"sampled", error.sampled}, {"rms", error.rms},
                          {"max", error.max},         {"row_rms", error.row_rms},
                          {"row_max", error.row_max}, {"radiosity_rms", result.solution.error->rms}};
+    }
+    if (result.solution.patch_size_error) {
+        head["patch_size_error"] = patch_size_json(*result.solution.patch_size_error);
+        head["dominance"] = result.solution.dominance;
     }
     if (scene.camera) {
         const Camera& camera = *scene.camera;
@@ -116,6 +134,25 @@ Camera read_camera(const JsonNode& node) {
             node.member("fov").number(), node.has("orthographic") && node.member("orthographic").boolean()};
 }
 
+PatchSizeError read_patch_size(const JsonNode& node) {
+    const auto field = [](const JsonNode& of) {
+        return FieldError{of.member("rms").number(), of.member("p95").number()};
+    };
+    PatchSizeError error;
+    error.vertices = field(node.member("vertices"));
+    error.field = field(node.member("field"));
+    const JsonNode groups = node.member("groups");
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        const JsonNode group = groups.element(g);
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        error.groups.push_back(group.value().is_null()
+                                   ? GroupError{none, none}
+                                   : GroupError{group.element(0).number(), group.element(1).number()});
+    }
+    error.sampled = static_cast<std::uint32_t>(node.member("sampled").integer(most));
+    return error;
+}
+
 /// What the header says of sizes.
 struct Sizes {
     std::uint64_t surfaces = 0;
@@ -153,6 +190,10 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
                                 error.member("row_max").number(),
                                 {}};
         result.solution.error = RadiosityErrorEstimate{error.member("radiosity_rms").number(), {}};
+    }
+    if (head.has("patch_size_error")) {
+        result.solution.patch_size_error = read_patch_size(head.member("patch_size_error"));
+        result.solution.dominance = head.member("dominance").number();
     }
     return {head.member("surfaces").integer(most), head.member("patches").integer(most)};
 }
@@ -220,6 +261,10 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
         check_array(result.solution.error->patches, values, "error of the radiosity");
     }
 
+    if (result.solution.patch_size_error) {
+        check_array(result.solution.patch_size_error->patches, values, "error from the patches' size");
+    }
+
     ChunkWriter writer(path, hres_format);
     writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh)))});
     writer.chunk("SURF", {bytes_of(stored_surfaces(mesh))});
@@ -231,6 +276,9 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     if (estimated) {
         writer.chunk("RERR", {bytes_of(result.solution.factor_error->rows)});
         writer.chunk("BERR", {bytes_of(result.solution.error->patches)});
+    }
+    if (result.solution.patch_size_error) {
+        writer.chunk("PERR", {bytes_of(result.solution.patch_size_error->patches)});
     }
     writer.finish();
 }
@@ -255,6 +303,9 @@ ResultFile read_hres(const std::filesystem::path& path) {
     if (result.solution.factor_error) {
         result.solution.factor_error->rows = read_array(reader, "RERR", sizes.patches);
         result.solution.error->patches = read_array(reader, "BERR", values);
+    }
+    if (result.solution.patch_size_error) {
+        result.solution.patch_size_error->patches = read_array(reader, "PERR", values);
     }
     reader.finish();
     return result;

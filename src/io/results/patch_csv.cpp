@@ -55,26 +55,40 @@ void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh)
 
 void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
                          std::span<const std::string> channels, std::span<const double> exitance,
-                         std::span<const double> irradiance, std::span<const double> radiosity) {
+                         std::span<const double> irradiance, std::span<const double> radiosity,
+                         std::span<const double> errors) {
     const std::size_t values = std::size_t{mesh.size()} * channels.size();
     if (exitance.size() != values || irradiance.size() != values || radiosity.size() != values) {
         throw InvalidArgument(fmt::format(
             "{} exitances, {} irradiances and {} radiosities for {} patches with {} channels; must be {}",
             exitance.size(), irradiance.size(), radiosity.size(), mesh.size(), channels.size(), values));
     }
+    if (!errors.empty() && errors.size() != values) {
+        throw InvalidArgument(fmt::format("{} errors for {} patches with {} channels; must be {}",
+                                          errors.size(), mesh.size(), channels.size(), values));
+    }
+    struct Quantity {
+        const char* name;
+        std::span<const double> values;
+    };
+    std::vector<Quantity> quantities{
+        {"exitance", exitance}, {"irradiance", irradiance}, {"radiosity", radiosity}};
+    if (!errors.empty()) {
+        quantities.push_back({"error", errors});
+    }
     const PatchColumns columns(mesh);
     TextOutput output(path);
     output.print(FMT_COMPILE("{}"), PatchColumns::header);
-    for (const char* quantity : {"exitance", "irradiance", "radiosity"}) {
+    for (const Quantity& quantity : quantities) {
         for (const std::string& channel : channels) {
-            output.print(FMT_COMPILE(",{}"), csv_field(fmt::format("{}_{}", quantity, channel)));
+            output.print(FMT_COMPILE(",{}"), csv_field(fmt::format("{}_{}", quantity.name, channel)));
         }
     }
     output.print(FMT_COMPILE("\n"));
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
         columns.print(output, patch);
-        for (const auto& quantity : {exitance, irradiance, radiosity}) {
-            for (const double value : quantity.subspan(patch * channels.size(), channels.size())) {
+        for (const Quantity& quantity : quantities) {
+            for (const double value : quantity.values.subspan(patch * channels.size(), channels.size())) {
                 output.print(FMT_COMPILE(",{}"), value);
             }
         }
