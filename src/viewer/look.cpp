@@ -90,13 +90,12 @@ struct Error {
 std::optional<Error> error_of(Quantity quantity, const Solution& solution) {
     switch (quantity) {
     case Quantity::estimated_error:
-        return Error{solution.patch_size_error ? "Radiosity, estimated error"
-                                               : "Radiosity, estimated error from form factors alone",
+        return Error{solution.patch_size_error ? "Estimated error" : "Error from form factors alone",
                      radiosity_errors(solution)};
     case Quantity::factor_error:
-        return Error{"Radiosity, error from form factors", solution.error->patches};
+        return Error{"Error from form factors", solution.error->patches};
     case Quantity::patch_size_error:
-        return Error{"Radiosity, error from patch size", solution.patch_size_error->patches};
+        return Error{"Error from patch size", solution.patch_size_error->patches};
     default:
         return std::nullopt;
     }
