@@ -33,8 +33,7 @@ Report file_info(const std::filesystem::path& path) {
         io::ResultFile result = io::read_hres(path);
         const PatchMesh mesh(result.scene, result.subdivision);
         result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
-        Report report =
-            contents_report(result.scene, mesh, stored_solution_report(result.solution, mesh.groups()));
+        Report report = contents_report(result.scene, mesh, stored_solution_report(result.solution, mesh));
         report.json["kind"] = "result";
         report.select("hemi/info/1",
                       {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels",

@@ -68,6 +68,8 @@ TEST_CASE("solve, factors: an estimate of errors is told, stored and shown", "[c
         run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "-o", directory.path("a.png")});
     CHECK(told.out_has("the reflected light is within"));
     CHECK(told.out_has("cut in four"));
+    CHECK(told.out_has("mean irradiance of groups within"));
+    CHECK(told.out_has("--patch-size"));
     CHECK_FALSE(told.out_has("is not included"));
 
     const Outcome without = run_hemi(quick({"solve", scene, "--no-estimate", "--json"}));

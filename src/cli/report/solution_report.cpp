@@ -80,8 +80,25 @@ std::string worst_group(const std::vector<double>& errors, const std::vector<std
                                                 100.0 * errors[worst], names[worst]);
 }
 
+/// What makes the error smaller, where the patches' size makes most of it; else empty.
+std::string advice(const SolutionError& error, const PatchMesh& mesh) {
+    if (error.patch_size < 2.0 * std::hypot(error.factors, error.solver)) {
+        return {};
+    }
+    double area = 0.0;
+    double size = 0.0; // mean over the area
+    for (const double patch : mesh.areas()) {
+        area += patch;
+        size += patch * std::sqrt(patch);
+    }
+    return fmt::format(
+        "most of it from the patches' size: half of it, --patch-size {:.2g}, would about halve "
+        "the error",
+        0.5 * size / area);
+}
+
 /// How far the solution is from the exact one; empty where that was not estimated.
-Report solution_error_report(const Solution& solution, const std::vector<std::string>& groups) {
+Report solution_error_report(const Solution& solution, const PatchMesh& mesh) {
     Report report;
     report.json["error"] = nullptr;
     const auto error = solution_error(solution);
@@ -108,14 +125,17 @@ Report solution_error_report(const Solution& solution, const std::vector<std::st
                            percent(error->vertices.percentile95), percent(error->field.rms),
                            percent(error->field.percentile95),
                            plural(solution.patch_size_error->sampled, "patch", "patches") + " cut in four"));
-    if (const std::string worst = worst_group(error->groups, groups); !worst.empty()) {
+    if (const std::string worst = worst_group(error->groups, mesh.groups()); !worst.empty()) {
         report.add("", worst);
+    }
+    if (const std::string smaller = advice(*error, mesh); !smaller.empty()) {
+        report.add("", smaller);
     }
     return report;
 }
 
 /// The solver and how it went, settings that the program chose, estimated errors.
-Report solution_report(const Solution& solution, const std::vector<std::string>& groups) {
+Report solution_report(const Solution& solution, const PatchMesh& mesh) {
     const bool gradients = solution.method == SolverMethod::conjugate_gradient;
     Report report;
     report.add("dominance",
@@ -125,7 +145,7 @@ Report solution_report(const Solution& solution, const std::vector<std::string>&
     report.add("", solution.reason);
     report.json["solver"]["why"] = solution.reason;
     report.add(chosen_report(solution.chosen_for));
-    report.add(solution_error_report(solution, groups));
+    report.add(solution_error_report(solution, mesh));
     report.add(error_report(solution.factor_error, solution.error, !solution.patch_size_error));
     return report;
 }
@@ -147,13 +167,13 @@ Json group_means_json(const LoadedScene& loaded, const FormFactorMatrix& factors
 
 } // namespace
 
-Report stored_solution_report(const Solution& solution, const std::vector<std::string>& groups) {
+Report stored_solution_report(const Solution& solution, const PatchMesh& mesh) {
     Report report;
     report.add("renderer", solution.renderer, {{"renderer", solution.renderer}});
     report.add(solver_report(solution, plural(solution.sweeps, "sweep", "sweeps")));
     report.add(chosen_report(solution.chosen_for));
     report.json["chosen_for"] = solution.chosen_for; // "" rather than null, as the file has it
-    report.add(solution_error_report(solution, groups));
+    report.add(solution_error_report(solution, mesh));
     report.add(error_report(solution.factor_error, solution.error, !solution.patch_size_error));
     return report;
 }
@@ -164,7 +184,7 @@ Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const
     Report report = scene_size_report(loaded.mesh);
     report.add(rows);
     report.add(repair_report(repair, seconds["repair"]));
-    report.add(solution_report(solution, loaded.mesh.groups()));
+    report.add(solution_report(solution, loaded.mesh));
     report.add(seconds.report());
     report.json.update(group_means_json(loaded, factors.matrix, solution));
     report.json["reciprocity"] =

@@ -14,7 +14,7 @@ namespace hemi::cli {
 [[nodiscard]] Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
                                   const Solution& solution, const Seconds& seconds);
 /// Report of a stored solution: its solver and errors.
-[[nodiscard]] Report stored_solution_report(const Solution& solution, const std::vector<std::string>& groups);
+[[nodiscard]] Report stored_solution_report(const Solution& solution, const PatchMesh& mesh);
 /// With -v: the work that was saved: rows, channels and polygons that were left out.
 void report_savings(const LoadedScene& loaded, const FormFactors& factors, const Solution& solution,
                     bool merge_lattices, const Terminal& terminal);
