@@ -404,6 +404,13 @@ private:
         }
         importance_ = GroupImportance(factors_, reflectance_, channels_,
                                       [&go_on](std::uint32_t, double, const auto&) { return go_on(0, 1); });
+        RadiosityProblem problem;
+        problem.factors = &factors_.matrix;
+        problem.channels = channels_;
+        problem.reflectance = reflectance_;
+        problem.exitance = solution_.exitance;
+        problem.environment = scene_.environment;
+        irradiance_ = irradiance(problem, solution_.radiosity);
     }
 
     /// What a quarter gets of a field of the patches by its own row. What the row's factors miss of the share
@@ -445,17 +452,11 @@ private:
         if (importance_.groups() == 0) {
             return {};
         }
-        RadiosityProblem problem;
-        problem.factors = &factors_.matrix;
-        problem.channels = channels_;
-        problem.reflectance = reflectance_;
-        problem.exitance = solution_.exitance;
-        problem.environment = scene_.environment;
-        const std::vector<double> irradiance = hemi::irradiance(problem, solution_.radiosity);
         std::vector<double> light(sums.size(), 0.0); // irradiance times area, of the rows that are known
         for (std::uint32_t i = 0; i < mesh_.size(); ++i) {
             for (std::uint32_t c = 0; c < channels_; ++c) {
-                light[std::size_t{mesh_.group(i)} * channels_ + c] += mesh_.areas()[i] * irradiance[at(i, c)];
+                light[std::size_t{mesh_.group(i)} * channels_ + c] +=
+                    mesh_.areas()[i] * irradiance_[at(i, c)];
             }
         }
         const std::vector<SampledSum> by_factors = factor_error_sums();
@@ -534,8 +535,13 @@ private:
                 }
                 field[c].add(change, stands_for);
                 vertices[c].add(shown - change, stands_for);
+                // Here the quarters' mean counts, too: it differs from what the patch's own row gets where
+                // visibility and F0 change together.
+                const double error = light[q][c] - irradiance_[at(patch, c)];
                 for (std::size_t column = c; column < groups.size(); column += channels_) {
-                    for_groups[column] += fine.areas()[quarters[q]] * change * importance[column];
+                    const double own = column / channels_ == mesh_.group(patch) ? 1.0 : 0.0;
+                    for_groups[column] += fine.areas()[quarters[q]] * error *
+                                          (own + reflectance_[at(patch, c)] * importance[column]);
                 }
             }
         }
@@ -554,6 +560,7 @@ private:
     std::vector<std::uint32_t> patches_; // those that reflect and are not buried, ascending
     std::vector<double> units_;          // a channel: rms of B - E over them
     GroupImportance importance_;
+    std::vector<double> irradiance_; // of all patches, N·channels; with the importance
 };
 
 } // namespace

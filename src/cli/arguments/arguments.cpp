@@ -349,7 +349,8 @@ void add_solve(CLI::App& app, SolveArguments& a) {
                                 "use these form factors if the file exists, else write them there");
     add_resume(app, a.rows, factors);
     output.path("--result", "FILE.hres", a.result, "the whole solution, for `hemi render` and `hemi view`");
-    output.path("--radiosity", "FILE.csv", a.radiosity, "exitance, irradiance, radiosity and its error of every patch");
+    output.path("--radiosity", "FILE.csv", a.radiosity,
+                "exitance, irradiance, radiosity and its error of every patch");
     output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
     add_picture(app, a.picture, picture);
     add_common(app, a.common);
