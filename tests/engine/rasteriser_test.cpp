@@ -1,5 +1,6 @@
 #include "engine/hemicube/gl_rows.hpp"
 #include "engine/rasteriser/cpu_rows.hpp"
+#include "support/device.hpp"
 #include "support/item_agreement.hpp"
 #include "support/scenes.hpp"
 
@@ -44,11 +45,18 @@ struct Drawn {
 // What the rasteriser claims: texels' centres further than this from an edge are decided right.
 constexpr double edge_margin = 1e-3;
 
+// And llvmpipe, which snaps vertices.
+constexpr double llvmpipe_margin = 1.0 / 256.0;
+
+/// The rasteriser, and OpenGL that transforms polygons as on a GPU.
 void check_against_rays(const PatchMesh& mesh, const HemicubeSettings& settings, std::uint32_t step) {
     Drawn drawn(mesh, settings);
+    const WithTransform transform("gpu");
+    GlRows by_gl(drawn.geometry, settings, RowQuantity::form_factors, "osmesa");
     for (std::uint32_t patch = 0; patch < mesh.size(); patch += step) {
         INFO("patch " << patch);
         CHECK(disagreements(mesh, settings, patch, edge_margin, drawn.rows) == 0);
+        CHECK(disagreements(mesh, settings, patch, llvmpipe_margin, by_gl) == 0);
     }
 }
 
@@ -118,7 +126,7 @@ Scene sheets() {
 
 } // namespace
 
-TEST_CASE("Rasteriser: item buffers equal rays through the texel centres", "[engine]") {
+TEST_CASE("Rasteriser and OpenGL: item buffers equal rays through the texel centres", "[engine][gl]") {
     const HemicubeSettings settings{.resolution = 64};
     SECTION("a room with blocks") {
         check_against_rays(PatchMesh(room_with_blocks(6)), settings, 17);

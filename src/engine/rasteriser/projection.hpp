@@ -59,7 +59,7 @@ public:
     /// What is added to up / depth times half() to count rows from the first texel's centre.
     [[nodiscard]] float offset_y(int face) const { return face == 0 ? half_ - 0.5f : -0.5f; }
 
-    [[nodiscard]] std::array<float, 3> in_eye_frame(const RasterScene::SplitPosition& position) const;
+    [[nodiscard]] std::array<float, 3> in_eye_frame(const SplitPosition& position) const;
     /// Faces whose pyramids a sphere in raster coordinates reaches into: bit per face.
     [[nodiscard]] std::uint32_t faces_of(const std::array<float, 3>& centre, float radius) const;
     /// @param at  in the eye's frame

@@ -1,8 +1,9 @@
 #include "engine/rasteriser/raster_scene.hpp"
 
+#include "engine/hemicube/draw_triangles.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 namespace hemi {
@@ -12,29 +13,14 @@ namespace {
 // Of centres of spheres to floats, and of the tests with them.
 constexpr float sphere_rounding = 1e-6f;
 
-/// A triangle of a polygon that shows one draw id.
-struct Triangle {
-    std::uint32_t polygon;
-    std::array<std::uint32_t, 3> vertices; ///< into DrawList::vertices
-    Vec3 centre;
-};
-
-std::vector<Triangle> collect_triangles(const DrawList& list,
-                                        std::vector<RasterScene::GridPolygon>& grid_polygons) {
-    std::vector<Triangle> triangles;
+std::vector<DrawTriangle> collect_triangles(const DrawList& list,
+                                            std::vector<RasterScene::GridPolygon>& grid_polygons) {
+    std::vector<DrawTriangle> triangles;
     for (std::uint32_t p = 0; p < list.polygons.size(); ++p) {
-        const DrawPolygon& polygon = list.polygons[p];
-        if (polygon.grid.u * polygon.grid.v > 1 || polygon.split != 0) {
+        if (list.polygons[p].shows_one_id()) {
+            add_triangles(list, p, triangles);
+        } else {
             grid_polygons.push_back({.polygon = p, .map = make_grid_map(list, p)});
-            continue;
-        }
-        for (std::uint32_t t = 0; t < polygon.triangle_count; ++t) {
-            Triangle& triangle = triangles.emplace_back(Triangle{p, {}, Vec3(0.0)});
-            for (std::size_t k = 0; k < 3; ++k) {
-                const std::uint32_t corner = list.triangles[polygon.first_triangle + t][k];
-                triangle.vertices[k] = list.corners[polygon.first_corner + corner].vertex;
-                triangle.centre += list.vertices[triangle.vertices[k]] / 3.0;
-            }
         }
     }
     return triangles;
@@ -59,60 +45,21 @@ bool has_no_straight_corner(const DrawList& list, const DrawPolygon& polygon) {
     return true;
 }
 
-/// The vertices of some triangles, each once.
-std::vector<std::uint32_t> vertices_of(std::span<const Triangle> triangles) {
-    std::vector<std::uint32_t> vertices;
-    for (const Triangle& triangle : triangles) {
-        vertices.insert(vertices.end(), triangle.vertices.begin(), triangle.vertices.end());
-    }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    return vertices;
-}
-
 /// Fills the arrays of a RasterScene, cluster by cluster.
 class ClusterBuilder {
 public:
     explicit ClusterBuilder(RasterScene& scene) : scene_(scene) {}
 
-    /// Halves the triangles along the longest side of their box until they fit clusters.
-    void add(std::span<Triangle> triangles) {
+    void add(std::span<DrawTriangle> triangles) {
         constexpr std::size_t most = RasterScene::cluster_size;
-        if (triangles.empty()) {
-            return;
-        }
-        if (triangles.size() <= most) {
-            const std::vector<std::uint32_t> vertices = vertices_of(triangles);
-            if (vertices.size() <= most) {
-                add_cluster(triangles, vertices);
-                return;
-            }
-        }
-        Vec3 lower(std::numeric_limits<double>::infinity());
-        Vec3 upper = -lower;
-        for (const Triangle& triangle : triangles) {
-            lower = glm::min(lower, triangle.centre);
-            upper = glm::max(upper, triangle.centre);
-        }
-        const Vec3 extent = upper - lower;
-        const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-        // Halves that fill clusters, where there are several.
-        std::size_t half = triangles.size() / 2;
-        if (triangles.size() > most) {
-            half = std::max(most, (half + most / 2) / most * most);
-        }
-        half = half < triangles.size() ? half : triangles.size() / 2;
-        std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half),
-                         triangles.end(), [axis](const Triangle& a, const Triangle& b) {
-                             return std::pair(a.centre[axis], a.polygon) <
-                                    std::pair(b.centre[axis], b.polygon);
-                         });
-        add(triangles.first(half));
-        add(triangles.subspan(half));
+        for_each_cluster(
+            triangles, most,
+            [](std::span<const DrawTriangle> some) { return vertices_of(some).size() <= most; },
+            [this](std::span<const DrawTriangle> some) { add_cluster(some, vertices_of(some)); });
     }
 
 private:
-    void add_cluster(std::span<const Triangle> triangles, std::span<const std::uint32_t> vertices) {
+    void add_cluster(std::span<const DrawTriangle> triangles, std::span<const std::uint32_t> vertices) {
         constexpr std::size_t size = RasterScene::cluster_size;
         const std::size_t first = scene_.clusters.size() * size;
         TriangleCluster cluster;
@@ -135,7 +82,7 @@ private:
         cluster.radius = static_cast<float>(radius * 1.0001) + sphere_rounding;
         for (std::size_t k = 0; k < size; ++k) {
             const auto position =
-                scene_.split(scene_.list.vertices[vertices[std::min(k, vertices.size() - 1)]]);
+                scene_.coordinates.split(scene_.list.vertices[vertices[std::min(k, vertices.size() - 1)]]);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 scene_.vertex_high[axis].push_back(position.high[axis]);
                 scene_.vertex_low[axis].push_back(position.low[axis]);
@@ -149,7 +96,7 @@ private:
         scene_.back_id.resize(first + size, item_nothing);
         scene_.polygon.resize(first + size, 0);
         for (std::size_t t = 0; t < triangles.size(); ++t) {
-            const Triangle& triangle = triangles[t];
+            const DrawTriangle& triangle = triangles[t];
             const DrawPolygon& polygon = scene_.list.polygons[triangle.polygon];
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto at = std::lower_bound(vertices.begin(), vertices.end(), triangle.vertices[k]);
@@ -166,7 +113,7 @@ private:
     }
 
     [[nodiscard]] Vec3 raster(std::uint32_t vertex) const {
-        return (scene_.list.vertices[vertex] - scene_.origin) * scene_.scale;
+        return scene_.coordinates.of(scene_.list.vertices[vertex]);
     }
 
     RasterScene& scene_;
@@ -174,41 +121,20 @@ private:
 
 } // namespace
 
-RasterScene::RasterScene(const DrawList& the_list) : list(the_list) {
-    Vec3 lower(std::numeric_limits<double>::infinity());
-    Vec3 upper = -lower;
-    for (const Vec3& vertex : list.vertices) {
-        lower = glm::min(lower, vertex);
-        upper = glm::max(upper, vertex);
-    }
-    if (!list.vertices.empty()) {
-        origin = 0.5 * (lower + upper);
-        const double largest = 0.5 * std::max({upper.x - lower.x, upper.y - lower.y, upper.z - lower.z});
-        scale = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest) - 1) : 1.0;
-    }
-    std::vector<Triangle> triangles = collect_triangles(list, grid_polygons);
+RasterScene::RasterScene(const DrawList& the_list) : list(the_list), coordinates(the_list) {
+    std::vector<DrawTriangle> triangles = collect_triangles(list, grid_polygons);
     ClusterBuilder(*this).add(triangles);
     for (GridPolygon& drawn : grid_polygons) {
         const DrawPolygon& outline = list.polygons[drawn.polygon];
-        drawn.centre = split(outline.centre).high;
-        drawn.radius = static_cast<float>(outline.radius * scale * 1.0001) + sphere_rounding;
+        drawn.centre = coordinates.split(outline.centre).high;
+        drawn.radius = static_cast<float>(outline.radius * coordinates.scale * 1.0001) + sphere_rounding;
         drawn.whole = has_no_straight_corner(list, outline);
         drawn.first_corner = static_cast<std::uint32_t>(grid_corners.size());
         for (std::uint32_t k = 0; k < outline.corner_count; ++k) {
-            grid_corners.push_back(split(list.vertices[list.corners[outline.first_corner + k].vertex]));
+            grid_corners.push_back(
+                coordinates.split(list.vertices[list.corners[outline.first_corner + k].vertex]));
         }
     }
-}
-
-RasterScene::SplitPosition RasterScene::split(const Vec3& position) const {
-    const Vec3 raster = (position - origin) * scale;
-    SplitPosition result{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double value = raster[static_cast<int>(axis)];
-        result.high[axis] = static_cast<float>(value);
-        result.low[axis] = static_cast<float>(value - static_cast<double>(result.high[axis]));
-    }
-    return result;
 }
 
 } // namespace hemi

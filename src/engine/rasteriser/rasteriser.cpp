@@ -45,7 +45,7 @@ public:
         : scene_(scene), projection_(scene, tiles.resolution()), target_(tiles),
           texels_(projection_.texels()), half_(projection_.half()), guard_(projection_.guard()),
           slack_(std::max(1e-3f, 2e-6f * texels_)), tolerance_(scene.list.tolerance),
-          near_plane_(static_cast<float>(tolerance_ * scene.scale) + 2e-6f) {}
+          near_plane_(static_cast<float>(tolerance_ * scene.coordinates.scale) + 2e-6f) {}
 
     void draw(const EyePoint& eye, const EyeFrame& frame, const TileWeights* weights,
               Coverage* coverage) override {
@@ -440,7 +440,7 @@ private:
             outline[k] = projection_.on_face(face, at);
             corners[k] = Vec3(at[0], at[1], at[2]);
         }
-        if (highest <= static_cast<float>(tolerance_ * scene_.scale)) {
+        if (highest <= static_cast<float>(tolerance_ * scene_.coordinates.scale)) {
             return; // on or behind the eye's plane
         }
         const Vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -493,7 +493,7 @@ private:
             corners_.push_back(projection_.in_eye_frame(scene_.grid_corners[drawn.first_corner + k]));
             highest = std::max(highest, corners_.back()[2]);
         }
-        if (highest <= static_cast<float>(tolerance_ * scene_.scale)) {
+        if (highest <= static_cast<float>(tolerance_ * scene_.coordinates.scale)) {
             return; // on or behind the eye's plane
         }
         for (std::uint32_t left = faces; left != 0; left &= left - 1) {
@@ -516,7 +516,7 @@ private:
                 }
                 if (!ready) {
                     inverse = projection_.on_texels(face, projection_.in_frame(polygon.normal),
-                                                    -1.0 / (height * scene_.scale));
+                                                    -1.0 / (height * scene_.coordinates.scale));
                     shown = shown_cells(scene_, projection_, face, drawn, front, inverse);
                     ready = true;
                 }
