@@ -13,7 +13,7 @@ layout(location = 1) flat in uvec3 cells; // first id; grid u | v << 16; split
 layout(location = 2) flat in vec2 twist;
 #else
 layout(location = 0) flat in vec4 inverse_depth;
-layout(location = 1) flat in uvec3 cells; // first id; grid u | v << 16; flags
+layout(location = 1) flat in uvec4 cells; // first id; grid u | v << 16; flags; first id of the front
 layout(location = 2) flat in vec3 along_u;
 layout(location = 3) flat in vec3 along_v;
 layout(location = 4) flat in vec4 grid_at_eye;
@@ -88,15 +88,14 @@ void show() {
 }
 #else
 void show() {
-    // A sliver that snapping of its vertices has turned over shows the wrong side.
-    bool front = (cells.z & 4u) != 0u;
-    if (gl_FrontFacing != front) {
-        discard;
-    }
     vec3 direction = vec3(vec2(gl_FragCoord.x, gl_FragCoord.y - float(first_row)) * texel - 1.0, 1.0);
     float inverse = dot(inverse_depth.xyz, direction);
-    id = cells.x;
-    if (cells.y != 0x10001u && cells.x > 1u) {
+    // A sliver along a silhouette that snapping of its vertices has turned over: it shows only where nothing else does,
+    // and as the front of its patches, so that a closed scene stays closed.
+    bool front = (cells.z & 4u) != 0u;
+    bool turned_over = gl_FrontFacing != front;
+    id = turned_over && cells.x == 1u ? cells.w : cells.x;
+    if (cells.y != 0x10001u && id > 1u) {
         float reach = 1.0 / max(inverse, 1e-30);
         vec2 at = grid_at_eye.xy + reach * vec2(dot(along_u, direction), dot(along_v, direction));
         id += cell_at(at, grid_at_eye.zw);
@@ -104,7 +103,7 @@ void show() {
     // Along a silhouette, where a front hides a back that shares its edge, either may come out nearer by its change of
     // depth over a grain. Fronts are set nearer by it and backs farther: the front wins.
     inverse = front ? inverse + inverse_depth.w : (inverse - inverse_depth.w) * (1.0 - 2e-6);
-    gl_FragDepth = clamp(near * inverse, 1e-36, 1.0);
+    gl_FragDepth = turned_over ? 1e-37 : clamp(near * inverse, 1e-36, 1.0);
 }
 #endif
 

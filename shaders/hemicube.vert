@@ -37,7 +37,7 @@ layout(std430, binding = 1) readonly buffer GridMaps {
 };
 
 layout(location = 0) flat out vec4 inverse_depth; // in the direction (x, y, 1): dot(xyz); w: its change over a grain
-layout(location = 1) flat out uvec3 cells;        // first id; grid; flags, 4: the front
+layout(location = 1) flat out uvec4 cells;        // first id; grid; flags, 4: the front; first id of the front
 layout(location = 2) flat out vec3 along_u;       // change of u in the direction (x, y, 1), for each unit of depth
 layout(location = 3) flat out vec3 along_v;
 layout(location = 4) flat out vec4 grid_at_eye;   // u, v, twist
@@ -54,7 +54,7 @@ void main() {
     dvec3 eye = dvec3(eye_high) + dvec3(eye_low);
     float height = float(dot(p.plane.xyz, eye) - p.plane.w);
     inverse_depth = vec4(0.0);
-    cells = uvec3(0u);
+    cells = uvec4(0u);
     along_u = along_v = vec3(0.0);
     grid_at_eye = vec4(0.0);
     if (polygon == own_polygon || abs(height) <= tolerance) { // its own, or edge-on
@@ -76,7 +76,7 @@ void main() {
     bool front = height > 0.0;
     inverse_depth.xyz = on_face(vec3(p.plane.xyz)) / -height;
     inverse_depth.w = grain * max(abs(inverse_depth.x), abs(inverse_depth.y));
-    cells = uvec3(front ? p.front_id : p.back_id, p.grid, p.flags | (front ? 4u : 0u));
+    cells = uvec4(front ? p.front_id : p.back_id, p.grid, p.flags | (front ? 4u : 0u), p.front_id);
     if (p.grid_map != 0xFFFFFFFFu) {
         GridMap map = grid_maps[p.grid_map];
         along_u = on_face(vec3(map.u.xyz));

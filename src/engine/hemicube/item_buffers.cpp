@@ -266,6 +266,12 @@ void ItemBuffers::restore_defaults() noexcept {
     glUseProgram(0);
     glBindVertexArray(0);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    for (const GLuint block : {0u, counting_block}) {
+        glBindBufferBase(GL_UNIFORM_BUFFER, block, 0);
+    }
+    for (const GLuint block : {0u, 1u, weights_block, covered_block}) {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, block, 0);
+    }
 }
 
 void ItemBuffers::unmap() noexcept {
