@@ -51,6 +51,11 @@ Program make_program(std::string_view label_text, const char* vertex_source, con
     return program;
 }
 
+std::string with_definition(std::string_view source, std::string_view name) {
+    const std::size_t version = source.find('\n') + 1;
+    return fmt::format("{}#define {}\n{}", source.substr(0, version), name, source.substr(version));
+}
+
 void label(GLenum kind, GLuint name, std::string_view text) {
     glObjectLabel(kind, name, static_cast<GLsizei>(text.size()), text.data());
 }

@@ -79,6 +79,9 @@ using Program = UniqueObject<ProgramTraits>;
 [[nodiscard]] Program make_program(std::string_view label, const char* vertex_source,
                                    const char* fragment_source);
 
+/// A shader's source with a preprocessor name defined, after its first line, the version.
+[[nodiscard]] std::string with_definition(std::string_view source, std::string_view name);
+
 /// Names an object for debuggers. `kind` as glObjectLabel: GL_BUFFER, GL_TEXTURE, GL_FRAMEBUFFER …
 void label(GLenum kind, GLuint name, std::string_view text);
 

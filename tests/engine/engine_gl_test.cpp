@@ -57,10 +57,13 @@ void check_against_rays(const PatchMesh& mesh, std::uint32_t resolution, std::ui
     HemicubeSettings settings;
     settings.resolution = resolution;
     const EngineGeometry geometry = make_engine_geometry(mesh, settings);
-    GlRows engine(geometry, settings, RowQuantity::form_factors, "osmesa");
-    for (const std::uint32_t patch : every(step, mesh.size())) {
-        INFO("patch " << patch);
-        CHECK(disagreements(mesh, settings, patch, 1.0 / 256.0, engine) == 0);
+    for (const char* where : {"cpu", "gpu"}) {
+        const WithTransform transform(where);
+        GlRows engine(geometry, settings, RowQuantity::form_factors, "osmesa");
+        for (const std::uint32_t patch : every(step, mesh.size())) {
+            INFO("patch " << patch << ", polygons transformed by " << where);
+            CHECK(disagreements(mesh, settings, patch, 1.0 / 256.0, engine) == 0);
+        }
     }
 }
 
@@ -92,10 +95,13 @@ TEST_CASE("GlRows: a quadrilateral with a straight corner shows the right cells 
         const PatchMesh mesh(scene);
         const HemicubeSettings settings{.resolution = 64};
         const EngineGeometry geometry = make_engine_geometry(mesh, settings);
-        GlRows engine(geometry, settings, RowQuantity::form_factors, "osmesa");
-        INFO("start " << start);
-        CHECK(disagreements(mesh, settings, 0, 1.0 / 256.0, engine) <=
-              2); // the map is singular at that corner
+        for (const char* where : {"cpu", "gpu"}) {
+            const WithTransform transform(where);
+            GlRows engine(geometry, settings, RowQuantity::form_factors, "osmesa");
+            INFO("start " << start << ", polygons transformed by " << where);
+            CHECK(disagreements(mesh, settings, 0, 1.0 / 256.0, engine) <=
+                  2); // the map is singular at that corner
+        }
     }
 }
 

@@ -121,16 +121,26 @@ TEST_CASE("shaders: uniforms of the picture are where the constants say", "[gl][
     gl::check_errors("reading uniforms");
 }
 
-TEST_CASE("shaders: the hemicube's programs have no uniforms, and the vertex inputs of a DrawVertex",
+TEST_CASE("shaders: the hemicube's programs have the vertex inputs of a DrawVertex and of a PolygonVertex",
           "[gl][engine]") {
     const auto context = gl::make_context("osmesa");
-    const gl::Program affine =
-        gl::make_program("hemicube", gl::shaders::hemicube_vert, gl::shaders::hemicube_frag);
-    const gl::Program bilinear =
-        gl::make_program("hemicube quads", gl::shaders::hemicube_vert, gl::shaders::hemicube_quad_frag);
-    CHECK(locations(affine, GL_UNIFORM).empty());
-    CHECK(locations(bilinear, GL_UNIFORM).empty());
-    const Locations inputs{{"position", 0}, {"grid_position", 1}, {"twist", 2}, {"cells", 3}};
-    CHECK(locations(bilinear, GL_PROGRAM_INPUT) == inputs);
+    const std::string clipped = gl::with_definition(gl::shaders::hemicube_frag, "CLIPPED");
+    const std::string bilinear = gl::with_definition(clipped, "BILINEAR");
+    const Locations clipped_inputs{{"position", 0}, {"grid_position", 1}, {"twist", 2}, {"cells", 3}};
+    for (const std::string& fragment : {clipped, bilinear}) {
+        const gl::Program program =
+            gl::make_program("hemicube", gl::shaders::hemicube_clipped_vert, fragment.c_str());
+        CHECK(locations(program, GL_UNIFORM).empty());
+        if (fragment == bilinear) {
+            CHECK(locations(program, GL_PROGRAM_INPUT) == clipped_inputs);
+        }
+    }
+    const Locations inputs{{"high", 0}, {"low", 1}, {"polygon", 2}};
+    const std::string plain = gl::shaders::hemicube_frag;
+    for (const std::string& fragment : {plain, gl::with_definition(plain, "COUNT_COVERED")}) {
+        const gl::Program program =
+            gl::make_program("hemicube", gl::shaders::hemicube_vert, fragment.c_str());
+        CHECK(locations(program, GL_PROGRAM_INPUT) == inputs);
+    }
     gl::check_errors("reading inputs");
 }

@@ -1,4 +1,5 @@
 #include "scenes/scene_files.hpp"
+#include "support/device.hpp"
 #include "support/item_agreement.hpp"
 
 #include "engine/hemicube/gl_rows.hpp"
@@ -38,7 +39,8 @@ std::optional<std::string> software_egl() {
 
 } // namespace
 
-TEST_CASE("scenes: OSMesa, EGL and the CPU rasteriser show the items that rays meet, but within their "
+TEST_CASE("scenes: OSMesa, transforming polygons itself or not, EGL and the CPU rasteriser show the items "
+          "that rays meet, but within their "
           "distance of an edge",
           "[scenes][gl]") {
     // What each says of itself, in texels: llvmpipe snaps vertices to 1/256, the rasteriser less than 1/1000.
@@ -55,12 +57,18 @@ TEST_CASE("scenes: OSMesa, EGL and the CPU rasteriser show the items that rays m
             const RasterScene scene(geometry.list);
             GlRows by_osmesa(geometry, settings, RowQuantity::form_factors, "osmesa");
             GlRows by_egl(geometry, settings, RowQuantity::form_factors, *egl);
+            std::optional<GlRows> by_gpu_transform;
+            {
+                const WithTransform transform("gpu");
+                by_gpu_transform.emplace(geometry, settings, RowQuantity::form_factors, "osmesa");
+            }
             CpuRows by_cpu(geometry, scene, settings, RowQuantity::form_factors);
             for (std::uint32_t k = 0; k < patches; ++k) {
                 const auto patch = static_cast<std::uint32_t>(std::uint64_t{k} * 2654435761u % mesh.size());
                 INFO(name << ", seed " << seed << ", patch " << patch);
                 CHECK(disagreements(mesh, settings, patch, llvmpipe_margin, by_osmesa) == 0);
                 CHECK(by_egl.items(patch) == by_osmesa.items(patch));
+                CHECK(disagreements(mesh, settings, patch, llvmpipe_margin, *by_gpu_transform) == 0);
                 CHECK(disagreements(mesh, settings, patch, cpu_margin, by_cpu) == 0);
             }
         }

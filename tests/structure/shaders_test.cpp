@@ -19,6 +19,20 @@ TEST_CASE("shaders: glslangValidator accepts every file", "[structure]") {
     }
 }
 
+TEST_CASE("shaders: glslangValidator accepts the hemicube's fragments with every definition", "[structure]") {
+    for (const std::vector<std::string>& definitions :
+         {std::vector<std::string>{"CLIPPED"}, {"CLIPPED", "BILINEAR"}, {"COUNT_COVERED"}}) {
+        std::vector<std::string> command{"glslangValidator", "-l"};
+        for (const std::string& definition : definitions) {
+            command.push_back("-D" + definition);
+        }
+        command.emplace_back(HEMI_SOURCE_DIR "/shaders/hemicube.frag");
+        const auto outcome = run_command(command);
+        INFO(definitions.back() << "\n" << outcome.out << outcome.err);
+        CHECK(outcome.status == 0);
+    }
+}
+
 TEST_CASE("shaders: glslangValidator refuses a slip in each file", "[structure]") {
     const hemi::cli_test::Directory directory;
     for (const SourceFile& file : source_files({"shaders"})) {
@@ -32,10 +46,13 @@ TEST_CASE("shaders: glslangValidator refuses a slip in each file", "[structure]"
     }
 }
 
-TEST_CASE("shaders: every input, output and uniform has its location written out", "[structure]") {
+TEST_CASE("shaders: every input, output, uniform and block has its location or binding written out",
+          "[structure]") {
     // A declaration that begins with its qualifiers; one with a location begins with layout.
     const std::regex unplaced(R"(^(flat |smooth |noperspective |centroid )*(in|out|uniform) )");
-    const std::regex placed(R"(^layout\(location = \d+(, binding = \d+)?\) (flat )?(in|out|uniform) )");
+    const std::regex placed(
+        R"(^layout\((location = \d+(, binding = \d+)?\) (flat )?(in|out|uniform) )"
+        R"(|std140, binding = \d+\) uniform |std430, binding = \d+\) (readonly )?buffer ))");
     std::size_t found = 0;
     for (const SourceFile& file : source_files({"shaders"})) {
         for (const std::string& line : lines_of(file.text)) {

@@ -12,4 +12,14 @@ namespace hemi::test {
     return device != nullptr ? device : "osmesa";
 }
 
+/// Has OpenGL transform polygons on the CPU ("cpu") or the GPU ("gpu") whatever the device, until it goes out
+/// of scope.
+class WithTransform {
+public:
+    explicit WithTransform(const char* where) { setenv("HEMI_TRANSFORM", where, 1); }
+    ~WithTransform() { unsetenv("HEMI_TRANSFORM"); }
+    WithTransform(const WithTransform&) = delete;
+    WithTransform& operator=(const WithTransform&) = delete;
+};
+
 } // namespace hemi::test

@@ -61,6 +61,9 @@ struct DrawPolygon {
     float twist_v = 0.0f;
     std::uint32_t front_id = 0;           ///< draw id of its first cell, seen from the front
     std::uint32_t back_id = item_blocked; ///< and from the back
+
+    /// Whether a side shows the same draw id everywhere: the polygon has one cell.
+    [[nodiscard]] bool shows_one_id() const { return grid.u * grid.v == 1 && split == 0; }
 };
 
 /// What the item buffers are drawn from: polygons with welded vertices and outlines without T-junctions, and

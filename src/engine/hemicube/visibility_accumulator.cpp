@@ -62,19 +62,32 @@ VisibilityAccumulator::VisibilityAccumulator(const DrawList& list, std::uint32_t
     }
 }
 
-void VisibilityAccumulator::add(const std::uint32_t* ids, const DeltaFormFactors& weights,
-                                const FrontViews& views, const EyePoint& eye, const EyeFrame& frame) {
+void VisibilityAccumulator::add(const std::uint32_t* ids, const DeltaFormFactors& weights) {
+    const std::uint32_t resolution = weights.resolution();
+    Tally* const visible = visible_.data();
+    for (std::uint32_t y = 0; y < weights.rows(); ++y) {
+        const std::uint32_t* const row = ids + std::size_t{y} * resolution;
+        const std::uint32_t* const prefix = weights.prefix_row(y).data();
+        std::uint32_t begin = 0;
+        for_each_run_end(row, resolution, [&](std::uint32_t last) {
+            visible[row[last]] += Tally{prefix[last + 1] - prefix[begin]} << 32 | (last + 1 - begin);
+            begin = last + 1;
+        });
+    }
+    total_ += weights.sum();
+}
+
+void VisibilityAccumulator::add_hidden(const std::uint32_t* ids, const DeltaFormFactors& weights,
+                                       const FrontViews& views, const EyePoint& eye, const EyeFrame& frame) {
     if (maps_.empty()) {
         for (std::uint32_t p = 0; p < list_.polygons.size(); ++p) {
             maps_.push_back(make_grid_map(list_, p));
         }
     }
-    add_visible(ids, weights);
     for (const FrontViews::View& view : views.views) {
         note_side({view.polygon, view.back});
         add_hidden(ids, weights, views, view, eye, frame);
     }
-    total_ += weights.sum();
 }
 
 void VisibilityAccumulator::note_side(const Side& side) {
@@ -112,6 +125,34 @@ VisibilityRow VisibilityAccumulator::take(Coverage& coverage) {
     return take();
 }
 
+VisibilityRow VisibilityAccumulator::take(std::span<const TexelTally> covered) {
+    for (std::uint32_t p = 0; p < list_.polygons.size(); ++p) {
+        const DrawPolygon& polygon = list_.polygons[p];
+        for (const bool back : {false, true}) {
+            const std::uint32_t first = back ? polygon.back_id : polygon.front_id;
+            if (first == item_blocked) {
+                continue;
+            }
+            if (polygon.shows_one_id()) {
+                if (covered[first] != 0) {
+                    take_single(first, covered[first]);
+                }
+                continue;
+            }
+            const std::uint32_t end = first + (polygon.grid.u * polygon.grid.v << polygon.split);
+            Tally any = 0;
+            for (std::uint32_t id = first; id < end; ++id) {
+                hidden_[id] = covered[id] - visible_[id];
+                any |= covered[id];
+            }
+            if (any != 0) {
+                note_side({p, back});
+            }
+        }
+    }
+    return take();
+}
+
 /// A polygon of one cell: there is nothing to pool.
 void VisibilityAccumulator::take_single(std::uint32_t id, Tally covered) {
     const Tally visible = std::exchange(visible_[id], Tally{0});
@@ -122,20 +163,6 @@ void VisibilityAccumulator::take_single(std::uint32_t id, Tally covered) {
         const std::uint32_t patch = item_of_id_[id] - item_first_patch;
         share_[patch] = 1.0f;
         evidence_[patch] = visibility_clear;
-    }
-}
-
-void VisibilityAccumulator::add_visible(const std::uint32_t* ids, const DeltaFormFactors& weights) {
-    const std::uint32_t resolution = weights.resolution();
-    Tally* const visible = visible_.data();
-    for (std::uint32_t y = 0; y < weights.rows(); ++y) {
-        const std::uint32_t* const row = ids + std::size_t{y} * resolution;
-        const std::uint32_t* const prefix = weights.prefix_row(y).data();
-        std::uint32_t begin = 0;
-        for_each_run_end(row, resolution, [&](std::uint32_t last) {
-            visible[row[last]] += Tally{prefix[last + 1] - prefix[begin]} << 32 | (last + 1 - begin);
-            begin = last + 1;
-        });
     }
 }
 

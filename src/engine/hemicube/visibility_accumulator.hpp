@@ -15,23 +15,27 @@
 
 namespace hemi {
 
-/// Makes rows of visibility: V = visible / (visible + hidden) delta form factors, on the same
-/// texels. What is visible is in the item buffers; what a polygon's front covers but others hide is known
-/// from the CPU rasteriser's coverage, or found by scanning the spans of its outline. Memory: 16 bytes a draw
-/// id and 16 a cell of the largest polygon.
+/// Makes rows of visibility: V = visible / (visible + hidden) delta form factors, on the same texels. What is
+/// visible is in the item buffers; what a polygon's front covers but others hide is known from the coverage
+/// that the CPU rasteriser or the GPU counts, or found by scanning the spans of its outline. Memory: 16 bytes
+/// a draw id and 16 a cell of the largest polygon.
 class VisibilityAccumulator {
 public:
     /// @param list  must outlive this.
     VisibilityAccumulator(const DrawList& list, std::uint32_t patches);
 
-    /// Adds one hemicube.
-    /// @param ids    3·resolution rows of `resolution` draw ids
+    /// Adds what is visible in one hemicube of OpenGL.
+    /// @param ids  3·resolution rows of `resolution` draw ids
+    void add(const std::uint32_t* ids, const DeltaFormFactors& weights);
+    /// Adds what is hidden in it.
     /// @param views  what the eye would see if nothing hid it
-    void add(const std::uint32_t* ids, const DeltaFormFactors& weights, const FrontViews& views,
-             const EyePoint& eye, const EyeFrame& frame);
-
+    void add_hidden(const std::uint32_t* ids, const DeltaFormFactors& weights, const FrontViews& views,
+                    const EyePoint& eye, const EyeFrame& frame);
     /// The row so far, and starts the next one. The view is valid until the next call.
     [[nodiscard]] VisibilityRow take();
+    /// The row of hemicubes of which add() added what is visible.
+    /// @param covered  for each draw id the texels that it covers, hidden or not, in all of them
+    [[nodiscard]] VisibilityRow take(std::span<const TexelTally> covered);
 
     /// Adds one hemicube of the CPU rasteriser, whose coverage is taken with the row.
     /// @param ids  in the order of TexelTiles
@@ -43,7 +47,6 @@ private:
     using Tally = TexelTally;
     using Side = Coverage::Side; ///< one side of a polygon that some eye of the row saw
 
-    void add_visible(const std::uint32_t* ids, const DeltaFormFactors& weights);
     void add_hidden(const std::uint32_t* ids, const DeltaFormFactors& weights, const FrontViews& views,
                     const FrontViews::View& view, const EyePoint& eye, const EyeFrame& frame);
     void spans(std::span<const FrontViews::Point> outline, std::uint32_t face, std::uint32_t resolution);

@@ -30,7 +30,7 @@ std::array<int, 4> box_of_projected(std::span<const FaceVertex> outline, float l
 void Projection::set(const EyePoint& eye, const EyeFrame& frame) {
     eye_ = &eye;
     frame_ = &frame;
-    const auto split = scene_.split(eye.position);
+    const auto split = scene_.coordinates.split(eye.position);
     high_ = split.high;
     low_ = split.low;
     const std::array<const Vec3*, 3> axes{&frame.x, &frame.y, &frame.z};

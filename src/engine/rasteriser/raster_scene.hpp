@@ -2,6 +2,7 @@
 
 #include "engine/hemicube/draw_list.hpp"
 #include "engine/hemicube/grid_map.hpp"
+#include "engine/hemicube/raster_coordinates.hpp"
 #include "hemi/core/geometry.hpp"
 
 #include <array>
@@ -41,10 +42,6 @@ struct TriangleCluster {
 
 /// The draw list as the CPU rasteriser takes it, shared by all threads: polygons that show one draw id as
 /// clusters of triangles, and the polygons whose draw id depends on the texel.
-///
-/// Raster coordinates are (p - origin)·scale, of magnitude 1 and less. Vertices are kept as sums of two
-/// floats, so that their difference to a sample point has the relative precision of a float however close
-/// the two are.
 struct RasterScene {
     explicit RasterScene(const DrawList& the_list);
 
@@ -52,15 +49,8 @@ struct RasterScene {
     static constexpr std::uint32_t group_size = 16;   ///< most grid polygons of a group
     static constexpr std::uint32_t corner_slots = 8;
 
-    /// A position as two floats.
-    struct SplitPosition {
-        std::array<float, 3> high, low;
-    };
-    [[nodiscard]] SplitPosition split(const Vec3& position) const;
-
     const DrawList& list;
-    Vec3 origin{0.0};
-    double scale = 1.0; ///< a power of two
+    RasterCoordinates coordinates;
 
     std::vector<TriangleCluster> clusters;
     std::array<CacheLineVector<float>, 3> vertex_high; ///< x, y, z; 64 slots a cluster

@@ -47,7 +47,7 @@ public:
         : scene_(scene), projection_(scene, tiles.resolution()), target_(tiles), parts_(scene, projection_),
           texels_(projection_.texels()), half_(projection_.half()), guard_(projection_.guard()),
           slack_(std::max(1e-3f, 2e-6f * texels_)), tolerance_(scene.list.tolerance),
-          near_plane_(static_cast<float>(tolerance_ * scene.scale) + 2e-6f) {}
+          near_plane_(static_cast<float>(tolerance_ * scene.coordinates.scale) + 2e-6f) {}
 
     void draw(const EyePoint& eye, const EyeFrame& frame, const TileWeights* weights,
               Coverage* coverage) override {
@@ -441,7 +441,7 @@ private:
             outline[k] = projection_.on_face(face, at);
             corners[k] = Vec3(at[0], at[1], at[2]);
         }
-        if (highest <= static_cast<float>(tolerance_ * scene_.scale)) {
+        if (highest <= static_cast<float>(tolerance_ * scene_.coordinates.scale)) {
             return; // on or behind the eye's plane
         }
         const Vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -488,7 +488,7 @@ private:
             return;
         }
         points_.set_corners(scene_, projection_, drawn);
-        if (points_.highest() <= static_cast<float>(tolerance_ * scene_.scale)) {
+        if (points_.highest() <= static_cast<float>(tolerance_ * scene_.coordinates.scale)) {
             return; // on or behind the eye's plane
         }
         const std::array<float, 3>& eye = projection_.high();
@@ -536,7 +536,7 @@ private:
                     const Vec3& normal = list.polygons[drawn.polygon].normal;
                     height = projection_.height_above(drawn.polygon);
                     inverse = projection_.on_texels(face, projection_.in_frame(normal),
-                                                    -1.0 / (height * scene_.scale));
+                                                    -1.0 / (height * scene_.coordinates.scale));
                     shown = shown_cells(scene_, projection_, face, grid, front, inverse);
                     ready = true;
                 }

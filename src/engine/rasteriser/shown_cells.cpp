@@ -19,7 +19,8 @@ Shown shown_cells(const RasterScene& scene, const Projection& projection, int fa
     // u at the eye and its change along a ray; both over depth.
     const auto over_depth = [&](const Vec3& gradient, double at_origin) {
         const double at_eye = at_origin + glm::dot(offset, gradient);
-        const Affine along = projection.on_texels(face, projection.in_frame(gradient), 1.0 / scene.scale);
+        const Affine along =
+            projection.on_texels(face, projection.in_frame(gradient), 1.0 / scene.coordinates.scale);
         return Affine{at_eye * inverse.c + along.c, at_eye * inverse.x + along.x,
                       at_eye * inverse.y + along.y};
     };
