@@ -31,6 +31,8 @@ struct PolygonRecord {
     float twist_u, twist_v;
 };
 static_assert(sizeof(PolygonRecord) == 64);
+static_assert(offsetof(FaceView, eye_low) == 64 && offsetof(FaceView, own_polygon) == 76 &&
+              offsetof(FaceView, grain) == 96);
 
 /// GridMap of hemicube.vert.
 struct GridMapRecord {
