@@ -15,6 +15,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
 namespace hemi::cli {
 
 namespace {
@@ -96,32 +100,39 @@ Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loade
     return {std::move(found.factors), std::move(found.solution)};
 }
 
-void write_files(const SolveArguments& arguments, const LoadedScene& loaded, const Solution& solution) {
-    if (arguments.patches) {
-        io::write_patches_csv(*arguments.patches, loaded.mesh);
-    }
-    if (arguments.result) {
+/// Whether a file of that name is replaced when it is written again; a pipe would get both.
+bool is_replaced(const std::filesystem::path& path) {
+    std::error_code unknown;
+    return path != "-" &&
+           (!std::filesystem::exists(path, unknown) || std::filesystem::is_regular_file(path, unknown));
+}
+
+/// @param only_replaced  leaves out what cannot be written again
+void write_solution(const SolveArguments& arguments, const LoadedScene& loaded, const Solution& solution,
+                    bool only_replaced) {
+    const auto wanted = [only_replaced](const std::optional<std::filesystem::path>& path) {
+        return path && (!only_replaced || is_replaced(*path));
+    };
+    if (wanted(arguments.result)) {
         io::write_hres(*arguments.result, {loaded.scene, arguments.scene.subdivision, solution});
     }
-    if (arguments.radiosity) {
+    if (wanted(arguments.radiosity)) {
         io::write_radiosity_csv(*arguments.radiosity, loaded.mesh, loaded.scene.channels, solution.exitance,
                                 solution.irradiance, solution.radiosity, radiosity_errors(solution));
     }
 }
 
-/// Adds what the patches' size does, unless no estimate is wanted; then files are written again, with it.
+/// Adds what the patches' size does, unless no estimate is wanted.
 void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loaded,
                          const FormFactors& factors, Observer& observer, Solution& solution,
                          Seconds& seconds) {
     if (!arguments.rows.factors.estimate_error || !solution.error) {
         return;
     }
-    solution.patch_size_error = estimate_patch_size_error(loaded.scene, loaded.mesh, factors, solution,
-                                                          arguments.rows.factors, observer);
-    if (solution.patch_size_error) {
-        seconds["estimate"] += solution.patch_size_error->seconds;
-        write_files(arguments, loaded, solution);
-    }
+    const Stopwatch watch;
+    solution.patch_size_error = try_estimate_patch_size_error(loaded.scene, loaded.mesh, factors, solution,
+                                                              arguments.rows.factors, observer);
+    seconds["estimate"] += watch.seconds();
 }
 
 /// @return report of the picture; empty where none was asked for
@@ -157,10 +168,19 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     const RowSums sums = row_sums(factors.matrix);
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
     report_buried(sums, terminal);
-    write_files(arguments, loaded, solution);
+    if (arguments.patches) {
+        io::write_patches_csv(*arguments.patches, loaded.mesh);
+    }
+    // Stored before the estimate, whatever becomes of that, and again with it.
+    write_solution(arguments, loaded, solution, true);
     const Report picture = draw(arguments, loaded, solution, seconds);
-    estimate_patch_size(arguments, loaded, factors, observer, solution,
-                        seconds); // when what was found is stored
+    try {
+        estimate_patch_size(arguments, loaded, factors, observer, solution, seconds);
+    } catch (const Cancelled&) {
+        write_solution(arguments, loaded, solution, false);
+        throw;
+    }
+    write_solution(arguments, loaded, solution, false);
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
     Report report = solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, seconds);
     report.text += picture.text;

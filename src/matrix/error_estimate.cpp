@@ -365,21 +365,26 @@ estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix
 }
 
 IrradianceErrors irradiance_errors(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
-                                   std::uint32_t channels, std::span<const double> radiosity) {
-    if (radiosity.size() != std::size_t{factors.size()} * channels) {
+                                   std::uint32_t channels, std::span<const double> radiosity,
+                                   std::span<const double> environment) {
+    if (radiosity.size() != std::size_t{factors.size()} * channels ||
+        (!environment.empty() && environment.size() != channels)) {
         throw InvalidArgument(fmt::format("{} radiosities for {} patches of {} channels", radiosity.size(),
                                           factors.size(), channels));
     }
     IrradianceErrors result{sampled_rows(factors, reference), {}};
     result.errors.resize(result.rows.size() * channels);
     for (std::size_t k = 0; k < result.rows.size(); ++k) {
-        compare(factors.row(result.rows[k]), reference.row(result.rows[k]), {},
-                [&](std::uint32_t j, double difference, double /*should*/) {
-                    for (std::uint32_t c = 0; c < channels; ++c) {
-                        result.errors[k * channels + c] +=
-                            difference * radiosity[std::size_t{j} * channels + c];
-                    }
-                });
+        const RowView row = factors.row(result.rows[k]);
+        const RowView better = reference.row(result.rows[k]);
+        for (std::uint32_t c = 0; c < channels && !environment.empty(); ++c) {
+            result.errors[k * channels + c] = (row.environment - better.environment) * environment[c];
+        }
+        compare(row, better, {}, [&](std::uint32_t j, double difference, double /*should*/) {
+            for (std::uint32_t c = 0; c < channels; ++c) {
+                result.errors[k * channels + c] += difference * radiosity[std::size_t{j} * channels + c];
+            }
+        });
     }
     return result;
 }

@@ -14,7 +14,7 @@ constexpr std::uint32_t most_columns = 16;
 } // namespace
 
 GroupImportance::GroupImportance(const FormFactors& factors, std::span<const double> reflectance,
-                                 std::uint32_t channels, const SweepWatcher& go_on)
+                                 std::uint32_t channels, const Progress& progress)
     : groups_(static_cast<std::uint32_t>(factors.groups.size())), channels_(channels) {
     const std::uint32_t size = factors.matrix.size();
     const std::size_t columns = std::size_t{groups_} * channels_;
@@ -43,7 +43,7 @@ GroupImportance::GroupImportance(const FormFactors& factors, std::span<const dou
         problem.areas = factors.areas;
         SolverSettings settings;
         settings.tolerance = tolerance;
-        settings.watch = go_on;
+        settings.watch = [&](std::uint32_t, double, const auto&) { return progress(first, groups_); };
         const Solution solved = solve_radiosity(problem, settings);
         for (std::uint32_t i = 0; i < size; ++i) {
             std::copy_n(solved.radiosity.begin() + static_cast<std::ptrdiff_t>(std::size_t{i} * width), width,
@@ -51,6 +51,13 @@ GroupImportance::GroupImportance(const FormFactors& factors, std::span<const dou
                             static_cast<std::ptrdiff_t>(i * columns + std::size_t{first} * channels_));
         }
     }
+}
+
+std::uint64_t GroupImportance::memory_bytes(std::uint64_t patches, std::uint64_t groups,
+                                            std::uint64_t channels) {
+    constexpr std::uint64_t fields = 20; // of conjugate gradients, see solve_radiosity()
+    const std::uint64_t width = std::max<std::uint64_t>(most_columns, channels);
+    return sizeof(double) * patches * (groups * channels + fields * width);
 }
 
 } // namespace hemi

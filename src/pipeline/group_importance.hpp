@@ -27,9 +27,14 @@ public:
     /// @param factors      N known rows, or those of patches that reflect
     /// @param reflectance  N·channels
     /// @param channels     to solve for
-    /// @throws Cancelled by `go_on`
+    /// @param progress     gets the groups that are done, at every iteration
+    /// @throws Cancelled by `progress`; NotConverged
     GroupImportance(const FormFactors& factors, std::span<const double> reflectance, std::uint32_t channels,
-                    const SweepWatcher& go_on);
+                    const Progress& progress);
+
+    /// About what it takes to make one.
+    [[nodiscard]] static std::uint64_t memory_bytes(std::uint64_t patches, std::uint64_t groups,
+                                                    std::uint64_t channels);
 
     [[nodiscard]] std::uint32_t groups() const noexcept { return groups_; }
     /// Of a patch for all groups: channel c of group g at [g·channels + c].

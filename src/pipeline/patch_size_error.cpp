@@ -226,19 +226,15 @@ public:
     /// @param weight  how many of its kind the value stands for
     void add(double value, double weight) {
         sum_ += weight * value;
-        squares_ += weight * weight * value * value;
-        count_ += 1.0;
+        variance_ += weight * (weight - 1.0) * value * value;
     }
-    /// The sum's magnitude and the standard error that it has, together.
-    [[nodiscard]] double with_standard_error() const {
-        const double spread = count_ > 1.0 ? squares_ - sum_ * sum_ / count_ : 0.0;
-        return std::sqrt(sum_ * sum_ + std::max(0.0, spread * count_ / (count_ - 1.0)));
-    }
+    /// The sum's magnitude and its standard error, together. What was drawn for certain has none; of others
+    /// the mean is taken to be 0, which is the safe side.
+    [[nodiscard]] double with_standard_error() const { return std::sqrt(sum_ * sum_ + variance_); }
 
 private:
     double sum_ = 0.0;
-    double squares_ = 0.0;
-    double count_ = 0.0;
+    double variance_ = 0.0;
 };
 
 class PatchSizeEstimator {
@@ -286,7 +282,7 @@ public:
         };
         const FormFactorMatrix factors = compute_visibility_weighted(
             *engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure, go_on, go_on, go_on);
-        find_importance(go_on);
+        find_importance(bytes_of(rows.size(), fine.size()), settings, observer);
         std::vector<Errors> vertices(channels_);
         std::vector<Errors> field(channels_);
         std::vector<SampledSum> groups(std::size_t{importance_.groups()} * channels_);
@@ -398,12 +394,29 @@ private:
     }
 
     /// Importance of every patch for every group, where there are not too many groups.
-    void find_importance(const Progress& go_on) {
-        if (factors_.groups.size() > GroupImportance::most_groups) {
+    /// @param bytes  that are needed besides
+    void find_importance(std::uint64_t bytes, const FactorSettings& settings, Observer& observer) {
+        const std::size_t groups = factors_.groups.size();
+        if (groups > GroupImportance::most_groups) {
+            observer.detail(fmt::format("errors of groups are not estimated: there are {}, more than {}",
+                                        groups, GroupImportance::most_groups));
             return;
         }
-        importance_ = GroupImportance(factors_, reflectance_, channels_,
-                                      [&go_on](std::uint32_t, double, const auto&) { return go_on(0, 1); });
+        bytes += GroupImportance::memory_bytes(mesh_.size(), groups, channels_);
+        if (bytes > memory_limit(settings)) {
+            observer.detail(
+                fmt::format("errors of groups are not estimated: that needs about {}", memory_text(bytes)));
+            return;
+        }
+        try {
+            importance_ = GroupImportance(factors_, reflectance_, channels_,
+                                          [&observer](std::size_t done, std::size_t total) {
+                                              return observer.progress(Phase::error_estimate, done, total);
+                                          });
+        } catch (const NotConverged& error) {
+            observer.detail(fmt::format("errors of groups are not estimated: {}", error.what()));
+            return;
+        }
         RadiosityProblem problem;
         problem.factors = &factors_.matrix;
         problem.channels = channels_;
@@ -452,8 +465,10 @@ private:
         if (importance_.groups() == 0) {
             return {};
         }
-        std::vector<double> light(sums.size(), 0.0); // irradiance times area, of the rows that are known
+        std::vector<double> light(sums.size(), 0.0); // irradiance times area
+        std::vector<bool> known(importance_.groups(), true);
         for (std::uint32_t i = 0; i < mesh_.size(); ++i) {
+            known[mesh_.group(i)] = known[mesh_.group(i)] && factors_.matrix.known(i);
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 light[std::size_t{mesh_.group(i)} * channels_ + c] +=
                     mesh_.areas()[i] * irradiance_[at(i, c)];
@@ -464,7 +479,7 @@ private:
         for (std::size_t g = 0; g < errors.size(); ++g) {
             bool lit = false;
             for (std::size_t k = g * channels_; k < (g + 1) * channels_; ++k) {
-                if (light[k] > 0.0) {
+                if (known[g] && light[k] > 0.0) {
                     lit = true;
                     errors[g].patch_size =
                         std::max(errors[g].patch_size,
@@ -485,8 +500,8 @@ private:
     /// [g·channels + c].
     [[nodiscard]] std::vector<SampledSum> factor_error_sums() const {
         std::vector<SampledSum> sums(std::size_t{importance_.groups()} * channels_);
-        const IrradianceErrors errors =
-            irradiance_errors(factors_.matrix, factors_.reference, channels_, solution_.radiosity);
+        const IrradianceErrors errors = irradiance_errors(factors_.matrix, factors_.reference, channels_,
+                                                          solution_.radiosity, scene_.environment);
         double known = 0.0;
         for (std::uint32_t i = 0; i < mesh_.size(); ++i) {
             known += factors_.matrix.known(i) ? 1.0 : 0.0;
@@ -580,6 +595,21 @@ std::optional<PatchSizeError> estimate_patch_size_error(const Scene& scene, cons
                                     mesh.size(), error->seconds));
     }
     return error;
+}
+
+std::optional<PatchSizeError>
+try_estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
+                              const Solution& solution, const FactorSettings& settings, Observer& observer) {
+    std::string reason;
+    try {
+        return estimate_patch_size_error(scene, mesh, factors, solution, settings, observer);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& error) {
+        reason = error.what();
+    }
+    observer.warning(fmt::format("what the patches' size does is not estimated: {}", reason), "");
+    return std::nullopt;
 }
 
 std::optional<SolutionError> solution_error(const Solution& solution) {

@@ -216,8 +216,8 @@ SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectan
             solve_radiosity(factors.factors, std::move(values), settings, observer, irradiance);
         if (estimate && result.scene_values && solution.error) {
             solution.patch_size_error =
-                estimate_patch_size_error(factors.scene->scene, factors.scene->mesh, factors.factors,
-                                          solution, factors.settings, observer);
+                try_estimate_patch_size_error(factors.scene->scene, factors.scene->mesh, factors.factors,
+                                              solution, factors.settings, observer);
         }
         return solution;
     });

@@ -3,6 +3,11 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <sys/stat.h>
+#include <thread>
 
 using namespace hemi::cli_test;
 
@@ -191,8 +196,25 @@ TEST_CASE("solve: a dash writes to stdout and the summary goes to stderr", "[cli
 
     const Outcome table = run_hemi(quick({"solve", scene, "--radiosity", "-", "-q"}));
     CHECK(table.out.rfind("index,group,area,cx,cy,cz,nx,ny,nz,exitance_red", 0) == 0);
-    CHECK(table.out_has("radiosity_blue\n0,floor,"));
+    CHECK(table.out_has("radiosity_blue,error_red,error_green,error_blue\n0,floor,"));
     CHECK(std::count(table.out.begin(), table.out.end(), '\n') == 55);
+}
+
+TEST_CASE("solve: a named pipe gets its table once", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(3));
+    const std::string pipe = directory.path("table.csv");
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    std::string table;
+    std::thread reader([&] {
+        std::ifstream stream(pipe);
+        table.assign(std::istreambuf_iterator<char>(stream), {});
+    });
+    const Outcome solved = run_hemi(quick({"solve", scene, "--radiosity", pipe, "-q"}));
+    reader.join();
+    CHECK(solved.status == 0);
+    CHECK(std::count(table.begin(), table.end(), '\n') == 55);
+    CHECK(table.find("error_blue\n") != std::string::npos);
 }
 
 TEST_CASE("convert: a csv keeps the number of patches", "[cli]") {

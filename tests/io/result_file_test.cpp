@@ -126,6 +126,7 @@ TEST_CASE("HRES: the patches are those that were solved, however they were asked
         a.solution.back_face_share.resize(mesh.size());
         a.solution.factor_error->rows.resize(mesh.size());
         a.solution.error->patches.resize(mesh.size() * 2);
+        a.solution.patch_size_error->patches.resize(mesh.size() * 2);
         io::write_hres(folder / "a.hres", a);
         const io::ResultFile b = io::read_hres(folder / "a.hres");
         const PatchMesh again(b.scene, b.subdivision);
@@ -165,6 +166,11 @@ TEST_CASE("HRES: lies with a right checksum are noticed, and cost no memory", "[
     io::write_hres(folder / "a.hres", sample());
     const std::string bytes = io::read_file(folder / "a.hres");
     const std::size_t counts = 12 * 8; // of the first surface
+    const auto head = [&bytes](const std::string& text) {
+        const std::size_t at = bytes.find(text);
+        REQUIRE(at != std::string::npos);
+        return at - chunk_start(bytes, 0) - 16;
+    };
     struct Bad {
         int chunk;
         std::size_t offset;
@@ -173,6 +179,9 @@ TEST_CASE("HRES: lies with a right checksum are noticed, and cost no memory", "[
     };
     const std::vector<Bad> table{
         {0, 2, "nome", "\"name\" is missing"},
+        {0, head("\"groups\":[[0.01") + 21, std::string(5, ' '), "errors of 1 groups; the scene has 2"},
+        {0, head("\"p95\":0.3}") + 6, "-3 ", "must not be negative"},
+        {0, head("\"error\":{") + 1, "erroR", "without errors from the form factors"},
         {1, 0, raw(std::nan("")), "vertex 0 is not finite"},
         {1, 0, raw(3.0), "surface 0 (group \"floor\"): not convex"},
         {1, counts, raw(5u), "chunk SURF: a surface of 5 vertices"},
@@ -195,6 +204,10 @@ TEST_CASE("HRES: arrays that do not fit and values that are not finite are refus
           "[io]") {
     const Folder folder;
     io::ResultFile result = sample();
+    result.solution.patch_size_error->groups.pop_back();
+    require_parts(message_of<InvalidArgument>([&] { io::write_hres(folder / "a.hres", result); }),
+                  {"errors of 1 groups; the scene has 2"});
+    result = sample();
     result.solution.radiosity.pop_back();
     require_parts(message_of<InvalidArgument>([&] { io::write_hres(folder / "a.hres", result); }),
                   {"radiosity"});

@@ -64,7 +64,7 @@ estimate_radiosity_error(const FormFactorMatrix& factors, const FormFactorMatrix
                          std::span<const double> reflectance, std::span<const double> exitance,
                          std::span<const double> radiosity, std::span<const std::uint32_t> columns = {});
 
-/// What the irradiances of sampled rows are off by, sum_j (F(i, j) - F*(i, j)) B_j.
+/// What the irradiances of sampled rows are off by, sum_j (F(i, j) - F*(i, j)) B_j + (e_i - e*_i) B_env.
 struct IrradianceErrors {
     std::vector<std::uint32_t> rows; ///< those that are known in both matrices, ascending
     std::vector<double> errors;      ///< channel c of rows[k] at [k·channels + c]
@@ -74,9 +74,11 @@ struct IrradianceErrors {
 /// @param reference  N rows, some of them known
 /// @param channels   of the radiosity
 /// @param radiosity  N·channels, channel c of patch i at [i·channels + c]
+/// @param environment  B_env, channels; empty: zero
 /// @throws InvalidArgument as estimate_factor_error, and for spans that do not fit.
 [[nodiscard]] IrradianceErrors irradiance_errors(const FormFactorMatrix& factors,
                                                  const FormFactorMatrix& reference, std::uint32_t channels,
-                                                 std::span<const double> radiosity);
+                                                 std::span<const double> radiosity,
+                                                 std::span<const double> environment);
 
 } // namespace hemi

@@ -20,9 +20,11 @@ namespace hemi {
 /// is added. As a picture shows it, it errs by f less the interpolated vertex values. Patches of the sample
 /// count by the inverse of their probability.
 ///
-/// The mean irradiance of a group errs by the sum of A rho (G(s) - mean of G) z(s) over its area, z being the
-/// importance of light that leaves s for the group: by an adjoint solution a group, gathered with the same
-/// rows. To what the sample shows its own standard error is added.
+/// The mean irradiance of a group errs by the sum of A (G(s) - G_i) (h_i + rho_i z(s)) over all s in patches
+/// i, over the group's area. h is 1 on the group and else 0; z is the importance of light that leaves s for
+/// the group: by an adjoint solution a group, gathered with the same rows. To what the sample shows its own
+/// standard error is added. Patches that reflect nothing are not in the sample: of a group of such patches
+/// only what wrong light from others does is known.
 ///
 /// Not included: errors of form factors; what the errors of other patches change in a patch's mean, which is
 /// of second order; whatever four rows do not see, such as light that falls through a gap between them.
@@ -44,6 +46,14 @@ namespace hemi {
 estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
                           const Solution& solution, const FactorSettings& settings,
                           Observer& observer = no_observer());
+
+/// The same where the solution must not be lost: what cannot be estimated is told to the observer as a
+/// warning.
+/// @return nothing then, too
+/// @throws Cancelled
+[[nodiscard]] std::optional<PatchSizeError>
+try_estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
+                              const Solution& solution, const FactorSettings& settings, Observer& observer);
 
 /// All of what a solution is off by, from estimates of its parts, which are taken to be independent.
 struct SolutionError {

@@ -153,6 +153,27 @@ PatchSizeError read_patch_size(const JsonNode& node) {
     return error;
 }
 
+/// Calls `fail` where errors from the patches' size do not fit the scene, or the errors of form factors.
+template <class Fail>
+void check_patch_size(const ResultFile& result, const Fail& fail) {
+    const std::optional<PatchSizeError>& error = result.solution.patch_size_error;
+    if (!error) {
+        return;
+    }
+    if (!result.solution.error) {
+        fail("errors from the patches' size without errors from the form factors");
+    }
+    if (!error->groups.empty() && error->groups.size() != result.scene.groups.size()) {
+        fail(fmt::format("errors of {} groups; the scene has {}", error->groups.size(),
+                         result.scene.groups.size()));
+    }
+    for (const FieldError& field : {error->vertices, error->field}) {
+        if (!(field.rms >= 0.0) || !(field.percentile95 >= 0.0)) {
+            fail(fmt::format("an error of {} and {}; must not be negative", field.rms, field.percentile95));
+        }
+    }
+}
+
 /// What the header says of sizes.
 struct Sizes {
     std::uint64_t surfaces = 0;
@@ -261,6 +282,7 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
         check_array(result.solution.error->patches, values, "error of the radiosity");
     }
 
+    check_patch_size(result, [](const std::string& what) { throw InvalidArgument(what); });
     if (result.solution.patch_size_error) {
         check_array(result.solution.patch_size_error->patches, values, "error from the patches' size");
     }
@@ -288,6 +310,7 @@ ResultFile read_hres(const std::filesystem::path& path) {
     ResultFile result;
     const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
     const Sizes sizes = read_header(JsonNode(document, reader.file()), result);
+    check_patch_size(result, [&reader](const std::string& what) { reader.fail(what); });
     read_surfaces(reader.chunk("SURF"), sizes, result.scene);
     try {
         validate(result.scene);
