@@ -284,6 +284,23 @@ TEST_CASE("patch size: can be cancelled, and is left out where the memory is sho
     CHECK(warned.settings == std::vector<std::string>{"max-memory"});
 }
 
+TEST_CASE("patch size: an estimate that fails is a warning where the solution must not be lost",
+          "[pipeline][gl]") {
+    const Scene scene = lit_room(2, 0.5, 0.3);
+    const Solved coarse = solved(scene, Preset::fast);
+    class Warned : public Observer {
+    public:
+        void warning(std::string_view message, std::string_view) override { messages.emplace_back(message); }
+        std::vector<std::string> messages;
+    } warned;
+    FactorSettings nowhere = settings_of(Preset::fast);
+    nowhere.engine.device = "egl:99";
+    CHECK_FALSE(
+        try_estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution, nowhere, warned));
+    REQUIRE(warned.messages.size() == 1);
+    CHECK_THAT(warned.messages[0], Catch::Contains("is not estimated") && Catch::Contains("99"));
+}
+
 TEST_CASE("solution error: parts combine as the root of the sum of squares", "[pipeline]") {
     Solution solution;
     solution.radiosity = {2.0, 1.0};
