@@ -6,6 +6,7 @@
 #include "engine/hemicube/row_accumulator.hpp"
 #include "engine/hemicube/visibility_accumulator.hpp"
 #include "gl/context.hpp"
+#include "gl/objects.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +38,7 @@ std::uint32_t batch_slots(std::uint32_t resolution, bool software) {
     return resolution <= 256 ? 2 : 1;
 }
 
-/// Whether the GPU transforms and clips the polygons: hardware does, unless the environment variable
+/// Whether the GPU transforms and clips the polygons: hardware that can does, unless the environment variable
 /// HEMI_TRANSFORM says otherwise, which tests do.
 bool transforms_on_gpu(bool software) {
     const char* const wanted = std::getenv("HEMI_TRANSFORM");
@@ -45,7 +46,13 @@ bool transforms_on_gpu(bool software) {
     if (where != "" && where != "cpu" && where != "gpu") {
         throw InvalidArgument(fmt::format("HEMI_TRANSFORM={}; must be cpu or gpu", where));
     }
-    return where.empty() ? !software : where == "gpu";
+    if (!where.empty()) {
+        return where == "gpu";
+    }
+    constexpr GLint needed_blocks = 2; // of vertex shaders; OpenGL grants none
+    GLint blocks = 0;
+    glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &blocks);
+    return !software && blocks >= needed_blocks;
 }
 
 } // namespace
