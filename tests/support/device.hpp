@@ -12,14 +12,22 @@ namespace hemi::test {
     return device != nullptr ? device : "osmesa";
 }
 
-/// Has OpenGL transform polygons on the CPU ("cpu") or the GPU ("gpu") whatever the device, until it goes out
-/// of scope.
-class WithTransform {
+/// Sets an environment variable until it goes out of scope.
+class WithVariable {
 public:
-    explicit WithTransform(const char* where) { setenv("HEMI_TRANSFORM", where, 1); }
-    ~WithTransform() { unsetenv("HEMI_TRANSFORM"); }
-    WithTransform(const WithTransform&) = delete;
-    WithTransform& operator=(const WithTransform&) = delete;
+    WithVariable(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
+    ~WithVariable() { unsetenv(name_); }
+    WithVariable(const WithVariable&) = delete;
+    WithVariable& operator=(const WithVariable&) = delete;
+
+private:
+    const char* name_;
+};
+
+/// Has OpenGL transform polygons on the CPU ("cpu") or the GPU ("gpu") whatever the device.
+class WithTransform : WithVariable {
+public:
+    explicit WithTransform(const char* where) : WithVariable("HEMI_TRANSFORM", where) {}
 };
 
 } // namespace hemi::test
