@@ -10,6 +10,7 @@
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/radiosity.hpp"
+#include "hemi/pipeline/vertex_gather.hpp"
 
 #include <fmt/format.h>
 
@@ -31,9 +32,9 @@ std::vector<float> flat_corners(const std::vector<float>& patches) {
 
 void write_baked(const BakeArguments& arguments, const Outputs& outputs, const Scene& scene,
                  const PatchMesh& mesh, const Solution& solution, const Terminal& terminal) {
-    const PictureMesh picture =
-        make_picture_mesh(mesh, solution.channels, solution.radiosity, solution.back_face_share,
-                          channels_to_show(scene.channels, arguments.picture.show));
+    const PictureMesh picture = make_picture_mesh(
+        mesh, solution.channels, solution.radiosity, solution.back_face_share,
+        channels_to_show(scene.channels, arguments.picture.show), solution.vertex_radiosity);
     const double exposure = arguments.picture.exposure
                                 ? *arguments.picture.exposure
                                 : automatic_exposure(mesh, picture, solution.back_face_share,
@@ -64,8 +65,11 @@ ExitStatus bake_scene(const BakeArguments& arguments, const Outputs& outputs, co
     prepare_form_factors(factors, settings.repair);
     const EnclosureFinding enclosure = find_leaks(factors, arguments.rows.max_row_error);
     report_buried(row_sums(factors.matrix), terminal);
-    const Solution solution =
+    Solution solution =
         solve_radiosity(loaded.scene, loaded.mesh, factors, arguments.solver, observer, false);
+    if (!arguments.picture.flat) {
+        gather_at_vertices(loaded.scene, loaded.mesh, settings, arguments.gather, solution, observer);
+    }
     write_baked(arguments, outputs, loaded.scene, loaded.mesh, solution, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, arguments.rows.max_row_error,
                  terminal);

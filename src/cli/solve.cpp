@@ -12,6 +12,7 @@
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/pipeline/accuracy.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
+#include "hemi/pipeline/vertex_gather.hpp"
 
 #include <fmt/format.h>
 
@@ -135,6 +136,18 @@ void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loa
     seconds["estimate"] += watch.seconds();
 }
 
+/// Finds the radiosity at vertices where an output holds it.
+void gather(const SolveArguments& arguments, const LoadedScene& loaded, Observer& observer,
+            Solution& solution, Seconds& seconds) {
+    if (!arguments.result && (!arguments.picture.output || arguments.picture.flat)) {
+        return;
+    }
+    const Stopwatch watch;
+    gather_at_vertices(loaded.scene, loaded.mesh, arguments.rows.factors, arguments.gather, solution,
+                       observer);
+    seconds["gather"] = watch.seconds();
+}
+
 /// @return report of the picture; empty where none was asked for
 Report draw(const SolveArguments& arguments, const LoadedScene& loaded, const Solution& solution,
             Seconds& seconds) {
@@ -153,7 +166,7 @@ Report draw(const SolveArguments& arguments, const LoadedScene& loaded, const So
 ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     check_input(arguments);
     const Outputs outputs = check_outputs(arguments);
-    Seconds seconds({"load", "factors", "repair", "solve", "estimate", "search", "render"});
+    Seconds seconds({"load", "factors", "repair", "solve", "gather", "estimate", "search", "render"});
     const LoadedScene loaded = load_scene(arguments.scene, terminal);
     seconds["load"] = loaded.seconds;
     if (arguments.picture.output) { // tested before the work
@@ -171,10 +184,12 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     if (arguments.patches) {
         io::write_patches_csv(*arguments.patches, loaded.mesh);
     }
-    // Stored before the estimate, whatever becomes of that, and again with it.
+    // Stored before what may be cancelled, and again with it.
     write_solution(arguments, loaded, solution, true);
-    const Report picture = draw(arguments, loaded, solution, seconds);
+    Report picture;
     try {
+        gather(arguments, loaded, observer, solution, seconds);
+        picture = draw(arguments, loaded, solution, seconds);
         estimate_patch_size(arguments, loaded, factors, observer, solution, seconds);
     } catch (const Cancelled&) {
         write_solution(arguments, loaded, solution, false);

@@ -113,6 +113,7 @@ private:
         input.subdivision = options.subdivision;
         input.factor_settings = arguments_.rows.factors;
         input.solver = arguments_.solver;
+        input.gather = arguments_.gather;
         input.observer = std::make_shared<TerminalObserver>(terminal_);
         return input;
     }

@@ -47,16 +47,21 @@ double area_percentile(std::vector<std::pair<double, double>> luminance_and_area
 
 PictureMesh make_picture_mesh(const PatchMesh& mesh, std::uint32_t channels,
                               std::span<const double> radiosity, std::span<const double> blocked,
-                              std::array<std::uint32_t, 3> show) {
-    return make_picture_mesh(mesh, SmoothSurfaces(mesh), channels, radiosity, blocked, show);
+                              std::array<std::uint32_t, 3> show, std::span<const float> vertices) {
+    return make_picture_mesh(mesh, SmoothSurfaces(mesh), channels, radiosity, blocked, show, vertices);
 }
 
 PictureMesh make_picture_mesh(const PatchMesh& mesh, const SmoothSurfaces& surfaces, std::uint32_t channels,
                               std::span<const double> radiosity, std::span<const double> blocked,
-                              std::array<std::uint32_t, 3> show) {
+                              std::array<std::uint32_t, 3> show, std::span<const float> vertices) {
     if (radiosity.size() != std::size_t{mesh.size()} * channels) {
         throw InvalidArgument(fmt::format("make_picture_mesh: {} values for {} patches of {} channels",
                                           radiosity.size(), mesh.size(), channels));
+    }
+    if (!vertices.empty() && vertices.size() != radiosity.size() * 4) {
+        throw InvalidArgument(
+            fmt::format("make_picture_mesh: {} values at corners of {} patches of {} channels",
+                        vertices.size(), mesh.size(), channels));
     }
     std::vector<double> shown;
     shown.reserve(std::size_t{mesh.size()} * 3);
@@ -73,7 +78,16 @@ PictureMesh make_picture_mesh(const PatchMesh& mesh, const SmoothSurfaces& surfa
     PictureMesh picture;
     picture.bounds = mesh.bounds();
     picture.origin = mesh.bounds().centre();
-    picture.corners = corner_values(mesh, surfaces, 3, shown, blocked);
+    if (vertices.empty()) {
+        picture.corners = corner_values(mesh, surfaces, 3, shown, blocked);
+    } else {
+        picture.corners.reserve(std::size_t{mesh.size()} * 12);
+        for (std::size_t corner = 0; corner < std::size_t{mesh.size()} * 4; ++corner) {
+            for (const std::uint32_t channel : show) {
+                picture.corners.push_back(vertices[corner * channels + channel]);
+            }
+        }
+    }
     picture.positions.reserve(picture.corners.size());
     picture.patches.reserve(shown.size());
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {

@@ -14,6 +14,7 @@ namespace hemi {
 [[nodiscard]] PictureMesh make_picture_mesh(const PatchMesh& mesh, const SmoothSurfaces& surfaces,
                                             std::uint32_t channels, std::span<const double> radiosity,
                                             std::span<const double> blocked,
-                                            std::array<std::uint32_t, 3> show);
+                                            std::array<std::uint32_t, 3> show,
+                                            std::span<const float> vertices = {});
 
 } // namespace hemi

@@ -17,9 +17,10 @@ namespace {
 class CornerValues {
 public:
     CornerValues(const PatchMesh& mesh, const SmoothSurfaces& surfaces, std::uint32_t channels,
-                 std::span<const double> values, std::span<const double> blocked)
+                 std::span<const double> values, std::span<const double> blocked, const GivenCorners& given)
         : mesh_(mesh), surfaces_(surfaces), channels_(channels), values_(values), blocked_(blocked),
-          result_(std::size_t{mesh.size()} * 4 * channels, 0.0F), known_(std::size_t{mesh.size()} * 4, 0) {}
+          given_(given), result_(std::size_t{mesh.size()} * 4 * channels, 0.0F),
+          known_(std::size_t{mesh.size()} * 4, 0) {}
 
     std::vector<float> compute() {
         std::vector<double> sum(channels_);
@@ -28,7 +29,7 @@ public:
             const auto ring = surfaces_.corners(patch);
             std::size_t known = 0;
             for (std::uint32_t k = 0; k < ring.size(); ++k) {
-                known += mean_at(patch, k, false, sum) ? 1U : 0U;
+                known += first_value(patch, k, sum) ? 1U : 0U;
             }
             if (known > 0 && known < ring.size()) {
                 frontier.push_back(patch);
@@ -49,6 +50,19 @@ public:
 private:
     [[nodiscard]] static std::size_t slot(std::uint32_t patch, std::uint32_t k) {
         return std::size_t{patch} * 4 + k;
+    }
+
+    /// The value that a corner has of itself; false if there is none.
+    bool first_value(std::uint32_t patch, std::uint32_t k, std::vector<double>& sum) {
+        using Kind = GivenCorners::Kind;
+        const std::size_t at = slot(patch, k);
+        const Kind kind = given_.kinds.empty() ? Kind::mean : given_.kinds[at];
+        if (kind == Kind::given) {
+            std::copy_n(given_.values.begin() + static_cast<std::ptrdiff_t>(at * channels_), channels_,
+                        result_.begin() + static_cast<std::ptrdiff_t>(at * channels_));
+            known_[at] = 1;
+        }
+        return kind == Kind::given || (kind == Kind::mean && mean_at(patch, k, false, sum));
     }
 
     /// Area-weighted mean over the patches that continue `patch` at its corner `k`; false if there is none.
@@ -153,6 +167,7 @@ private:
     std::uint32_t channels_;
     std::span<const double> values_;
     std::span<const double> blocked_;
+    const GivenCorners& given_;
     std::vector<float> result_;
     std::vector<std::uint8_t> known_; ///< whether a corner has its value
 };
@@ -161,7 +176,7 @@ private:
 
 std::vector<float> corner_values(const PatchMesh& mesh, const SmoothSurfaces& surfaces,
                                  std::uint32_t channels, std::span<const double> values,
-                                 std::span<const double> blocked) {
+                                 std::span<const double> blocked, const GivenCorners& given) {
     if (channels == 0 || values.size() != std::size_t{mesh.size()} * channels) {
         throw InvalidArgument(fmt::format("corner_values: {} values for {} patches of {} channels",
                                           values.size(), mesh.size(), channels));
@@ -170,7 +185,7 @@ std::vector<float> corner_values(const PatchMesh& mesh, const SmoothSurfaces& su
         throw InvalidArgument(fmt::format("corner_values: {} blocked shares for {} patches; none or one each",
                                           blocked.size(), mesh.size()));
     }
-    return CornerValues(mesh, surfaces, channels, values, blocked).compute();
+    return CornerValues(mesh, surfaces, channels, values, blocked, given).compute();
 }
 
 std::vector<float> corner_values(const PatchMesh& mesh, std::uint32_t channels,

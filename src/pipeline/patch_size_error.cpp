@@ -9,6 +9,7 @@
 #include "hemi/matrix/error_estimate.hpp"
 #include "hemi/solver/solver.hpp"
 #include "pipeline/group_importance.hpp"
+#include "pipeline/visible_radiosity.hpp"
 
 #include <fmt/format.h>
 
@@ -243,11 +244,15 @@ public:
                        const Solution& solution)
         : scene_(scene), mesh_(mesh), factors_(factors), solution_(solution), channels_(solution.channels),
           reflectance_(patch_values(mesh, scene.materials, &Material::reflectance)),
-          interpolation_(mesh, corner_values(mesh, channels_, solution.radiosity, solution.back_face_share),
+          interpolation_(mesh,
+                         solution.vertex_radiosity.empty()
+                             ? corner_values(mesh, channels_, solution.radiosity, solution.back_face_share)
+                             : solution.vertex_radiosity,
                          channels_) {
         const std::size_t values = std::size_t{mesh.size()} * channels_;
         if (solution.radiosity.size() != values || reflectance_.size() != values ||
-            factors.matrix.size() != mesh.size()) {
+            factors.matrix.size() != mesh.size() ||
+            (!solution.vertex_radiosity.empty() && solution.vertex_radiosity.size() != values * 4)) {
             throw InvalidArgument("patch size error: the solution belongs to another mesh");
         }
         find_units();
@@ -283,6 +288,7 @@ public:
         const FormFactorMatrix factors = compute_visibility_weighted(
             *engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure, go_on, go_on, go_on);
         find_importance(bytes_of(rows.size(), fine.size()), settings, observer);
+        find_variation(fine, parents);
         std::vector<Errors> vertices(channels_);
         std::vector<Errors> field(channels_);
         std::vector<SampledSum> groups(std::size_t{importance_.groups()} * channels_);
@@ -459,6 +465,50 @@ private:
         return light;
     }
 
+    /// How the radiosity varies within the patches, where it is known well enough: at gathered vertices. A
+    /// gather takes patches for even, which is the error that it leaves.
+    void find_variation(const PatchMesh& fine, const std::vector<std::uint32_t>& parents) {
+        if (solution_.vertex_radiosity.empty()) {
+            return;
+        }
+        const std::vector<double> visible =
+            visible_radiosity(mesh_, SmoothSurfaces(mesh_), patches_near_surfaces(mesh_), channels_,
+                              solution_.radiosity, solution_.exitance, solution_.back_face_share);
+        variation_.assign(std::size_t{fine.size()} * channels_, 0.0);
+        std::vector<double> means(std::size_t{mesh_.size()} * channels_, 0.0);
+        for (std::uint32_t k = 0; k < fine.size(); ++k) {
+            const std::uint32_t patch = parents[k];
+            const auto weights = interpolation_.weights(patch, fine.corners(k));
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                double value = 0.0;
+                for (std::uint32_t corner = 0; corner < mesh_.corners(patch).count; ++corner) {
+                    value += weights[corner] * interpolation_.at_corner(patch, corner, c);
+                }
+                variation_[std::size_t{k} * channels_ + c] = value;
+                means[at(patch, c)] += value * fine.areas()[k] / mesh_.areas()[patch];
+            }
+        }
+        for (std::uint32_t k = 0; k < fine.size(); ++k) {
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                const std::size_t parent = at(parents[k], c);
+                variation_[std::size_t{k} * channels_ + c] +=
+                    visible[parent] - solution_.radiosity[parent] - means[parent];
+            }
+        }
+    }
+
+    /// What a quarter gets of the variation within the patches, a value a channel.
+    [[nodiscard]] std::vector<double> varying_light(const RowView& row) const {
+        std::vector<double> light(channels_, 0.0);
+        for (std::size_t k = 0; k < row.columns.size() && !variation_.empty(); ++k) {
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                light[c] += static_cast<double>(row.values[k]) *
+                            variation_[std::size_t{row.columns[k]} * channels_ + c];
+            }
+        }
+        return light;
+    }
+
     /// Errors of the mean irradiance of the groups.
     /// @param sums  of A (G(s) - G_i) (h_i + rho_i z(s)) over the sample, see estimate_patch_size_error():
     /// channel c
@@ -542,6 +592,7 @@ private:
             }
             const std::vector<double> importance = gathered(
                 row, parents, groups.size(), [this](std::uint32_t source) { return importance_.of(source); });
+            const std::vector<double> varying = varying_light(row);
             const auto weights = interpolation_.weights(patch, fine.corners(quarters[q]));
             const double stands_for = drawn.weight * fine.areas()[quarters[q]];
             for (std::uint32_t c = 0; c < channels_; ++c) {
@@ -551,7 +602,7 @@ private:
                     shown += weights[corner] * interpolation_.at_corner(patch, corner, c);
                 }
                 field[c].add(change, stands_for);
-                vertices[c].add(shown - change, stands_for);
+                vertices[c].add(shown - change - reflectance_[at(patch, c)] * varying[c], stands_for);
                 // Here the quarters' mean counts, too: it differs from what the patch's own row gets where
                 // visibility and F0 change together.
                 const double error = light[q][c] - irradiance_[at(patch, c)];
@@ -577,6 +628,7 @@ private:
     std::vector<std::uint32_t> patches_; // those that reflect and are not buried, ascending
     std::vector<double> units_;          // a channel: rms of B - E over them
     GroupImportance importance_;
+    std::vector<double> variation_;  // of fine patches, with their channels; empty: not known
     std::vector<double> irradiance_; // of all patches, N·channels; with the importance
 };
 

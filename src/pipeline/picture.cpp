@@ -40,8 +40,8 @@ std::array<float, 3> shown_environment(const Scene& scene, const std::array<std:
 DrawnPicture draw_solution(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
                            const DrawSettings& settings) {
     const std::array<std::uint32_t, 3> show = settings.show ? *settings.show : all_channels(scene);
-    PictureMesh drawn =
-        make_picture_mesh(mesh, solution.channels, solution.radiosity, solution.back_face_share, show);
+    PictureMesh drawn = make_picture_mesh(mesh, solution.channels, solution.radiosity,
+                                          solution.back_face_share, show, solution.vertex_radiosity);
     drawn.environment = shown_environment(scene, show);
     PictureSettings picture = settings.picture;
     if (settings.automatic_exposure) {

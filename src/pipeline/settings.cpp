@@ -141,4 +141,11 @@ std::unique_ptr<VisibilityProvider> make_visibility_provider(const PatchMesh& me
     return make_visibility_engine(mesh, hemicube, with_workers(settings.engine));
 }
 
+std::unique_ptr<VisibilityProvider> make_point_visibility_provider(const PatchMesh& mesh,
+                                                                   std::span<const SurfacePoint> points,
+                                                                   const HemicubeSettings& hemicube,
+                                                                   const FactorSettings& settings) {
+    return make_point_visibility_engine(mesh, points, hemicube, with_workers(settings.engine));
+}
+
 } // namespace hemi

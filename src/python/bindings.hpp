@@ -62,7 +62,8 @@ Enum argument_word(const char* argument, const std::string& word) {
 /// Radiosity of a scene, or of patches with these values.
 SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectance,
                       const py::object& exitance, const py::object& environment, const std::string& method,
-                      double tolerance, bool irradiance, bool estimate, const py::object& progress);
+                      double tolerance, bool irradiance, bool estimate, const std::string& gather,
+                      const py::object& progress);
 
 /// What hemi.load() makes of a `.hres`.
 SolutionOfScene read_solution(const std::string& path);

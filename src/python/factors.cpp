@@ -447,7 +447,7 @@ dict
     type.def("solve", &solve, py::kw_only(), py::arg("reflectance") = py::none(),
              py::arg("exitance") = py::none(), py::arg("environment") = py::none(),
              py::arg("method") = "auto", py::arg("tolerance") = 1e-6, py::arg("irradiance") = true,
-             py::arg("estimate") = true, py::arg("progress") = py::none(), R"(
+             py::arg("estimate") = true, py::arg("gather") = "off", py::arg("progress") = py::none(), R"(
 Radiosity B = E + reflectance·(F B + e B_env) of all patches.
 
 Parameters
@@ -466,6 +466,10 @@ irradiance : bool
 estimate : bool
     Whether the error that the patches' size makes is estimated, too, where the form factors have an estimate, and
     the values are the scene's. It takes rows of some more patches.
+gather : {"off", "on", "auto"}
+    Whether the radiosity at the corners of patches is found by rows of their own, for pictures with crisp
+    shadows: about as much work as the form factors by "default". "auto": by the presets "default" and "exact",
+    where it changes anything.
 progress : None, True or callable
     As of form_factors().
 

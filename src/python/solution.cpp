@@ -4,6 +4,7 @@
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/picture.hpp"
 #include "hemi/pipeline/radiosity.hpp"
+#include "hemi/pipeline/vertex_gather.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/work.hpp"
@@ -201,7 +202,8 @@ py::object errors_of(const SolutionOfScene& self) {
 
 SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectance,
                       const py::object& exitance, const py::object& environment, const std::string& method,
-                      double tolerance, bool irradiance, bool estimate, const py::object& progress) {
+                      double tolerance, bool irradiance, bool estimate, const std::string& gather,
+                      const py::object& progress) {
     SolutionOfScene result;
     result.scene = factors.scene;
     result.scene_values =
@@ -209,11 +211,18 @@ SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectan
     SolverSettings settings;
     settings.method = argument_word<SolverMethod>("method", method);
     settings.tolerance = tolerance;
-    PatchValues values = given_values(factors, reflectance, exitance, environment);
+    const auto wanted = argument_word<Gather>("gather", gather);
+    if (wanted == Gather::on && !factors.scene) {
+        throw InvalidArgument("gather: the geometry is not known; load the form factors with their scene");
+    }
+    const PatchValues values = given_values(factors, reflectance, exitance, environment);
     PythonObserver observer(progress);
     result.solution = run([&] {
-        Solution solution =
-            solve_radiosity(factors.factors, std::move(values), settings, observer, irradiance);
+        Solution solution = solve_radiosity(factors.factors, values, settings, observer, irradiance);
+        if (factors.scene) {
+            gather_at_vertices(factors.scene->mesh, values, factors.factors.enclosure, factors.settings,
+                               wanted, solution, observer);
+        }
         if (estimate && result.scene_values && solution.error) {
             solution.patch_size_error =
                 try_estimate_patch_size_error(factors.scene->scene, factors.scene->mesh, factors.factors,
@@ -297,6 +306,19 @@ The radiosity of all patches, W/m² or lm/m². Arrays have the shape [N, channel
 "p95", what 95 % of the area stays below, over the rms of what is reflected; "groups", ndarray: of the mean
 irradiance of every group, relative to it, nan where that is dark; "parts" of vertices' rms: "patch_size", "factors"
 and "solver". None where it was not estimated.)");
+    property(
+        "vertex_radiosity",
+        [](const py::object& self) {
+            const Solution& solution = py::cast<const SolutionOfScene&>(self).solution;
+            if (solution.vertex_radiosity.empty()) {
+                return py::object(py::none());
+            }
+            const auto channels = static_cast<py::ssize_t>(solution.channels);
+            const auto patches = static_cast<py::ssize_t>(solution.vertex_radiosity.size()) / (4 * channels);
+            return py::object(view<float>(solution.vertex_radiosity, {patches, 4, channels}, self));
+        },
+        R"(ndarray, [N, 4, channels], or None : radiosity at the corners of every patch, as the scene's `corners` has
+them (the fourth of triangles means nothing), by rows of their own. None where it was not gathered.)");
     property(
         "patch_errors",
         [](const py::object& self) {

@@ -17,14 +17,16 @@ Document::Document(ViewerInput input, std::shared_ptr<FactorCache> cache, std::f
     : input_(std::move(input)), wake_(std::move(wake)), surfaces_(*input_.mesh),
       materials_(input_.scene->materials), light_(of_materials()), blocked_(input_.solution.back_face_share),
       exposure_(input_.picture.exposure), exposure_settled_(!input_.automatic_exposure) {
-    show_light(input_.solution.radiosity, input_.factor_settings ? State::lamps : State::solved);
+    show_light(input_.solution.radiosity, input_.factor_settings ? State::lamps : State::solved,
+               input_.solution.vertex_radiosity);
     if (input_.factor_settings) {
         finder_.emplace(input_, std::move(cache), wake_);
     }
 }
 
-void Document::show_light(std::vector<double> radiosity, State state) {
+void Document::show_light(std::vector<double> radiosity, State state, std::vector<float> vertices) {
     light_.radiosity = std::move(radiosity);
+    light_.vertices = std::move(vertices);
     light_.known.clear();
     if (state == State::lamps) {
         light_.known.assign(input_.mesh->size(), 0);
@@ -48,7 +50,7 @@ void Document::make_light_mesh() {
         }
     }
     light_mesh_ = make_picture_mesh(*input_.mesh, surfaces_, input_.channels(), light_.radiosity, left_out,
-                                    input_.show);
+                                    input_.show, light_.vertices);
     light_mesh_.environment = shown_environment(*input_.scene, input_.show);
     if (!exposure_settled_ && !(state_ == State::preview && gathered_ > 0)) {
         exposure_ = automatic_exposure(*input_.mesh, light_mesh_, left_out, input_.solution.exitance,
@@ -179,7 +181,8 @@ void Document::take_light() {
     light_.reflectance = update->light.reflectance;
     light_.exitance = update->light.exitance;
     input_.solution.error = solution.error;
-    show_light(update->light.radiosity, update->converged ? State::solved : State::converging);
+    show_light(update->light.radiosity, update->converged ? State::solved : State::converging,
+               update->light.vertices);
     solved_.reset();
     if (update->converged) {
         solved_ = std::move(update);
@@ -263,6 +266,7 @@ void Document::save_result(const std::filesystem::path& path) {
     const Solution& found = solved_->solution;
     solution.radiosity = light_.radiosity;
     solution.exitance = light_.exitance;
+    solution.vertex_radiosity = light_.vertices;
     solution.irradiance = irradiance({&input_.factors->matrix, input_.channels(), light_.reflectance,
                                       light_.exitance, scene.environment, input_.mesh->areas()},
                                      light_.radiosity);

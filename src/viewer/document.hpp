@@ -79,7 +79,7 @@ private:
     void show_factors(std::shared_ptr<const FormFactors> factors);
     void show_gathered(const GatheredLight& gathered);
     void take_light();
-    void show_light(std::vector<double> radiosity, State state);
+    void show_light(std::vector<double> radiosity, State state, std::vector<float> vertices = {});
     void make_light_mesh();
     [[nodiscard]] std::string gathered_text() const;
     [[nodiscard]] Light of_materials() const;

@@ -1,7 +1,10 @@
 #include "viewer/relighter.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/pipeline/form_factors.hpp"
 #include "hemi/solver/solver.hpp"
+
+#include <fmt/format.h>
 
 #include <chrono>
 #include <utility>
@@ -107,6 +110,49 @@ void Relighter::wait_for_step(std::unique_lock<std::mutex>& lock, const std::sto
     steps_ -= steps_ > 0 ? 1 : 0;
 }
 
+void Relighter::gather(SolveUpdate& update, const std::stop_token& stop) {
+    Solution solution;
+    solution.channels = input_.channels();
+    solution.radiosity = update.light.radiosity;
+    solution.exitance = update.light.exitance;
+    solution.back_face_share = input_.solution.back_face_share;
+    if (!input_.factor_settings ||
+        !should_gather(input_.gather, *input_.factor_settings, *input_.mesh, solution)) {
+        return;
+    }
+    const PatchValues values{solution.channels, update.light.reflectance, update.light.exitance,
+                             input_.scene->environment};
+    if (!gather_) {
+        gather_.emplace(*input_.mesh, solution.back_face_share, all_patches(input_.mesh->size()));
+    }
+    if (gather_->has_rows()) {
+        update.light.vertices = gather_->gather(values, solution.radiosity);
+        return;
+    }
+    class Wanted final : public Observer {
+    public:
+        explicit Wanted(std::function<bool()> wanted) : wanted_(std::move(wanted)) {}
+        bool progress(Phase, std::size_t, std::size_t) override { return wanted_(); }
+
+    private:
+        std::function<bool()> wanted_;
+    } wanted([this, &stop] {
+        const std::lock_guard lock(mutex_);
+        return !stop.stop_requested() && !wanted_;
+    });
+    try {
+        update.light.vertices =
+            gather_->compute(values, solution.radiosity, *input_.factor_settings, input_.scene->enclosure,
+                             input_.factors->matrix.memory_bytes(), wanted);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& error) {
+        if (input_.observer) {
+            input_.observer->warning(fmt::format("vertices have means over patches: {}", error.what()), "");
+        }
+    }
+}
+
 void Relighter::solve(Wish wish, const std::stop_token& stop) {
     SolveUpdate update;
     update.light = std::move(wish.light);
@@ -160,13 +206,22 @@ void Relighter::solve(Wish wish, const std::stop_token& stop) {
         update.problem = error.what();
     }
     update.solution.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+    if (update.converged && gather_ && gather_->has_rows()) {
+        gather(update, stop);
+    }
     publish(update);
     const FormFactors& factors = *input_.factors;
     if (update.converged && factors.error) {
         update.solution.error = estimate_radiosity_error(
             factors.matrix, factors.reference, input_.mesh->areas(), input_.channels(),
             update.light.reflectance, update.light.exitance, update.light.radiosity);
-        publish(std::move(update));
+        publish(update);
+    }
+    if (update.converged && update.light.vertices.empty()) {
+        gather(update, stop);
+        if (!update.light.vertices.empty()) {
+            publish(std::move(update));
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/pipeline/vertex_gather.hpp"
 #include "viewer/look.hpp"
 
 #include <condition_variable>
@@ -61,6 +62,9 @@ private:
     /// @throws Cancelled when the wish is no longer wanted
     void wait_for_step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
     void publish(SolveUpdate update);
+    /// Finds the radiosity at vertices: at once by rows that were kept, else by new ones, which take a while.
+    /// @throws Cancelled when the light is no longer wanted
+    void gather(SolveUpdate& update, const std::stop_token& stop);
 
     const ViewerInput& input_;
     std::function<void()> done_;
@@ -70,10 +74,11 @@ private:
     std::optional<SolveUpdate> result_;
     std::vector<double> residuals_;
     bool working_ = false;
-    bool stepwise_ = false; ///< what is under way waits for steps
-    bool waiting_ = false;  ///< for one
-    std::size_t steps_ = 0; ///< allowed
-    std::jthread thread_;   ///< last: it uses all of the above
+    bool stepwise_ = false;              ///< what is under way waits for steps
+    bool waiting_ = false;               ///< for one
+    std::size_t steps_ = 0;              ///< allowed
+    std::optional<VertexGather> gather_; ///< used on the other thread alone
+    std::jthread thread_;                ///< last: it uses all of the above
 };
 
 } // namespace hemi::viewer

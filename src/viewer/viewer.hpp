@@ -4,6 +4,7 @@
 #include "hemi/matrix/form_factors.hpp"
 #include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/settings.hpp"
+#include "hemi/pipeline/vertex_gather.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 #include "hemi/solver/solver.hpp"
@@ -31,6 +32,7 @@ struct ViewerInput {
     /// How form factors are computed, beside the window. Empty: a stored solution, which has none.
     std::optional<FactorSettings> factor_settings;
     SolverSettings solver;              ///< for the radiosity
+    Gather gather = Gather::automatic;  ///< whether vertices get rows of their own
     std::shared_ptr<Observer> observer; ///< gets warnings and notes, on another thread; may be null
     /// The stored solution, or, until there is one, the lamps alone: their exitance as radiosity, nothing
     /// known of rows.

@@ -291,3 +291,42 @@ TEST_CASE("solve: the environment of the command line lights an OBJ, and darknes
     CHECK(run_hemi(quick({"solve", plate, "--environment", "1,2"})).status == 2);
     CHECK(run_hemi(quick({"solve", plate, "--environment", "-1"})).status == 2);
 }
+
+TEST_CASE("solve --gather: vertices have light of their own, in pictures, stored solutions and meshes",
+          "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(4));
+    const auto solve = [&](const std::string& gather, const std::string& name) {
+        const Outcome run = run_hemi({"solve", scene, "--device", "osmesa", "--jobs", "1", "--gather", gather,
+                                      "--result", directory.path(name + ".hres"), "-o",
+                                      directory.path(name + ".hdr"), "--size", "64x64", "--json"});
+        REQUIRE(run.status == 0);
+        return run.json();
+    };
+    const Json on = solve("on", "on");
+    CHECK(on["seconds"]["gather"] > 0.0);
+    CHECK(solve("off", "off")["seconds"]["gather"].get<double>() < 0.01);
+    (void)solve("auto", "auto"); // corners differ: as on
+    const auto same = [&directory](const std::string& a, const std::string& b) {
+        return directory.read(a) == directory.read(b);
+    };
+    CHECK_FALSE(same("on.hdr", "off.hdr"));
+    CHECK(same("on.hdr", "auto.hdr"));
+    for (const std::string name : {"on", "off"}) {
+        REQUIRE(run_hemi({"render", directory.path(name + ".hres"), "--device", "osmesa", "-o",
+                          directory.path("again.hdr"), "--size", "64x64", "-q"})
+                    .status == 0);
+        CHECK(same("again.hdr", name + ".hdr"));
+        REQUIRE(run_hemi({"bake", directory.path(name + ".hres"), "-o", directory.path(name + ".ply"), "-q"})
+                    .status == 0);
+        REQUIRE(run_hemi({"bake", scene, "--device", "osmesa", "--gather", name, "-o",
+                          directory.path("scene-" + name + ".ply"), "-q"})
+                    .status == 0);
+    }
+    for (const std::string from : {"", "scene-"}) {
+        CHECK_FALSE(same(from + "on.ply", from + "off.ply"));
+    }
+    const Outcome wrong = run_hemi({"solve", scene, "--gather", "always", "-o", directory.path("x.png")});
+    CHECK(wrong.status == 2);
+    CHECK(wrong.err.find("auto, on or off") != std::string::npos);
+}

@@ -50,6 +50,9 @@ io::ResultFile sample() {
     result.solution.patch_size_error =
         PatchSizeError{{0.1, 1.0 / 7.0}, {0.2, 0.3}, {{0.01, 0.02}, {NAN, NAN}}, {}, 64, 0.0};
     result.solution.patch_size_error->patches.assign(patches * 2, 1.0 / 9.0);
+    for (std::size_t k = 0; k < patches * 8; ++k) {
+        result.solution.vertex_radiosity.push_back(1.0F / static_cast<float>(k + 3));
+    }
     return result;
 }
 
@@ -62,6 +65,7 @@ TEST_CASE("HRES: what is written is read back bit for bit", "[io]") {
     const io::ResultFile b = io::read_hres(folder / "a.hres");
     REQUIRE(a.scene.name == b.scene.name);
     REQUIRE(a.scene.channels == b.scene.channels);
+    REQUIRE(a.solution.vertex_radiosity == b.solution.vertex_radiosity);
     REQUIRE(a.scene.materials == b.scene.materials);
     REQUIRE(a.scene.groups == b.scene.groups);
     REQUIRE(a.scene.enclosure == b.scene.enclosure);
@@ -127,6 +131,7 @@ TEST_CASE("HRES: the patches are those that were solved, however they were asked
         a.solution.factor_error->rows.resize(mesh.size());
         a.solution.error->patches.resize(mesh.size() * 2);
         a.solution.patch_size_error->patches.resize(mesh.size() * 2);
+        a.solution.vertex_radiosity.resize(std::size_t{mesh.size()} * 8);
         io::write_hres(folder / "a.hres", a);
         const io::ResultFile b = io::read_hres(folder / "a.hres");
         const PatchMesh again(b.scene, b.subdivision);

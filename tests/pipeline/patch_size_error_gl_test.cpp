@@ -8,6 +8,7 @@
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/radiosity.hpp"
+#include "hemi/pipeline/vertex_gather.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -97,7 +98,10 @@ struct Truth {
 };
 Truth truth_of(const Solved& coarse, const Solved& fine, std::uint32_t times) {
     const PatchMesh& mesh = coarse.mesh;
-    const auto corners = corner_values(mesh, 1, coarse.solution.radiosity, coarse.solution.back_face_share);
+    const auto corners =
+        coarse.solution.vertex_radiosity.empty()
+            ? corner_values(mesh, 1, coarse.solution.radiosity, coarse.solution.back_face_share)
+            : coarse.solution.vertex_radiosity;
     double field = 0.0;
     double vertices = 0.0;
     double reflected = 0.0;
@@ -186,6 +190,16 @@ TEST_CASE("patch size: the error of lit rooms is that against a grid three times
         CHECK(error->vertices.rms > 0.5 * truth.vertices);
         CHECK(error->vertices.rms < 2.0 * truth.vertices);
         CHECK(error->sampled >= 48);
+        Solved gathered = coarse;
+        gather_at_vertices(scene, gathered.mesh, settings_of(c.preset), Gather::on, gathered.solution);
+        const double less = truth_of(gathered, fine, 3).vertices;
+        const auto of_gathered = estimate_patch_size_error(scene, gathered.mesh, gathered.factors,
+                                                           gathered.solution, settings_of(c.preset));
+        REQUIRE(of_gathered);
+        INFO("gathered vertices " << of_gathered->vertices.rms << ", true " << less);
+        CHECK(less < 0.75 * truth.vertices);
+        CHECK(of_gathered->vertices.rms > 0.5 * less);
+        CHECK(of_gathered->vertices.rms < 2.0 * less);
         REQUIRE(error->groups.size() == coarse.mesh.groups().size());
         const std::vector<double> is = group_irradiance(coarse);
         const std::vector<double> should = group_irradiance(fine);

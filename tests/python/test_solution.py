@@ -20,13 +20,15 @@ def test_a_solution_is_the_programs(scenes, program, tmp_path):
     path = scenes / "cube.json"
     program("solve", path, "--patches-per-face", 16, "--device", "osmesa", "-q", "--result", tmp_path / "program.hres",
             "--radiosity", tmp_path / "program.csv")
-    solution = hemi.form_factors(hemi.read_scene(path, patches_per_face=16), device="osmesa").solve()
+    solution = hemi.form_factors(hemi.read_scene(path, patches_per_face=16), device="osmesa").solve(gather="auto")
     solution.save(tmp_path / "module.hres")
     solution.save(tmp_path / "module.csv")
     assert (tmp_path / "module.csv").read_bytes() == (tmp_path / "program.csv").read_bytes()
     stored = hemi.load(tmp_path / "program.hres")
-    for name in ("radiosity", "irradiance", "exitance", "row_sums", "environment", "back_faces", "patch_errors"):
+    for name in ("radiosity", "irradiance", "exitance", "row_sums", "environment", "back_faces", "patch_errors",
+                 "vertex_radiosity"):
         assert numpy.array_equal(getattr(stored, name), getattr(solution, name)), name
+    assert solution.vertex_radiosity.shape == (96, 4, 3)
     assert stored.residual == solution.residual and stored.error == solution.error
     assert solution.errors["vertices"]["rms"] > solution.errors["parts"]["factors"] == solution.error
     assert len(solution.errors["groups"]) == len(solution.scene.groups)

@@ -65,10 +65,12 @@ struct PictureMesh {
 /// @param radiosity  channel c of patch i at [i·channels + c]
 /// @param blocked    b_i of every patch, or empty: covered patches lend nothing to their neighbours
 /// @param show       channels shown as red, green, blue (one channel: {0, 0, 0})
+/// @param vertices   Solution::vertex_radiosity, or empty: means over the patches, see corner_values()
 [[nodiscard]] PictureMesh make_picture_mesh(const PatchMesh& mesh, std::uint32_t channels,
                                             std::span<const double> radiosity,
                                             std::span<const double> blocked,
-                                            std::array<std::uint32_t, 3> show);
+                                            std::array<std::uint32_t, 3> show,
+                                            std::span<const float> vertices = {});
 
 /// Exposure that suits a scene: from the area-weighted distribution of luminance over patches that are not
 /// lamps and not covered. Deterministic. 1 if all is dark.

@@ -44,6 +44,13 @@ public:
     /// on one surface.
     [[nodiscard]] double operator()(std::uint32_t i, std::uint32_t j) const;
 
+    /// Factor from a surface element to patch j, unoccluded: point_factor(), but by the patch's Gauss points
+    /// where it is far away.
+    /// @param at      position of the element, scene units
+    /// @param normal  of the element, of unit length
+    /// @param j       the patch
+    [[nodiscard]] double at_point(const Vec3& at, const Vec3& normal, std::uint32_t j) const;
+
     /// Number of patches.
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(patches_.size()); }
 
@@ -64,6 +71,7 @@ private:
     [[nodiscard]] double near_area(const Patch& a, const Patch& b, bool clipped, double distance) const;
 
     ExchangeRule rule_;
+    Vec3 origin_; ///< that coordinates count from
     double rounding_;
     double far_;
     std::vector<Patch> patches_;

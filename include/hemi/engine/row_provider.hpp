@@ -24,7 +24,7 @@ public:
 
     virtual ~BasicRowProvider() = default;
 
-    /// Number of patches, and of rows and columns.
+    /// Number of rows: that of the patches, whose columns are as many, or of points (point_rows.hpp).
     [[nodiscard]] virtual std::uint32_t size() const = 0;
 
     /// What computes: for example the OpenGL renderer string.

@@ -16,6 +16,7 @@ enum class Phase {
     pairs,          ///< both directions of every pair are combined; units are rows
     form_factors,   ///< factors of all pairs, or plain rows; units are rows
     radiosity,      ///< sweeps; `done` is an estimate in per cent
+    gather,         ///< radiosity at vertices; units are vertices
     error_estimate, ///< better rows of a sample
     preview,        ///< a coarse solution; units are rows
 };
@@ -28,6 +29,7 @@ struct Names<Phase> {
                                                   {Phase::pairs, "pairs"},
                                                   {Phase::form_factors, "form factors"},
                                                   {Phase::radiosity, "radiosity"},
+                                                  {Phase::gather, "gather"},
                                                   {Phase::error_estimate, "estimate of errors"},
                                                   {Phase::preview, "coarse preview"}};
 };

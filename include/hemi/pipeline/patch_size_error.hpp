@@ -17,8 +17,9 @@ namespace hemi {
 /// solution is gathered at each quarter by a row of its own: f(s) = B_i + rho (G(s) - mean of G over i). The
 /// iterated solution converges twice as fast as the solution itself, so it stands for the exact field. As a
 /// constant a patch errs by f - B_i; four means leave out a quarter of the variance of a linear field, which
-/// is added. As a picture shows it, it errs by f less the interpolated vertex values. Patches of the sample
-/// count by the inverse of their probability.
+/// is added. As a picture shows it, it errs by f less the interpolated vertex values; where these were
+/// gathered (Solution::vertex_radiosity), f also has the light that comes of the radiosity's variation within
+/// the patches, which a gather leaves out. Patches of the sample count by the inverse of their probability.
 ///
 /// The mean irradiance of a group errs by the sum of A (G(s) - G_i) (h_i + rho_i z(s)) over all s in patches
 /// i, over the group's area. h is 1 on the group and else 0; z is the importance of light that leaves s for

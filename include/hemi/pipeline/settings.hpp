@@ -2,6 +2,7 @@
 
 #include "hemi/engine/baselines.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/engine/point_rows.hpp"
 #include "hemi/engine/visibility_provider.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/matrix/provenance.hpp"
@@ -10,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace hemi {
 
@@ -65,5 +67,9 @@ struct RowPlan {
 [[nodiscard]] std::unique_ptr<VisibilityProvider> make_visibility_provider(const PatchMesh& mesh,
                                                                            const HemicubeSettings& hemicube,
                                                                            const FactorSettings& settings);
+/// The same from points, see make_point_visibility_engine().
+[[nodiscard]] std::unique_ptr<VisibilityProvider>
+make_point_visibility_provider(const PatchMesh& mesh, std::span<const SurfacePoint> points,
+                               const HemicubeSettings& hemicube, const FactorSettings& settings);
 
 } // namespace hemi

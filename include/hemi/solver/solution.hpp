@@ -66,6 +66,10 @@ struct Solution {
     std::vector<double> exitance;   ///< E, what patches radiate by themselves, N·channels
     std::vector<double> irradiance; ///< H = F B + e B_env, N·channels; empty where it was not asked for
 
+    /// B at the corners of the patches, gathered by rows of their own (see VertexGather): channel c of corner
+    /// k of patch i at [(i·4 + k)·channels + c]. Empty: corners have means over the patches that meet there.
+    std::vector<float> vertex_radiosity;
+
     std::vector<double> row_sum;           ///< sum_j F(i, j), N; 0 where the row was not computed
     std::vector<double> environment_share; ///< e_i, N; likewise
     std::vector<double> back_face_share;   ///< b_i, N; likewise

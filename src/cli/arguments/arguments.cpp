@@ -302,6 +302,14 @@ std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture) {
     return added;
 }
 
+void add_gather(CLI::App& app, Gather& gather) {
+    Options(app, "Picture")
+        .choice<Gather>("--gather", "auto|on|off",
+                        "radiosity at vertices by rows of their own instead of means over patches: crisp "
+                        "shadows. auto: with the presets default and exact, where it changes anything",
+                        gather);
+}
+
 /// @param output  the option without which these make no sense; may be none.
 void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
     std::vector<CLI::Option*> added = add_shown(app, picture);
@@ -353,6 +361,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
                 "exitance, irradiance, radiosity and its error of every patch");
     output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
     add_picture(app, a.picture, picture);
+    add_gather(app, a.gather);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi solve scenes/cornell-box.json -o cornell-box.png\n"
@@ -466,6 +475,7 @@ void add_view(CLI::App& app, ViewArguments& a) {
     add_solver(app, a.solver);
     a.picture.size = {1280, 720};
     add_picture(app, a.picture, nullptr);
+    add_gather(app, a.gather);
     Options window(app, "Window");
     window.choice<viewer::Controls>("--controls", "NAME",
                                     "standard (the default) or blender: what the mouse does", a.controls);
@@ -495,6 +505,7 @@ void add_bake(CLI::App& app, BakeArguments& a) {
               "mesh with vertex colours: .glb or .ply; - for .glb on stdout")
         ->required();
     (void)add_shown(app, a.picture);
+    add_gather(app, a.gather);
     add_common(app, a.common);
     app.footer(
         "Colours are exposure times radiosity, at most 1: linear in a .glb (COLOR_0), sRGB in a .ply. The\n"

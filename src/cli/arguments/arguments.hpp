@@ -5,6 +5,7 @@
 #include "hemi/display/picture.hpp"
 #include "hemi/matrix/repair.hpp"
 #include "hemi/pipeline/settings.hpp"
+#include "hemi/pipeline/vertex_gather.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 #include "hemi/solver/solver.hpp"
@@ -72,6 +73,7 @@ struct SolveArguments {
     RowOptions rows;
     SolverSettings solver;
     PictureOptions picture;
+    Gather gather = Gather::automatic;
     std::optional<std::filesystem::path> factors;
     std::optional<std::filesystem::path> result;
     std::optional<std::filesystem::path> radiosity;
@@ -119,7 +121,8 @@ struct ViewArguments {
     RowOptions rows;
     SolverSettings solver;
     PictureOptions picture; ///< to start with; its output is not used
-    std::string script;     ///< file that drives the window; empty: a person does
+    Gather gather = Gather::automatic;
+    std::string script; ///< file that drives the window; empty: a person does
     viewer::Controls controls = viewer::Controls::standard;
 };
 
@@ -129,6 +132,7 @@ struct BakeArguments {
     RowOptions rows;
     SolverSettings solver;
     PictureOptions picture; ///< output, channels, exposure, flat
+    Gather gather = Gather::automatic;
 };
 
 struct ConvertArguments {

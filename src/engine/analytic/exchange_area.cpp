@@ -159,15 +159,14 @@ double point_factor(const Vec3& at, const Vec3& normal, std::span<const Vec3> po
 }
 
 ExchangeAreas::ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule)
-    : rule_(rule), rounding_(coordinate_rounding(mesh.bounds())),
+    : rule_(rule), origin_(mesh.bounds().centre()), rounding_(coordinate_rounding(mesh.bounds())),
       far_(rule == ExchangeRule::standard ? standard_reach[0].distance : exact_reach[0].distance),
       patches_(mesh.size()) {
-    const Vec3 origin = mesh.bounds().centre();
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         PatchCorners corners = mesh.corners(i);
         Vec3 sum(0.0);
         for (std::uint32_t k = 0; k < corners.count; ++k) {
-            corners.points[k] -= origin;
+            corners.points[k] -= origin_;
             sum += corners.points[k];
         }
         Patch& patch = patches_[i];
@@ -226,6 +225,32 @@ double ExchangeAreas::operator()(std::uint32_t i, std::uint32_t j) const {
         return product_rule<4>(a, plane_a, b, plane_b);
     }
     return near_area(a, b, clip, distance);
+}
+
+double ExchangeAreas::at_point(const Vec3& at, const Vec3& normal, std::uint32_t j) const {
+    const Patch& patch = patches_[j];
+    const Vec3 eye = at - origin_;
+    const Vec3 offset = patch.centre - eye;
+    const double above = glm::dot(offset, normal);
+    const double in_front = -glm::dot(offset, patch.normal);
+    if (above <= -patch.radius || in_front <= rounding_) {
+        return 0.0;
+    }
+    const double gap = glm::length(offset) - patch.radius;
+    if (above >= patch.radius && gap >= 2.0 * patch.radius * far_) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Vec3 way = Vec3(patch.x[k], patch.y[k], patch.z[k]) - eye;
+            const double squared = glm::dot(way, way);
+            sum += patch.weight[k] * glm::dot(way, normal) / (squared * squared);
+        }
+        return sum * in_front / std::numbers::pi;
+    }
+    std::array<Vec3, 4> corners;
+    for (std::size_t k = 0; k < patch.corners; ++k) {
+        corners[k] = Vec3(patch.corner_x[k], patch.corner_y[k], patch.corner_z[k]);
+    }
+    return point_factor(eye, normal, std::span(corners).first(patch.corners));
 }
 
 double ExchangeAreas::near_area(const Patch& a, const Patch& b, bool clipped, double distance) const {

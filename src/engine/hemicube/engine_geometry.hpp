@@ -9,7 +9,8 @@ namespace hemi {
 /// All that an engine needs to know of a mesh: what to draw, and from where. Can be sent to a worker.
 struct EngineGeometry {
     DrawList list;
-    EyePoints eyes;
+    EyePoints eyes;            ///< of every row
+    std::uint32_t patches = 0; ///< N, the columns of a row
 };
 [[nodiscard]] EngineGeometry make_engine_geometry(const PatchMesh& mesh, const HemicubeSettings& settings);
 

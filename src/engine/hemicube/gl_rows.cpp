@@ -178,9 +178,9 @@ struct GlRows::State {
     void reset(bool of_visibility) {
         carried.clear();
         if (of_visibility) {
-            visibility.emplace(geometry.list, geometry.eyes.patches());
+            visibility.emplace(geometry.list, geometry.patches);
         } else {
-            accumulator.emplace(geometry.list.item_of_id, geometry.eyes.patches());
+            accumulator.emplace(geometry.list.item_of_id, geometry.patches);
         }
     }
 

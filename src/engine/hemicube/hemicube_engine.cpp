@@ -6,6 +6,7 @@
 #include "hemi/core/interrupt.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/engine/point_rows.hpp"
 
 #include <fmt/format.h>
 
@@ -78,11 +79,10 @@ std::string resolve_device(const std::string& name) {
     return name == "auto" ? gl::find_gpu().value_or(cpu_device) : name;
 }
 
-std::unique_ptr<RawRowProvider> make_raw_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
-                                                RowQuantity quantity, const EngineSettings& engine) {
-    DeltaFormFactors::check_resolution(settings.resolution);
+std::unique_ptr<RawRowProvider> make_raw_engine(std::unique_ptr<const EngineGeometry> geometry,
+                                                const HemicubeSettings& settings, RowQuantity quantity,
+                                                const EngineSettings& engine) {
     const std::string device = resolve_device(engine.device);
-    auto geometry = std::make_unique<const EngineGeometry>(make_engine_geometry(mesh, settings));
     if (device == cpu_device) {
         return make_cpu_engine(std::move(geometry), settings, quantity, engine.jobs);
     }
@@ -92,6 +92,28 @@ std::unique_ptr<RawRowProvider> make_raw_engine(const PatchMesh& mesh, const Hem
     EngineSettings resolved = engine;
     resolved.device = device;
     return make_worker_pool(std::move(geometry), settings, quantity, resolved);
+}
+
+std::unique_ptr<RawRowProvider> make_raw_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
+                                                RowQuantity quantity, const EngineSettings& engine) {
+    DeltaFormFactors::check_resolution(settings.resolution);
+    return make_raw_engine(std::make_unique<const EngineGeometry>(make_engine_geometry(mesh, settings)),
+                           settings, quantity, engine);
+}
+
+/// One eye point a row.
+EyePoints eyes_at(std::span<const SurfacePoint> points, const PatchMesh& mesh) {
+    EyePoints eyes;
+    for (const SurfacePoint& point : points) {
+        if (point.surface >= mesh.surfaces().size()) {
+            throw InvalidArgument(fmt::format("point {} lies on surface {}; there are {}", eyes.first.size(),
+                                              point.surface, mesh.surfaces().size()));
+        }
+        eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
+        eyes.points.push_back({point.position, point.normal, 1.0, point.surface, 0});
+    }
+    eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
+    return eyes;
 }
 
 } // namespace
@@ -106,6 +128,19 @@ std::unique_ptr<VisibilityProvider> make_visibility_engine(const PatchMesh& mesh
                                                            const EngineSettings& engine) {
     return std::make_unique<VisibilityEngine>(
         make_raw_engine(mesh, settings, RowQuantity::visibility, engine));
+}
+
+std::unique_ptr<VisibilityProvider> make_point_visibility_engine(const PatchMesh& mesh,
+                                                                 std::span<const SurfacePoint> points,
+                                                                 const HemicubeSettings& settings,
+                                                                 const EngineSettings& engine) {
+    DeltaFormFactors::check_resolution(settings.resolution);
+    auto geometry = std::make_unique<EngineGeometry>();
+    geometry->list = make_draw_list(mesh, settings.merge_lattices);
+    geometry->eyes = eyes_at(points, mesh);
+    geometry->patches = mesh.size();
+    return std::make_unique<VisibilityEngine>(
+        make_raw_engine(std::move(geometry), settings, RowQuantity::visibility, engine));
 }
 
 } // namespace hemi

@@ -16,10 +16,10 @@ struct CpuRows::State {
         : geometry(the_geometry), settings(the_settings), delta(the_settings.resolution),
           tiles(the_settings.resolution), rasteriser(make_rasteriser(scene, tiles)) {
         if (quantity == RowQuantity::visibility) {
-            visibility.emplace(geometry.list, geometry.eyes.patches());
+            visibility.emplace(geometry.list, geometry.patches);
             coverage.emplace(geometry.list.item_of_id.size());
         } else {
-            accumulator.emplace(geometry.list.item_of_id, geometry.eyes.patches());
+            accumulator.emplace(geometry.list.item_of_id, geometry.patches);
         }
     }
 

@@ -85,61 +85,107 @@ ShadowRays::ShadowRays(const PatchMesh& mesh) : mesh_(mesh), rounding_(mesh.roun
 
 ShadowRays::~ShadowRays() = default;
 
+/// Rays so far, and the share of their weights that nothing hides.
+class ShadowRays::Sum {
+public:
+    explicit Sum(const ShadowRays& rays) {
+        rtcInitIntersectContext(&packet_.context);
+        packet_.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        packet_.context.filter = Packet::filter;
+        packet_.rays = &rays;
+    }
+    /// @param area  what the two ends stand for, up to a factor that all rays have
+    void add(const Vec3& a, const Vec3& normal_a, const Vec3& b, const Vec3& normal_b, double area) {
+        const Vec3 way = b - a;
+        const double leaving = glm::dot(way, normal_a);
+        const double arriving = -glm::dot(way, normal_b);
+        if (leaving <= 0.0 || arriving <= 0.0) {
+            return;
+        }
+        const double squared = glm::dot(way, way);
+        const double weight = area * leaving * arriving / (squared * squared);
+        all_ += weight;
+        squares_ += weight * weight;
+        packet_.from[packet_.count] = a;
+        packet_.to[packet_.count] = b;
+        packet_.weight[packet_.count] = weight;
+        if (++packet_.count == Packet::size) {
+            seen_ += packet_.trace();
+        }
+    }
+    [[nodiscard]] Estimate finish() {
+        if (packet_.count > 0) {
+            seen_ += packet_.trace();
+        }
+        return all_ > 0.0 ? Estimate{seen_ / all_, all_ * all_ / squares_} : Estimate{1.0, 0.0};
+    }
+
+private:
+    Packet packet_;
+    double seen_ = 0.0;
+    double all_ = 0.0;
+    double squares_ = 0.0;
+};
+
+namespace {
+
+/// Sobol points in [-1, 1]^4, with shifts of their own for every key.
+class EvenPoints {
+public:
+    explicit EvenPoints(std::uint64_t key) {
+        std::uint64_t state = splitmix(key);
+        for (std::uint32_t& bits : shift_) {
+            state = splitmix(state);
+            bits = static_cast<std::uint32_t>(state >> 32);
+        }
+    }
+    [[nodiscard]] std::array<double, 4> operator[](std::uint32_t index) const {
+        const auto bits = sobol_point(index);
+        std::array<double, 4> even{};
+        for (std::size_t d = 0; d < even.size(); ++d) {
+            even[d] = (static_cast<double>(bits[d] ^ shift_[d]) + 0.5) * 0x1p-31 - 1.0;
+        }
+        return even;
+    }
+
+private:
+    std::array<std::uint32_t, 4> shift_{};
+};
+
+} // namespace
+
 ShadowRays::Estimate ShadowRays::visibility(std::uint32_t i, std::uint32_t j, std::uint32_t rays) const {
     if (i > j) {
         std::swap(i, j);
     }
-    const Vec3& normal_i = mesh_.normal(i);
-    const Vec3& normal_j = mesh_.normal(j);
+    const Vec3 normal_i = mesh_.normal(i);
+    const Vec3 normal_j = mesh_.normal(j);
     const PatchCorners corners_i = mesh_.corners(i);
     const PatchCorners corners_j = mesh_.corners(j);
     const BilinearMap from(corners_i.polygon(), normal_i);
     const BilinearMap to(corners_j.polygon(), normal_j);
-    // Every pair has shifts of its own.
-    std::array<std::uint32_t, 4> shift{};
-    std::uint64_t state = splitmix(std::uint64_t{i} << 32 | j);
-    for (std::uint32_t& bits : shift) {
-        state = splitmix(state);
-        bits = static_cast<std::uint32_t>(state >> 32);
-    }
-    Packet packet;
-    rtcInitIntersectContext(&packet.context);
-    packet.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    packet.context.filter = Packet::filter;
-    packet.rays = this;
-    double seen = 0.0;
-    double all = 0.0;
-    double squares = 0.0;
+    const EvenPoints points(std::uint64_t{i} << 32 | j);
+    Sum sum(*this);
     for (std::uint32_t ray = 0; ray < rays; ++ray) {
-        const auto bits = sobol_point(ray);
-        std::array<double, 4> even{};
-        for (std::size_t d = 0; d < even.size(); ++d) {
-            even[d] = (static_cast<double>(bits[d] ^ shift[d]) + 0.5) * 0x1p-31 - 1.0;
-        }
-        const Vec3 a = from.point(even[0], even[1]);
-        const Vec3 b = to.point(even[2], even[3]);
-        const Vec3 way = b - a;
-        const double leaving = glm::dot(way, normal_i);
-        const double arriving = -glm::dot(way, normal_j);
-        if (leaving <= 0.0 || arriving <= 0.0) {
-            continue;
-        }
-        const double squared = glm::dot(way, way);
-        const double weight = from.jacobian_at(even[0], even[1]) * to.jacobian_at(even[2], even[3]) *
-                              leaving * arriving / (squared * squared);
-        all += weight;
-        squares += weight * weight;
-        packet.from[packet.count] = a;
-        packet.to[packet.count] = b;
-        packet.weight[packet.count] = weight;
-        if (++packet.count == Packet::size) {
-            seen += packet.trace();
-        }
+        const auto [s, t, u, v] = points[ray];
+        sum.add(from.point(s, t), normal_i, to.point(u, v), normal_j,
+                from.jacobian_at(s, t) * to.jacobian_at(u, v));
     }
-    if (packet.count > 0) {
-        seen += packet.trace();
+    return sum.finish();
+}
+
+ShadowRays::Estimate ShadowRays::visibility_from(const Vec3& at, const Vec3& normal, std::uint32_t j,
+                                                 std::uint32_t rays, std::uint64_t key) const {
+    const Vec3 normal_j = mesh_.normal(j);
+    const PatchCorners corners = mesh_.corners(j);
+    const BilinearMap to(corners.polygon(), normal_j);
+    const EvenPoints points(key << 32 | j);
+    Sum sum(*this);
+    for (std::uint32_t ray = 0; ray < rays; ++ray) {
+        const auto even = points[ray];
+        sum.add(at, normal, to.point(even[0], even[1]), normal_j, to.jacobian_at(even[0], even[1]));
     }
-    return all > 0.0 ? Estimate{seen / all, all * all / squares} : Estimate{1.0, 0.0};
+    return sum.finish();
 }
 
 } // namespace hemi

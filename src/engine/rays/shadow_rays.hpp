@@ -29,9 +29,16 @@ public:
     /// The same for (i, j) and (j, i).
     /// @param rays  to trace; powers of two are spread best
     [[nodiscard]] Estimate visibility(std::uint32_t i, std::uint32_t j, std::uint32_t rays) const;
+    /// The same from a point to patch j.
+    /// @param at      position of the point, scene units
+    /// @param normal  of the point, of unit length
+    /// @param key     shifts the rays' ends on the patch
+    [[nodiscard]] Estimate visibility_from(const Vec3& at, const Vec3& normal, std::uint32_t j,
+                                           std::uint32_t rays, std::uint64_t key) const;
 
 private:
     struct Packet;
+    class Sum;
 
     const PatchMesh& mesh_;
     double rounding_;

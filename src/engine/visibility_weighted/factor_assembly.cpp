@@ -19,9 +19,8 @@ namespace {
 constexpr double max_leak = 1e-4;
 
 bool is_open(std::span<const double> environment, Enclosure enclosure) {
-    return enclosure == Enclosure::open ||
-           (enclosure == Enclosure::automatic && std::any_of(environment.begin(), environment.end(),
-                                                             [](double share) { return share > max_leak; }));
+    return std::any_of(environment.begin(), environment.end(),
+                       [enclosure](double share) { return sees_environment(share, enclosure); });
 }
 
 std::uint64_t count_seen(std::span<const PairVisibility> pairs) {
@@ -156,6 +155,10 @@ void finish(RowBlock& block, bool open) {
 }
 
 } // namespace
+
+bool sees_environment(double share, Enclosure enclosure) {
+    return enclosure == Enclosure::open || (enclosure == Enclosure::automatic && share > max_leak);
+}
 
 FormFactorMatrix assemble_factors(const PairTable& pairs, const PatchMesh& mesh, ExchangeRule rule,
                                   Enclosure enclosure, const Progress& progress) {

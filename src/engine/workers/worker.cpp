@@ -43,7 +43,7 @@ public:
         ready.set_text(engine.renderer());
         send(ready);
 
-        const ResultSlot layout(input.geometry.eyes.patches(), input.settings, input.quantity);
+        const ResultSlot layout(input.geometry.patches, input.settings, input.quantity);
         std::byte* buffer = map_whole(worker_results_fd, PROT_READ | PROT_WRITE).data();
         for (;;) {
             while (jobs_.empty()) {

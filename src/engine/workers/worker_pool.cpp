@@ -207,7 +207,7 @@ public:
     WorkerPool(std::unique_ptr<const EngineGeometry> geometry, const HemicubeSettings& settings,
                RowQuantity quantity, EngineSettings engine)
         : geometry_(std::move(geometry)), size_(geometry_->eyes.patches()), settings_(settings),
-          quantity_(quantity), engine_(std::move(engine)), layout_(size_, settings, quantity) {}
+          quantity_(quantity), engine_(std::move(engine)), layout_(geometry_->patches, settings, quantity) {}
 
     [[nodiscard]] std::uint32_t size() const override { return size_; }
 

@@ -151,6 +151,7 @@ std::string pack(const EngineGeometry& geometry, const HemicubeSettings& setting
     append(bytes, list.tolerance);
     append(bytes, std::span<const EyePoint>(geometry.eyes.points));
     append(bytes, std::span<const std::uint32_t>(geometry.eyes.first));
+    append(bytes, geometry.patches);
     return bytes;
 }
 
@@ -180,6 +181,7 @@ UnpackedGeometry unpack(std::span<const std::byte> bytes) {
     list.tolerance = from.value<double>();
     result.geometry.eyes.points = from.array<EyePoint>();
     result.geometry.eyes.first = from.array<std::uint32_t>();
+    result.geometry.patches = from.value<std::uint32_t>();
     return result;
 }
 

@@ -63,6 +63,7 @@ Json header(const ResultFile& result, const PatchMesh& mesh) {
               {"environment", scene.environment},
               {"surfaces", mesh.surfaces().size()},
               {"patches", mesh.size()},
+              {"gathered", !result.solution.vertex_radiosity.empty()},
               {"solver", to_word(result.solution.method)},
               {"sweeps", result.solution.sweeps},
               {"residual", result.solution.residual},
@@ -107,12 +108,13 @@ std::vector<StoredSurface> stored_surfaces(const PatchMesh& mesh) {
     return result;
 }
 
-void check_array(const std::vector<double>& values, std::size_t size, const char* name) {
+template <class Number>
+void check_array(const std::vector<Number>& values, std::size_t size, const char* name) {
     if (values.size() != size) {
         throw InvalidArgument(
             fmt::format("{} values of {}; the solution needs {}", values.size(), name, size));
     }
-    for (const double value : values) {
+    for (const Number value : values) {
         if (!std::isfinite(value)) {
             throw InvalidArgument(fmt::format("{}: a value of {}; must be finite", name, value));
         }
@@ -178,6 +180,7 @@ void check_patch_size(const ResultFile& result, const Fail& fail) {
 struct Sizes {
     std::uint64_t surfaces = 0;
     std::uint64_t patches = 0;
+    bool gathered = false; ///< there is radiosity at vertices
 };
 
 Sizes read_header(const JsonNode& head, ResultFile& result) {
@@ -216,7 +219,8 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
         result.solution.patch_size_error = read_patch_size(head.member("patch_size_error"));
         result.solution.dominance = head.member("dominance").number();
     }
-    return {head.member("surfaces").integer(most), head.member("patches").integer(most)};
+    return {head.member("surfaces").integer(most), head.member("patches").integer(most),
+            head.has("gathered") && head.member("gathered").boolean()};
 }
 
 Surface scene_surface(const StoredSurface& stored) {
@@ -252,11 +256,12 @@ void read_surfaces(Payload payload, const Sizes& sizes, Scene& scene) {
     payload.expect_end();
 }
 
-std::vector<double> read_array(ChunkReader& reader, std::string_view tag, std::uint64_t size) {
+template <class Number = double>
+std::vector<Number> read_array(ChunkReader& reader, std::string_view tag, std::uint64_t size) {
     Payload payload = reader.chunk(tag);
-    std::vector<double> values = payload.take_array<double>(size);
+    std::vector<Number> values = payload.take_array<Number>(size);
     payload.expect_end();
-    for (const double value : values) {
+    for (const Number value : values) {
         if (!std::isfinite(value)) {
             payload.fail("a value that is not finite");
         }
@@ -275,7 +280,7 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     check_array(result.solution.row_sum, patches, "row sum");
     check_array(result.solution.environment_share, patches, "environment share");
     check_array(result.solution.back_face_share, patches, "blocked share");
-    check_array({result.solution.residual}, 1, "residual");
+    check_array(std::vector{result.solution.residual}, 1, "residual");
     const bool estimated = result.solution.factor_error && result.solution.error;
     if (estimated) {
         check_array(result.solution.factor_error->rows, patches, "error of a row");
@@ -285,6 +290,9 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     check_patch_size(result, [](const std::string& what) { throw InvalidArgument(what); });
     if (result.solution.patch_size_error) {
         check_array(result.solution.patch_size_error->patches, values, "error from the patches' size");
+    }
+    if (!result.solution.vertex_radiosity.empty()) {
+        check_array(result.solution.vertex_radiosity, values * 4, "radiosity at vertices");
     }
 
     ChunkWriter writer(path, hres_format);
@@ -301,6 +309,9 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     }
     if (result.solution.patch_size_error) {
         writer.chunk("PERR", {bytes_of(result.solution.patch_size_error->patches)});
+    }
+    if (!result.solution.vertex_radiosity.empty()) {
+        writer.chunk("VERT", {bytes_of(result.solution.vertex_radiosity)});
     }
     writer.finish();
 }
@@ -329,6 +340,9 @@ ResultFile read_hres(const std::filesystem::path& path) {
     }
     if (result.solution.patch_size_error) {
         result.solution.patch_size_error->patches = read_array(reader, "PERR", values);
+    }
+    if (sizes.gathered) {
+        result.solution.vertex_radiosity = read_array<float>(reader, "VERT", values * 4);
     }
     reader.finish();
     return result;

@@ -1,0 +1,57 @@
+#pragma once
+
+#include "hemi/core/progress.hpp"
+#include "hemi/engine/engine.hpp"
+#include "hemi/engine/visibility_provider.hpp"
+#include "hemi/engine/visibility_weighted.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+namespace hemi {
+
+/// A place on a surface that receives light, with a direction that it faces.
+struct SurfacePoint {
+    Vec3 position{0.0};         ///< scene units
+    Vec3 normal{0.0, 0.0, 1.0}; ///< of unit length
+    std::uint32_t surface = 0;  ///< index of the surface that it lies on: its plane hides nothing
+};
+
+/// Visibility of the patches from points, by one hemicube each: row k is that of point k, its columns are the
+/// patches. As make_visibility_engine() otherwise; eye points of the settings do not count.
+/// @param mesh      must outlive the engine
+/// @param points    are read here and not kept
+/// @param settings  what changes the rows
+/// @param engine    device and workers
+/// @throws InvalidArgument if a point's surface does not exist; as make_hemicube_engine()
+[[nodiscard]] std::unique_ptr<VisibilityProvider>
+make_point_visibility_engine(const PatchMesh& mesh, std::span<const SurfacePoint> points,
+                             const HemicubeSettings& settings, const EngineSettings& engine);
+
+/// Receives the row of point `index`: factors from it to the patches. The view is valid during the call only.
+using PointRowSink = std::function<void(std::uint32_t index, const RowView& row)>;
+
+/// Factors from points to all patches, as F(k, j) = F0(k, j)·V(k, j): what a small area at the point and
+/// facing along its normal sees of patch j. F0 is exact or by Gauss points (ExchangeAreas::at_point), V is
+/// the visible share of the texels that j covers in the point's hemicube, with shadow rays to those few
+/// patches whose share is least certain and matters most. Rows are closed: their sum, e and b make 1. Where
+/// nothing of the environment is seen (as compute_visibility_weighted() has it) the factors are scaled for
+/// it, else e is what is left.
+/// @param visibility  see make_point_visibility_engine()
+/// @param mesh        N patches
+/// @param points      that `visibility` is of
+/// @param settings    rule of F0, shadow rays a pair
+/// @param enclosure   as the scene says
+/// @param weights     how much each patch's light matters, N, for the choice of shadow rays; empty: all alike
+/// @param sink        gets the rows, block by block in any order; not from several threads at once
+/// @param progress    called after every batch of rows; may be empty
+/// @throws Cancelled; InvalidArgument if `weights` does not fit
+void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
+                        std::span<const SurfacePoint> points, const VisibilityWeightedSettings& settings,
+                        Enclosure enclosure, std::span<const double> weights, const PointRowSink& sink,
+                        const Progress& progress = {});
+
+} // namespace hemi

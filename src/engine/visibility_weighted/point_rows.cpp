@@ -1,0 +1,229 @@
+#include "hemi/engine/point_rows.hpp"
+
+#include "core/parallel_for.hpp"
+#include "engine/rays/shadow_rays.hpp"
+#include "engine/visibility_weighted/coplanar_neighbours.hpp"
+#include "engine/visibility_weighted/factor_assembly.hpp"
+#include "engine/visibility_weighted/visibility_sample.hpp"
+#include "hemi/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+namespace hemi {
+
+namespace {
+
+/// Rows whose factors are found at once, by all threads. Memory: 2 bytes a patch and row, and the rows.
+constexpr std::size_t batch_rows = 128;
+/// Patches of a row that get shadow rays: enough for the lamps of a room, few enough that rays take no more
+/// time than all else. Chosen, not fitted.
+constexpr std::size_t max_traced = 48;
+/// … and no more than have this share of the variance of the row's light.
+constexpr double traced_share = 0.95;
+
+/// A row before its factors.
+struct SampledPoint {
+    std::uint32_t index = 0;
+    std::vector<VisibilitySample> samples; ///< N
+    double environment = 0.0;
+    double blocked = 0.0;
+};
+
+/// A row of factors.
+struct PointRow {
+    std::vector<std::uint32_t> columns;
+    std::vector<float> values;
+    double environment = 0.0;
+};
+
+/// Factors of single rows; thread-safe.
+class PointRows {
+public:
+    PointRows(const PatchMesh& mesh, std::span<const SurfacePoint> points,
+              const VisibilityWeightedSettings& settings, Enclosure enclosure,
+              std::span<const double> weights)
+        : points_(points), rays_a_pair_(settings.shadow_rays), enclosure_(enclosure), weights_(weights),
+          areas_(mesh, settings.rule), neighbours_(mesh) {
+        if (rays_a_pair_ > 0) {
+            rays_.emplace(mesh);
+        }
+    }
+
+    [[nodiscard]] PointRow operator()(const SampledPoint& sampled) const {
+        std::vector<Entry> entries;
+        std::vector<Doubt> doubts;
+        const SurfacePoint& point = points_[sampled.index];
+        const double assumed = mean_share(sampled.samples);
+        for (std::uint32_t j = 0; j < sampled.samples.size(); ++j) {
+            VisibilitySample sample = sampled.samples[j];
+            const bool known = sample.known();
+            if (known && sample.share() == 0.0 && !rays_) {
+                continue;
+            }
+            const double unoccluded = areas_.at_point(point.position, point.normal, j);
+            if (unoccluded <= 0.0) {
+                continue;
+            }
+            if (!known) {
+                sample = neighbours_.stand_in(sampled.samples, j);
+            }
+            Entry entry{j, unoccluded, sample.known() ? sample.share() : assumed};
+            if (rays_ && !(known && sample.is_clear())) {
+                const double texels = known ? sample.weight() : 0.0;
+                doubts.push_back({entries.size(), texels, variance(entry, texels)});
+            }
+            entries.push_back(entry);
+        }
+        if (rays_) {
+            trace(sampled.index, entries, doubts);
+        }
+        return close(entries, sampled);
+    }
+
+private:
+    struct Entry {
+        std::uint32_t column;
+        double unoccluded;
+        double visibility;
+    };
+    /// An entry whose visibility is not certain.
+    struct Doubt {
+        std::size_t entry;
+        double texels;
+        double variance;
+    };
+
+    static double mean_share(std::span<const VisibilitySample> samples) {
+        double sum = 0.0;
+        std::size_t known = 0;
+        for (const VisibilitySample sample : samples) {
+            sum += sample.known() ? sample.share() : 0.0;
+            known += sample.known() ? 1 : 0;
+        }
+        return known == 0 ? 1.0 : sum / static_cast<double>(known);
+    }
+
+    /// Of the light that comes from the patch: that of a share found from so many independent trials, of
+    /// which one more could have come out either way.
+    [[nodiscard]] double variance(const Entry& entry, double texels) const {
+        const double share = (entry.visibility * texels + 0.5) / (texels + 1.0);
+        const double light = entry.unoccluded * (weights_.empty() ? 1.0 : weights_[entry.column]);
+        return light * light * share * (1.0 - share) / (texels + 1.0);
+    }
+
+    /// Adds shadow rays where most of the variance is.
+    void trace(std::uint32_t index, std::vector<Entry>& entries, std::vector<Doubt>& doubts) const {
+        const double total =
+            std::accumulate(doubts.begin(), doubts.end(), 0.0,
+                            [](double sum, const Doubt& doubt) { return sum + doubt.variance; });
+        const std::size_t most = std::min(max_traced, doubts.size());
+        std::partial_sort(doubts.begin(), doubts.begin() + static_cast<std::ptrdiff_t>(most), doubts.end(),
+                          [](const Doubt& a, const Doubt& b) {
+                              return a.variance != b.variance ? a.variance > b.variance : a.entry < b.entry;
+                          });
+        double traced = 0.0;
+        for (std::size_t k = 0; k < most && traced < traced_share * total; ++k) {
+            const Doubt& doubt = doubts[k];
+            Entry& entry = entries[doubt.entry];
+            const ShadowRays::Estimate estimate = rays_->visibility_from(
+                points_[index].position, points_[index].normal, entry.column, rays_a_pair_, index);
+            if (const double sum = doubt.texels + estimate.rays; estimate.rays > 0.0) {
+                entry.visibility =
+                    (doubt.texels * entry.visibility + estimate.rays * estimate.visibility) / sum;
+            }
+            traced += doubt.variance;
+        }
+    }
+
+    [[nodiscard]] PointRow close(const std::vector<Entry>& entries, const SampledPoint& sampled) const {
+        double sum = 0.0;
+        for (const Entry& entry : entries) {
+            sum += entry.unoccluded * entry.visibility;
+        }
+        PointRow row;
+        row.environment = sampled.environment;
+        double scale = 1.0;
+        if (sampled.environment > 0.0 && sees_environment(sampled.environment, enclosure_)) {
+            row.environment = std::max(0.0, 1.0 - sampled.blocked - sum);
+        } else if (sum > 0.0) {
+            scale = (1.0 - sampled.environment - sampled.blocked) / sum;
+        }
+        for (const Entry& entry : entries) {
+            const auto value = static_cast<float>(scale * entry.unoccluded * entry.visibility);
+            if (value > 0.0f) {
+                row.columns.push_back(entry.column);
+                row.values.push_back(value);
+            }
+        }
+        return row;
+    }
+
+    std::span<const SurfacePoint> points_;
+    std::uint32_t rays_a_pair_;
+    Enclosure enclosure_;
+    std::span<const double> weights_;
+    ExchangeAreas areas_;
+    CoplanarNeighbours neighbours_;
+    std::optional<ShadowRays> rays_;
+};
+
+} // namespace
+
+void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
+                        std::span<const SurfacePoint> points, const VisibilityWeightedSettings& settings,
+                        Enclosure enclosure, std::span<const double> weights, const PointRowSink& sink,
+                        const Progress& progress) {
+    if (visibility.size() != points.size() || (!weights.empty() && weights.size() != mesh.size())) {
+        throw InvalidArgument(fmt::format("point rows: {} rows for {} points, {} weights for {} patches",
+                                          visibility.size(), points.size(), weights.size(), mesh.size()));
+    }
+    const PointRows rows(mesh, points, settings, enclosure, weights);
+    std::vector<SampledPoint> batch;
+    std::size_t done = 0;
+    const auto finish_batch = [&] {
+        std::vector<PointRow> finished(batch.size());
+        parallel_for(batch.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                finished[k] = rows(batch[k]);
+            }
+        });
+        for (std::size_t k = 0; k < batch.size(); ++k) {
+            sink(batch[k].index,
+                 {finished[k].columns, finished[k].values, {}, finished[k].environment, batch[k].blocked});
+        }
+        done += batch.size();
+        batch.clear();
+        if (progress && !progress(done, points.size())) {
+            throw Cancelled();
+        }
+    };
+    std::vector<std::uint32_t> all(points.size());
+    std::iota(all.begin(), all.end(), 0u);
+    visibility.rows(all, [&](std::uint32_t index, const VisibilityRow& row) {
+        SampledPoint& sampled = batch.emplace_back();
+        sampled.index = index;
+        sampled.samples.resize(mesh.size());
+        for (std::size_t entry = 0; entry < row.columns.size(); ++entry) {
+            sampled.samples[row.columns[entry]] = {row.shares[entry], row.texels[entry]};
+        }
+        sampled.environment = row.environment;
+        sampled.blocked = row.blocked;
+        if (batch.size() == batch_rows) {
+            finish_batch();
+        }
+    });
+    if (!batch.empty()) {
+        finish_batch();
+    }
+    if (done != points.size()) {
+        throw Error(
+            fmt::format("{} gave {} of {} rows of points", visibility.renderer(), done, points.size()));
+    }
+}
+
+} // namespace hemi

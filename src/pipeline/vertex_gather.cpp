@@ -1,0 +1,334 @@
+#include "hemi/pipeline/vertex_gather.hpp"
+
+#include "display/smooth_surfaces.hpp"
+#include "display/vertex_colours_detail.hpp"
+
+#include "core/parallel_for.hpp"
+#include "hemi/core/buried.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/core/text.hpp"
+#include "hemi/display/vertex_colours.hpp"
+#include "pipeline/visible_radiosity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace hemi {
+
+namespace {
+
+constexpr std::uint32_t no_point = 0xFFFFFFFFu;
+/// A vertex on the rim of a surface is seen from so far within, as a share of the way to the middle of the
+/// patches that meet there. On the rim itself, walls that stand on it have no definite factor. Chosen, not
+/// fitted: far above rounding, and the field changes little over so short a way.
+constexpr double inwards = 0.1;
+/// Patches whose normals differ by less (one minus the cosine) lie in one plane.
+constexpr double flat = 1e-9;
+/// One hemicube has as many texels as the four of a patch by the same preset.
+constexpr std::uint32_t resolution_factor = 2;
+/// Corners that differ from their patch by less are not worth a gather; see corners_differ().
+constexpr double least_change = 2e-3;
+
+/// Rows that are kept: those of all points, one after the other.
+struct KeptRows {
+    std::vector<std::vector<std::uint32_t>> columns;
+    std::vector<std::vector<float>> values;
+    std::vector<double> environment;
+    std::vector<double> blocked;
+    std::uint64_t bytes = 0;
+};
+
+/// Whether the radiosity of patches and of their corners differs.
+bool corners_differ(const PatchMesh& mesh, const Solution& solution) {
+    const std::uint32_t channels = solution.channels;
+    const std::vector<float> corners =
+        corner_values(mesh, channels, solution.radiosity, solution.back_face_share);
+    for (std::uint32_t c = 0; c < channels; ++c) {
+        double change = 0.0;
+        double reflected = 0.0;
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            if (is_covered(solution.back_face_share, i)) {
+                continue;
+            }
+            const std::size_t at = std::size_t{i} * channels + c;
+            reflected += mesh.areas()[i] * std::pow(solution.radiosity[at] - solution.exitance[at], 2.0);
+            const std::uint32_t count = mesh.corners(i).count;
+            for (std::uint32_t k = 0; k < count; ++k) {
+                const auto corner = static_cast<double>(corners[(std::size_t{i} * 4 + k) * channels + c]);
+                change += mesh.areas()[i] * std::pow(corner - solution.radiosity[at], 2.0) / count;
+            }
+        }
+        if (change > least_change * least_change * reflected) {
+            return true;
+        }
+    }
+    return false;
+}
+
+} // namespace
+
+struct VertexGather::State {
+    State(const PatchMesh& the_mesh, std::span<const double> the_blocked,
+          std::span<const std::uint32_t> patches)
+        : mesh(the_mesh), surfaces(the_mesh), blocked(the_blocked.begin(), the_blocked.end()),
+          near(patches_near_surfaces(the_mesh)), point_of(std::size_t{the_mesh.size()} * 4, no_point) {
+        std::map<std::vector<std::uint32_t>, std::uint32_t> found; // patches that meet, of one vertex
+        std::vector<std::vector<std::uint32_t>> corners_at(surfaces.vertex_count());
+        for (const std::uint32_t patch : patches) {
+            if (!is_covered(blocked, patch)) {
+                const auto ring = surfaces.corners(patch);
+                for (std::uint32_t k = 0; k < ring.size(); ++k) {
+                    corners_at[ring[k]].push_back(patch * 4 + k);
+                }
+            }
+        }
+        for (std::uint32_t vertex = 0; vertex < corners_at.size(); ++vertex) {
+            found.clear();
+            for (const std::uint32_t corner : corners_at[vertex]) {
+                std::vector<std::uint32_t> meeting = patches_around(corner / 4, vertex);
+                const auto [entry, is_new] =
+                    found.try_emplace(std::move(meeting), static_cast<std::uint32_t>(points.size()));
+                if (is_new) {
+                    add_point(surfaces.position(vertex), entry->first);
+                }
+                point_of[corner] = entry->second;
+            }
+        }
+    }
+
+    /// Uncovered patches that meet at a vertex and continue one of them.
+    [[nodiscard]] std::vector<std::uint32_t> patches_around(std::uint32_t patch, std::uint32_t vertex) const {
+        std::vector<std::uint32_t> meeting;
+        for (const std::uint32_t other : surfaces.patches_at(vertex)) {
+            if (!is_covered(blocked, other) && surfaces.continues(patch, other)) {
+                meeting.push_back(other);
+            }
+        }
+        return meeting;
+    }
+
+    void add_point(const Vec3& vertex, const std::vector<std::uint32_t>& meeting) {
+        std::uint32_t largest = meeting[0];
+        Vec3 normal(0.0);
+        Vec3 middle(0.0);
+        for (const std::uint32_t patch : meeting) {
+            largest = mesh.areas()[patch] > mesh.areas()[largest] ? patch : largest;
+            normal += mesh.areas()[patch] * mesh.normal(patch);
+            middle += mesh.centres()[patch] / static_cast<double>(meeting.size());
+        }
+        const Vec3 own = mesh.normal(largest);
+        const bool in_one_plane = std::all_of(meeting.begin(), meeting.end(), [&](std::uint32_t patch) {
+            return glm::dot(mesh.normal(patch), own) > 1.0 - flat;
+        });
+        // A point of a curved surface lies on one of its patches, since between them it would be inside.
+        const Vec3 within = in_one_plane ? middle : mesh.centres()[largest];
+        points.push_back({vertex + inwards * (within - vertex), in_one_plane ? own : glm::normalize(normal),
+                          mesh.surface_of()[largest]});
+        hosts.push_back(largest);
+    }
+
+    /// Radiosity at a point, from its row.
+    void light(std::uint32_t index, const RowView& row, const PatchValues& values,
+               std::span<const double> radiosity, std::span<float> light) const {
+        const std::uint32_t channels = values.channels;
+        std::vector<double> sum(channels, 0.0);
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            const double* const source = radiosity.data() + std::size_t{row.columns[k]} * channels;
+            for (std::uint32_t c = 0; c < channels; ++c) {
+                sum[c] += static_cast<double>(row.values[k]) * source[c];
+            }
+        }
+        for (std::uint32_t c = 0; c < channels; ++c) {
+            const std::size_t at = std::size_t{hosts[index]} * channels + c;
+            const double from_environment =
+                values.environment.empty() ? 0.0 : row.environment * values.environment[c];
+            light[c] = static_cast<float>(values.exitance[at] +
+                                          values.reflectance[at] * (sum[c] + from_environment));
+        }
+    }
+
+    [[nodiscard]] std::vector<double> visible(const PatchValues& values,
+                                              std::span<const double> radiosity) const {
+        return visible_radiosity(mesh, surfaces, near, values.channels, radiosity, values.exitance, blocked);
+    }
+
+    void check(const PatchValues& values, std::span<const double> radiosity) const {
+        const std::size_t count = std::size_t{mesh.size()} * values.channels;
+        if (radiosity.size() != count || values.reflectance.size() != count ||
+            values.exitance.size() != count ||
+            (!values.environment.empty() && values.environment.size() != values.channels)) {
+            throw InvalidArgument(fmt::format("gather: {} values for {} patches of {} channels",
+                                              radiosity.size(), mesh.size(), values.channels));
+        }
+    }
+
+    /// Values of the points as values of all corners.
+    [[nodiscard]] std::vector<float> corners(const std::vector<float>& at_points,
+                                             const std::vector<std::uint8_t>& buried, std::uint32_t channels,
+                                             std::span<const double> radiosity) const {
+        GivenCorners given;
+        given.values.assign(point_of.size() * channels, 0.0F);
+        given.kinds.assign(point_of.size(), GivenCorners::Kind::mean);
+        for (std::size_t corner = 0; corner < point_of.size(); ++corner) {
+            const std::uint32_t point = point_of[corner];
+            if (point == no_point) {
+                continue;
+            }
+            given.kinds[corner] =
+                buried[point] != 0 ? GivenCorners::Kind::unknown : GivenCorners::Kind::given;
+            std::copy_n(at_points.begin() + static_cast<std::ptrdiff_t>(std::size_t{point} * channels),
+                        channels, given.values.begin() + static_cast<std::ptrdiff_t>(corner * channels));
+        }
+        return corner_values(mesh, surfaces, channels, radiosity, blocked, given);
+    }
+
+    const PatchMesh& mesh;
+    SmoothSurfaces surfaces;
+    std::vector<double> blocked;
+    std::vector<std::uint32_t> near;     ///< patches that have a surface near in front of them
+    std::vector<std::uint32_t> point_of; ///< of corner k of patch i at [i·4 + k]
+    std::vector<SurfacePoint> points;
+    std::vector<std::uint32_t> hosts; ///< patch that each point lies on
+    KeptRows kept;
+};
+
+VertexGather::VertexGather(const PatchMesh& mesh, std::span<const double> blocked,
+                           std::span<const std::uint32_t> patches)
+    : state_(std::make_unique<State>(mesh, blocked, patches)) {}
+VertexGather::~VertexGather() = default;
+VertexGather::VertexGather(VertexGather&&) noexcept = default;
+VertexGather& VertexGather::operator=(VertexGather&&) noexcept = default;
+
+std::span<const SurfacePoint> VertexGather::points() const {
+    return state_->points;
+}
+
+std::vector<float> VertexGather::compute(const PatchValues& values, std::span<const double> radiosity,
+                                         const FactorSettings& settings, Enclosure enclosure,
+                                         std::uint64_t keep_bytes, Observer& observer) {
+    State& state = *state_;
+    state.check(values, radiosity);
+    const std::vector<double> seen = state.visible(values, radiosity);
+    state.kept = {};
+    const std::uint32_t channels = values.channels;
+    std::vector<float> at_points(state.points.size() * channels, 0.0F);
+    std::vector<std::uint8_t> buried(state.points.size(), 0);
+    if (!state.points.empty()) {
+        RowPlan plan = plan_rows(settings, state.mesh.size());
+        if (plan.hemicube.eye_points > 1) {
+            plan.hemicube.resolution *= resolution_factor;
+        }
+        std::vector<double> weights(state.mesh.size());
+        for (std::uint32_t j = 0; j < state.mesh.size(); ++j) {
+            weights[j] = *std::max_element(radiosity.begin() + std::ptrdiff_t{j} * channels,
+                                           radiosity.begin() + (std::ptrdiff_t{j} + 1) * channels);
+        }
+        bool keep = keep_bytes > 0;
+        if (keep) {
+            state.kept.columns.resize(state.points.size());
+            state.kept.values.resize(state.points.size());
+            state.kept.environment.resize(state.points.size());
+            state.kept.blocked.resize(state.points.size());
+        }
+        const auto engine = make_point_visibility_provider(state.mesh, state.points, plan.hemicube, settings);
+        compute_point_rows(
+            *engine, state.mesh, state.points, plan.weighted.value_or(VisibilityWeightedSettings{}),
+            enclosure, weights,
+            [&](std::uint32_t index, const RowView& row) {
+                state.light(index, row, values, seen,
+                            std::span(at_points).subspan(std::size_t{index} * channels, channels));
+                buried[index] = row.blocked > buried_above ? 1 : 0;
+                if (!keep) {
+                    return;
+                }
+                state.kept.bytes += row.columns.size() * (sizeof(std::uint32_t) + sizeof(float));
+                if (state.kept.bytes > keep_bytes) {
+                    keep = false;
+                    state.kept = {};
+                    return;
+                }
+                state.kept.columns[index].assign(row.columns.begin(), row.columns.end());
+                state.kept.values[index].assign(row.values.begin(), row.values.end());
+                state.kept.environment[index] = row.environment;
+                state.kept.blocked[index] = row.blocked;
+            },
+            [&observer](std::size_t done, std::size_t total) {
+                return observer.progress(Phase::gather, done, total);
+            });
+    }
+    return state.corners(at_points, buried, channels, radiosity);
+}
+
+bool VertexGather::has_rows() const {
+    return !state_->kept.columns.empty() || state_->points.empty();
+}
+
+std::vector<float> VertexGather::gather(const PatchValues& values, std::span<const double> radiosity) const {
+    const State& state = *state_;
+    state.check(values, radiosity);
+    if (!has_rows()) {
+        throw InvalidArgument("gather: no rows were kept");
+    }
+    const std::vector<double> seen = state.visible(values, radiosity);
+    const std::uint32_t channels = values.channels;
+    std::vector<float> at_points(state.points.size() * channels, 0.0F);
+    std::vector<std::uint8_t> buried(state.points.size(), 0);
+    constexpr std::size_t points_at_once = 64;
+    parallel_for(state.points.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const RowView row{state.kept.columns[k],
+                              state.kept.values[k],
+                              {},
+                              state.kept.environment[k],
+                              state.kept.blocked[k]};
+            state.light(static_cast<std::uint32_t>(k), row, values, seen,
+                        std::span(at_points).subspan(k * channels, channels));
+            buried[k] = row.blocked > buried_above ? 1 : 0;
+        }
+    });
+    return state.corners(at_points, buried, channels, radiosity);
+}
+
+bool should_gather(Gather wanted, const FactorSettings& settings, const PatchMesh& mesh,
+                   const Solution& solution) {
+    if (wanted != Gather::automatic) {
+        return wanted == Gather::on;
+    }
+    return settings.method == Method::hemicube && settings.preset != Preset::plain &&
+           settings.preset != Preset::fast && corners_differ(mesh, solution);
+}
+
+void gather_at_vertices(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,
+                        Gather wanted, Solution& solution, Observer& observer) {
+    gather_at_vertices(mesh, patch_values(scene, mesh), scene.enclosure, settings, wanted, solution,
+                       observer);
+}
+
+void gather_at_vertices(const PatchMesh& mesh, const PatchValues& values, Enclosure enclosure,
+                        const FactorSettings& settings, Gather wanted, Solution& solution,
+                        Observer& observer) {
+    solution.vertex_radiosity.clear();
+    if (!should_gather(wanted, settings, mesh, solution)) {
+        return;
+    }
+    const Stopwatch watch;
+    std::vector<std::uint32_t> reflecting;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const auto own =
+            std::span(values.reflectance).subspan(std::size_t{i} * values.channels, values.channels);
+        if (std::any_of(own.begin(), own.end(), [](double rho) { return rho > 0.0; })) {
+            reflecting.push_back(i);
+        }
+    }
+    VertexGather gather(mesh, solution.back_face_share, reflecting);
+    solution.vertex_radiosity = gather.compute(values, solution.radiosity, settings, enclosure, 0, observer);
+    observer.detail(fmt::format("gathered at {} vertices in {}", count_text(gather.points().size()),
+                                seconds_text(watch.seconds())));
+}
+
+} // namespace hemi

@@ -1,0 +1,184 @@
+#include "hemi/engine/point_rows.hpp"
+
+#include "support/device.hpp"
+#include "support/polygon_factors.hpp"
+#include "support/scenes.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/engine/exchange_area.hpp"
+#include "hemi/pipeline/settings.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace hemi;
+using namespace hemi::test;
+
+namespace {
+
+struct StoredRow {
+    std::vector<std::uint32_t> columns;
+    std::vector<float> values;
+    double environment = 0.0;
+    double blocked = 0.0;
+
+    [[nodiscard]] double sum() const { return RowView{columns, values}.sum(); }
+    [[nodiscard]] double at(std::uint32_t j) const {
+        const auto found = std::find(columns.begin(), columns.end(), j);
+        return found == columns.end()
+                   ? 0.0
+                   : static_cast<double>(values[static_cast<std::size_t>(found - columns.begin())]);
+    }
+};
+
+std::vector<StoredRow> rows_of(const PatchMesh& mesh, const std::vector<SurfacePoint>& points,
+                               std::uint32_t shadow_rays, std::uint32_t jobs = 1,
+                               Enclosure enclosure = Enclosure::automatic) {
+    FactorSettings settings;
+    settings.engine.device = test_device();
+    settings.engine.jobs = jobs;
+    HemicubeSettings hemicube;
+    hemicube.resolution = 128;
+    const auto engine = make_point_visibility_provider(mesh, points, hemicube, settings);
+    std::vector<StoredRow> rows(points.size());
+    compute_point_rows(*engine, mesh, points, {ExchangeRule::standard, shadow_rays}, enclosure, {},
+                       [&rows](std::uint32_t index, const RowView& row) {
+                           rows[index] = {{row.columns.begin(), row.columns.end()},
+                                          {row.values.begin(), row.values.end()},
+                                          row.environment,
+                                          row.blocked};
+                       });
+    return rows;
+}
+
+} // namespace
+
+TEST_CASE("ExchangeAreas::at_point: far and near, it is Lambert's factor", "[engine]") {
+    const PatchMesh mesh(room_with_blocks(3));
+    const ExchangeAreas areas(mesh);
+    const Vec3 normal = glm::normalize(Vec3(0.2, -0.1, 1.0));
+    double largest = 0.0;
+    double sum = 0.0;
+    for (const Vec3& at : {Vec3(0.3, 0.3, 0.1), Vec3(1.1, 0.1, 0.7), Vec3(0.61, 0.52, 0.001)}) {
+        for (std::uint32_t j = 0; j < mesh.size(); ++j) {
+            const double exact = hemi::point_factor(at, normal, mesh.corners(j).polygon());
+            largest = std::max(largest, std::abs(areas.at_point(at, normal, j) - exact));
+            sum += exact;
+        }
+    }
+    CHECK(largest < 2e-6);
+    CHECK(sum > 3.0); // every point sees at least a room
+}
+
+TEST_CASE("ExchangeAreas::at_point: a patch far below, behind or in the plane of an element has none",
+          "[engine]") {
+    Scene scene = empty_scene();
+    add_polygon(scene, "floor", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    const PatchMesh mesh(scene);
+    const ExchangeAreas areas(mesh);
+    CHECK(areas.at_point({0.5, 0.5, 40.0}, {0, 0, 1}, 0) == 0.0);
+    CHECK(areas.at_point({0.5, 0.5, -40.0}, {0, 0, 1}, 0) == 0.0);
+    CHECK(areas.at_point({3.0, 0.5, 0.0}, {1, 0, 0}, 0) == 0.0);
+    CHECK(areas.at_point({0.5, 0.5, 40.0}, {0, 0, -1}, 0) ==
+          Approx(hemi::point_factor({0.5, 0.5, 40.0}, {0, 0, -1}, mesh.corners(0).polygon())).epsilon(1e-6));
+}
+
+TEST_CASE("point rows: in a closed room they are exact where nothing hides, and sum to 1",
+          "[engine][every-device]") {
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(3.0, 2.0, 1.0), 4);
+    const PatchMesh mesh(scene);
+    std::vector<SurfacePoint> points;
+    std::uint32_t floor = 0;
+    for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
+        if (mesh.groups()[mesh.surfaces()[s].group] == "z0") {
+            floor = s;
+        }
+    }
+    for (const Vec3& at : {Vec3(1.5, 1.0, 0.0), Vec3(0.01, 0.02, 0.0), Vec3(2.9, 1.0, 0.0)}) {
+        points.push_back({at, {0, 0, 1}, floor});
+    }
+    const auto rows = rows_of(mesh, points, 16);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        CHECK(rows[k].sum() == Approx(1.0).margin(1e-6));
+        CHECK(rows[k].environment + rows[k].blocked < 1e-4);
+        for (std::uint32_t j = 0; j < mesh.size(); ++j) {
+            const double exact =
+                hemi::point_factor(points[k].position, points[k].normal, mesh.corners(j).polygon());
+            REQUIRE(rows[k].at(j) == Approx(exact).margin(1e-5));
+        }
+    }
+}
+
+TEST_CASE("point rows: without walls, what is left is the environment", "[engine][every-device]") {
+    const PatchMesh mesh(two_plates(false));
+    const std::vector<SurfacePoint> points{{{0.5, 0.5, 0.0}, {0, 0, 1}, 0}};
+    const auto rows = rows_of(mesh, points, 16);
+    const double wall = rows[0].sum();
+    CHECK(wall > 0.1);
+    CHECK(rows[0].environment == Approx(1.0 - wall).margin(1e-12));
+    CHECK(rows[0].blocked == 0.0);
+}
+
+TEST_CASE("point rows: a sheet before a lamp hides its share of it", "[engine][every-device]") {
+    // Lamp over x in [-0.1, 0.1]; the sheet half way ends at x = 0.2: from x on the floor it covers the lamp
+    // from where the ray through its edge meets the lamp's plane, at 0.4 - x, upwards.
+    Scene scene = empty_scene();
+    add_polygon(scene, "floor", {{-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}});
+    add_polygon(scene, "lamp", {{-0.1, -0.1, 2}, {-0.1, 0.1, 2}, {0.1, 0.1, 2}, {0.1, -0.1, 2}});
+    add_polygon(scene, "sheet", {{0.2, -2, 1}, {0.2, 2, 1}, {2.5, 2, 1}, {2.5, -2, 1}});
+    const PatchMesh mesh(scene);
+    std::vector<SurfacePoint> points;
+    for (double x = 0.2; x < 0.61; x += 0.02) {
+        points.push_back({{x, 0.013, 0.0}, {0, 0, 1}, 0});
+    }
+    const auto error_of = [&](std::uint32_t shadow_rays) {
+        const auto rows = rows_of(mesh, points, shadow_rays);
+        double squares = 0.0;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const double edge = std::clamp(0.4 - points[k].position.x, -0.1, 0.1);
+            const std::vector<Vec3> seen{{-0.1, -0.1, 2}, {-0.1, 0.1, 2}, {edge, 0.1, 2}, {edge, -0.1, 2}};
+            const double exact = edge > -0.1 ? hemi::point_factor(points[k].position, {0, 0, 1}, seen) : 0.0;
+            const double whole = hemi::point_factor(points[k].position, {0, 0, 1}, mesh.corners(1).polygon());
+            squares += std::pow((rows[k].at(1) - exact) / whole, 2.0);
+        }
+        return std::sqrt(squares / static_cast<double>(points.size()));
+    };
+    const double by_texels = error_of(0);
+    const double by_rays = error_of(64);
+    CHECK(by_rays < 0.02);
+    CHECK(by_rays < 0.5 * by_texels); // the lamp has some 40 texels
+}
+
+TEST_CASE("point rows: the same bits by one and by two jobs", "[engine][every-device]") {
+    const PatchMesh mesh(room_with_blocks(4));
+    std::vector<SurfacePoint> points;
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        const std::uint32_t patch = i * (mesh.size() - 1) / 199;
+        points.push_back({mesh.centres()[patch], mesh.normal(patch), mesh.surface_of()[patch]});
+    }
+    const auto one = rows_of(mesh, points, 16, 1);
+    const auto two = rows_of(mesh, points, 16, 2);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        REQUIRE(one[k].columns == two[k].columns);
+        REQUIRE(one[k].values == two[k].values);
+        REQUIRE(one[k].environment == two[k].environment);
+    }
+}
+
+TEST_CASE("point rows: points and weights that do not fit are refused", "[engine]") {
+    const PatchMesh mesh(two_plates(false));
+    FactorSettings settings;
+    settings.engine.device = "cpu";
+    const std::vector<SurfacePoint> nowhere{{{0, 0, 0}, {0, 0, 1}, 7}};
+    CHECK_THROWS_AS(make_point_visibility_provider(mesh, nowhere, {}, settings), InvalidArgument);
+    const std::vector<SurfacePoint> points{{{0.5, 0.5, 0.0}, {0, 0, 1}, 0}};
+    const auto engine = make_point_visibility_provider(mesh, points, {}, settings);
+    const std::vector<double> weights(7, 1.0);
+    CHECK_THROWS_AS(compute_point_rows(*engine, mesh, points, {}, Enclosure::automatic, weights,
+                                       [](std::uint32_t, const RowView&) {}),
+                    InvalidArgument);
+}

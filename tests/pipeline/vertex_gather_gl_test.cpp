@@ -1,0 +1,207 @@
+#include "hemi/pipeline/vertex_gather.hpp"
+
+#include "support/device.hpp"
+#include "support/scenes.hpp"
+
+#include "hemi/core/buried.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/display/picture.hpp"
+#include "hemi/display/vertex_colours.hpp"
+#include "hemi/engine/exchange_area.hpp"
+#include "hemi/pipeline/form_factors.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace hemi;
+using namespace hemi::test;
+
+namespace {
+
+FactorSettings settings_of(Preset preset) {
+    FactorSettings settings;
+    settings.preset = preset;
+    settings.estimate_error = false;
+    settings.engine.device = test_device();
+    settings.engine.jobs = 2;
+    return settings;
+}
+
+Solution solved(const Scene& scene, const PatchMesh& mesh, Preset preset = Preset::standard) {
+    const FormFactors factors = compute_form_factors(scene, mesh, settings_of(preset));
+    return solve_radiosity(scene, mesh, factors);
+}
+
+double at_corner(const Solution& solution, std::uint32_t patch, std::uint32_t corner) {
+    return static_cast<double>(solution.vertex_radiosity[std::size_t{patch} * 4 + corner]);
+}
+
+/// A floor that a lamp lights past a sheet half way up, in the open; floor and sheet reflect nothing back
+/// and forth: the lamp and the sheet are black.
+Scene lamp_and_sheet(std::uint32_t cells) {
+    Scene scene = empty_scene();
+    scene.materials.push_back({"lamp", {0.0}, {10.0}});
+    scene.materials.push_back({"black", {0.0}, {0.0}});
+    add_polygon(scene, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {cells, cells});
+    add_polygon(scene, "lamp", {{-0.1, -0.1, 2}, {-0.1, 0.1, 2}, {0.1, 0.1, 2}, {0.1, -0.1, 2}}, {2, 2});
+    scene.surfaces.back().material = 1;
+    add_polygon(scene, "sheet", {{-0.15, -0.2, 1}, {0.25, -0.2, 1}, {0.25, 0.2, 1}, {-0.15, 0.2, 1}});
+    scene.surfaces.back().material = 2;
+    scene.surfaces.back().two_sided = true;
+    return scene;
+}
+
+/// Radiosity of the floor there: the lamp less the part behind the sheet, whose image on the lamp's plane is
+/// a rectangle twice as large.
+double exact_floor(const Vec3& at) {
+    const auto lamp_part = [&at](double x0, double x1, double y0, double y1) {
+        if (!(x0 < x1 && y0 < y1)) {
+            return 0.0;
+        }
+        const std::vector<Vec3> part{{x0, y0, 2}, {x0, y1, 2}, {x1, y1, 2}, {x1, y0, 2}};
+        return point_factor(at, {0, 0, 1}, part);
+    };
+    const double hidden = lamp_part(std::max(-0.1, -0.3 - at.x), std::min(0.1, 0.5 - at.x),
+                                    std::max(-0.1, -0.4 - at.y), std::min(0.1, 0.4 - at.y));
+    return 0.5 * 10.0 * (lamp_part(-0.1, 0.1, -0.1, 0.1) - hidden);
+}
+
+} // namespace
+
+TEST_CASE("gather: vertices of a floor behind a sheet have their own light", "[pipeline][every-device]") {
+    const Scene scene = lamp_and_sheet(16);
+    const PatchMesh mesh(scene);
+    Solution solution = solved(scene, mesh);
+    const auto error_of = [&](const std::vector<float>& corners) {
+        double squares = 0.0;
+        double light = 0.0;
+        for (std::uint32_t i = 0; i < 16 * 16; ++i) {
+            const PatchCorners at = mesh.corners(i);
+            for (std::uint32_t k = 0; k < 4; ++k) {
+                const double exact = exact_floor(at.points[k]);
+                squares += std::pow(static_cast<double>(corners[std::size_t{i} * 4 + k]) - exact, 2.0);
+                light += exact * exact;
+            }
+        }
+        return std::sqrt(squares / light);
+    };
+    const double means = error_of(corner_values(mesh, 1, solution.radiosity, solution.back_face_share));
+    gather_at_vertices(scene, mesh, settings_of(Preset::standard), Gather::automatic, solution);
+    REQUIRE(solution.vertex_radiosity.size() == std::size_t{mesh.size()} * 4);
+    const double gathered = error_of(solution.vertex_radiosity);
+    CHECK(gathered < 0.02);
+    CHECK(gathered < 0.2 * means);
+    // The lamp's vertices have what it radiates.
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        CHECK(at_corner(solution, 256, k) == 10.0);
+    }
+}
+
+TEST_CASE("gather: in a furnace every vertex has the radiosity of all", "[pipeline][every-device]") {
+    Scene scene = empty_scene();
+    scene.materials[0] = {"wall", {0.5}, {1.0}};
+    add_room(scene, Vec3(0.0), Vec3(1.0), 10);
+    add_block(scene, "block", Vec3(0.3, 0.4, 0.0), Vec3(0.6, 0.7, 0.3), 3); // along the floor's patches
+    const PatchMesh mesh(scene);
+    Solution solution = solved(scene, mesh);
+    gather_at_vertices(scene, mesh, settings_of(Preset::standard), Gather::automatic, solution);
+    CHECK(solution.vertex_radiosity.empty()); // it would change nothing
+    gather_at_vertices(scene, mesh, settings_of(Preset::standard), Gather::on, solution);
+    REQUIRE(solution.vertex_radiosity.size() == std::size_t{mesh.size()} * 4);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        for (std::uint32_t k = 0; k < 4 && solution.back_face_share[i] < buried_above; ++k) {
+            REQUIRE(at_corner(solution, i, k) == Approx(2.0).epsilon(5e-4));
+        }
+    }
+}
+
+TEST_CASE("gather: a vertex under a block is not taken for dark", "[pipeline]") {
+    // The block's foot goes through the middle of floor patches.
+    Scene scene = empty_scene();
+    scene.materials[0].reflectance = {0.8};
+    scene.materials.push_back({"lamp", {0.5}, {10.0}});
+    add_room(scene, Vec3(0.0), Vec3(1.0), 8);
+    for (Surface& surface : scene.surfaces) {
+        surface.material = scene.groups[surface.group] == "z1" ? 1 : 0;
+    }
+    add_block(scene, "block", Vec3(0.3, 0.3, 0.0), Vec3(0.7, 0.7, 0.3), 4);
+    const PatchMesh mesh(scene);
+    Solution solution = solved(scene, mesh);
+    gather_at_vertices(scene, mesh, settings_of(Preset::standard), Gather::on, solution);
+    double darkest = 1e9;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        if (mesh.groups()[mesh.group(i)] != "z0") {
+            continue;
+        }
+        const PatchCorners at = mesh.corners(i);
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            const Vec3& point = at.points[k];
+            const bool under = point.x > 0.3 && point.x < 0.7 && point.y > 0.3 && point.y < 0.7;
+            darkest = under ? darkest : std::min(darkest, at_corner(solution, i, k));
+        }
+    }
+    CHECK(darkest > 3.5); // on a grid five times as fine the darkest has 4.3
+}
+
+TEST_CASE("gather: kept rows give the same again, and follow other materials", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(6);
+    const PatchMesh mesh(scene);
+    const Solution solution = solved(scene, mesh);
+    const PatchValues values = patch_values(scene, mesh);
+    VertexGather gather(mesh, solution.back_face_share, all_patches(mesh.size()));
+    CHECK_FALSE(gather.has_rows());
+    CHECK_THROWS_AS(gather.gather(values, solution.radiosity), InvalidArgument);
+    const FactorSettings settings = settings_of(Preset::standard);
+    const auto once =
+        gather.compute(values, solution.radiosity, settings, scene.enclosure, std::uint64_t{1} << 30);
+    REQUIRE(gather.has_rows());
+    CHECK(gather.gather(values, solution.radiosity) == once);
+    PatchValues brighter = values;
+    std::vector<double> radiosity = solution.radiosity;
+    for (double& value : brighter.exitance) {
+        value *= 2.0;
+    }
+    for (double& value : radiosity) {
+        value *= 2.0;
+    }
+    const auto twice = gather.gather(brighter, radiosity);
+    for (std::size_t k = 0; k < once.size(); ++k) {
+        REQUIRE(twice[k] == 2.0F * once[k]);
+    }
+    // Not enough memory: nothing is kept, and the values are the same.
+    CHECK(gather.compute(values, solution.radiosity, settings, scene.enclosure, 1000) == once);
+    CHECK_FALSE(gather.has_rows());
+    CHECK_THROWS_AS(gather.compute(values, std::vector<double>(3, 1.0), settings, scene.enclosure),
+                    InvalidArgument);
+}
+
+TEST_CASE("gather: automatic leaves plain and fast pictures alone", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4);
+    const PatchMesh mesh(scene);
+    for (const Preset preset : {Preset::plain, Preset::fast}) {
+        Solution solution = solved(scene, mesh, preset);
+        gather_at_vertices(scene, mesh, settings_of(preset), Gather::automatic, solution);
+        CHECK(solution.vertex_radiosity.empty());
+        gather_at_vertices(scene, mesh, settings_of(preset), Gather::on, solution);
+        CHECK(solution.vertex_radiosity.size() == std::size_t{mesh.size()} * 4);
+        gather_at_vertices(scene, mesh, settings_of(preset), Gather::off, solution);
+        CHECK(solution.vertex_radiosity.empty());
+    }
+}
+
+TEST_CASE("gather: a picture shows the gathered values", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4);
+    const PatchMesh mesh(scene);
+    Solution solution = solved(scene, mesh);
+    gather_at_vertices(scene, mesh, settings_of(Preset::standard), Gather::on, solution);
+    const PictureMesh picture = make_picture_mesh(mesh, 1, solution.radiosity, solution.back_face_share,
+                                                  {0, 0, 0}, solution.vertex_radiosity);
+    for (std::size_t corner = 0; corner < std::size_t{mesh.size()} * 4; ++corner) {
+        REQUIRE(picture.corners[corner * 3] == solution.vertex_radiosity[corner]);
+    }
+    CHECK_THROWS_AS(make_picture_mesh(mesh, 1, solution.radiosity, {}, {0, 0, 0}, std::vector<float>(3)),
+                    InvalidArgument);
+}
