@@ -21,7 +21,7 @@ layout(location = 4) flat in vec4 grid_at_eye;
 layout(std140, binding = 0) uniform View {
     vec3 right, up, depth;
     vec3 eye_high, eye_low;
-    uint own_polygon;
+    uint own_polygon, own_count;
     uint first_row;
     float texel;
     float near, tolerance;
@@ -95,7 +95,8 @@ void show() {
     bool front = (cells.z & 4u) != 0u;
     bool turned_over = gl_FrontFacing != front;
     id = turned_over && cells.x == 1u ? cells.w : cells.x;
-    if (cells.y != 0x10001u && id > 1u) {
+    bool one_cell = cells.y == 0x10001u && (cells.z & 1u) == 0u;
+    if (!one_cell && id > 1u) {
         float reach = 1.0 / max(inverse, 1e-30);
         vec2 at = grid_at_eye.xy + reach * vec2(dot(along_u, direction), dot(along_v, direction));
         id += cell_at(at, grid_at_eye.zw);

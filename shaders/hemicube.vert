@@ -23,7 +23,8 @@ struct GridMap {
 layout(std140, binding = 0) uniform View {
     vec3 right, up, depth; // axes of the face
     vec3 eye_high, eye_low;
-    uint own_polygon;      // that the eye lies on
+    uint own_polygon;      // the first of those that the eye lies on
+    uint own_count;        // and how many they are
     uint first_row;        // of the square that the face, made whole, has in the atlas
     float texel;           // on the face at depth 1
     float near, tolerance;
@@ -57,7 +58,7 @@ void main() {
     cells = uvec4(0u);
     along_u = along_v = vec3(0.0);
     grid_at_eye = vec4(0.0);
-    if (polygon == own_polygon || abs(height) <= tolerance) { // its own, or edge-on
+    if (polygon - own_polygon < own_count || abs(height) <= tolerance) { // its own, or edge-on
         gl_Position = vec4(0.0, 0.0, 1.0, -1.0);
         gl_ClipDistance[0] = gl_ClipDistance[1] = gl_ClipDistance[2] = gl_ClipDistance[3] = -1.0;
         return;

@@ -36,48 +36,6 @@ constexpr double least_doubt = 0.03;
 // Variance of a linear field over that of its means over four equal parts.
 constexpr double linear_over_quarters = 4.0 / 3.0;
 
-/// The scene cut twice as fine each way.
-PatchMesh quartered(const Scene& scene, const PatchMesh& mesh) {
-    Scene fine = scene;
-    for (std::uint32_t s = 0; s < fine.surfaces.size(); ++s) {
-        const Grid grid = mesh.grid(s);
-        fine.surfaces[s].patches = Grid{2 * grid.u, 2 * grid.v};
-    }
-    return PatchMesh(fine);
-}
-
-/// For every patch of `fine` the patch of `mesh` that it is a quarter of.
-std::vector<std::uint32_t> find_parents(const PatchMesh& mesh, const PatchMesh& fine) {
-    std::vector<std::uint32_t> parents(fine.size());
-    std::vector<std::uint32_t> by_cell;
-    for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
-        const Grid grid = mesh.grid(s);
-        const auto cell = [&grid](double u, double v) {
-            const double i = std::floor(u);
-            const double j = std::floor(v);
-            const std::size_t half = (u - i) + (v - j) > 1.0 + 1e-6 ? 1 : 0;
-            return 2 * (static_cast<std::size_t>(j) * grid.u + static_cast<std::size_t>(i)) + half;
-        };
-        const bool triangle = mesh.surfaces()[s].vertex_count == 3;
-        by_cell.assign(2 * std::size_t{grid.u} * grid.v, 0);
-        const std::uint32_t count = mesh.patches_per_side(s);
-        for (std::uint32_t local = 0; local < count; ++local) {
-            const auto [u, v] = mesh.grid_coordinates(mesh.first_patch(s) + local);
-            const std::size_t at = cell(u, v);
-            by_cell[at] = local;
-            if (!triangle) {
-                by_cell[at ^ 1u] = local;
-            }
-        }
-        for (std::uint32_t k = fine.first_patch(s); k < fine.first_patch(s + 1); ++k) {
-            const auto [u, v] = fine.grid_coordinates(k);
-            const std::uint32_t side = fine.is_back(k) ? count : 0;
-            parents[k] = mesh.first_patch(s) + side + by_cell[cell(0.5 * u, 0.5 * v)];
-        }
-    }
-    return parents;
-}
-
 /// The interpolated value in the middle of a patch's quarter, from the patch's corner values.
 class Interpolation {
 public:
@@ -264,8 +222,7 @@ public:
 
     [[nodiscard]] std::optional<PatchSizeError> run(const FactorSettings& settings, Observer& observer) {
         const std::vector<Drawn> sample = draw();
-        const PatchMesh fine = quartered(scene_, mesh_);
-        const std::vector<std::uint32_t> parents = find_parents(mesh_, fine);
+        const auto [fine, parents] = mesh_.split(all_patches(mesh_.size()), Cut::in_four);
         const std::vector<std::array<std::uint32_t, 4>> quarters = find_quarters(sample, parents);
         std::vector<std::uint32_t> rows;
         for (const auto& four : quarters) {

@@ -91,6 +91,132 @@ PatchCorners front_corners(const Surface& surface, Grid grid, std::uint32_t loca
     return corners;
 }
 
+/// Number of a cell on a triangle that is cut n² ways, see triangle_cell().
+std::uint32_t triangle_local(std::uint32_t n, std::uint32_t strip, std::uint32_t along, bool upright) {
+    return strip * (2 * n - strip) + 2 * along + (upright ? 0 : 1);
+}
+
+/// Grid that a part is a cell of.
+Grid grid_of(Grid cells, const GridPart& part) {
+    return {cells.u << part.level_u, cells.v << part.level_v};
+}
+
+constexpr std::uint32_t max_grid = 65535;
+
+/// The parts that a part is cut into.
+std::vector<GridPart> cut(bool triangle, Grid cells, const GridPart& part, bool across_u, bool across_v) {
+    const Grid grid = grid_of(cells, part);
+    const GridPart finer{part.level_u + (across_u ? 1 : 0), part.level_v + (across_v ? 1 : 0), 0};
+    if ((across_u && grid.u > max_grid / 2) || (across_v && grid.v > max_grid / 2)) {
+        throw InvalidArgument(
+            fmt::format("a surface would be cut more than {} ways along an edge", max_grid));
+    }
+    std::vector<GridPart> parts;
+    const auto add = [&parts, finer](std::uint32_t cell) {
+        parts.push_back({finer.level_u, finer.level_v, cell});
+    };
+    if (triangle) {
+        const TriangleCell cell = triangle_cell(grid.u, part.cell);
+        const std::uint32_t n = 2 * grid.u;
+        const std::uint32_t i = 2 * cell.strip;
+        const std::uint32_t j = 2 * cell.along;
+        if (cell.upright) {
+            add(triangle_local(n, i, j, true));
+            add(triangle_local(n, i, j, false));
+            add(triangle_local(n, i, j + 1, true));
+            add(triangle_local(n, i + 1, j, true));
+        } else {
+            add(triangle_local(n, i, j + 1, false));
+            add(triangle_local(n, i + 1, j, false));
+            add(triangle_local(n, i + 1, j + 1, true));
+            add(triangle_local(n, i + 1, j + 1, false));
+        }
+        return parts;
+    }
+    const std::uint32_t width = across_u ? 2 : 1;
+    const std::uint32_t height = across_v ? 2 : 1;
+    const std::uint32_t u = part.cell % grid.u * width;
+    const std::uint32_t v = part.cell / grid.u * height;
+    for (std::uint32_t b = 0; b < height; ++b) {
+        for (std::uint32_t a = 0; a < width; ++a) {
+            add((v + b) * grid.u * width + u + a);
+        }
+    }
+    return parts;
+}
+
+/// Means of opposite edges of a quadrilateral, along u and along v.
+std::array<double, 2> lengths(const PatchCorners& corners) {
+    const auto& p = corners.points;
+    return {glm::distance(p[0], p[1]) + glm::distance(p[3], p[2]),
+            glm::distance(p[0], p[3]) + glm::distance(p[1], p[2])};
+}
+
+/// All cells of a grid, as parts.
+std::vector<GridPart> whole_cells(Grid grid) {
+    std::vector<GridPart> parts;
+    for (std::uint32_t cell = 0; cell < grid.u * grid.v; ++cell) {
+        parts.push_back({0, 0, cell});
+    }
+    return parts;
+}
+
+/// Levels of the grid that all parts are whole cells of.
+GridPart finest(std::span<const GridPart> parts) {
+    GridPart finest;
+    for (const GridPart& part : parts) {
+        finest.level_u = std::max(finest.level_u, part.level_u);
+        finest.level_v = std::max(finest.level_v, part.level_v);
+    }
+    return finest;
+}
+
+/// Cells that this grid may have, so that it can be seen whether parts fill it.
+constexpr std::uint64_t most_cells = std::uint64_t{1} << 28;
+
+/// Whether parts fill the cells of a surface, and none of it twice.
+bool fill(bool triangle, Grid cells, std::span<const GridPart> parts) {
+    const GridPart levels = finest(parts);
+    const std::uint64_t fine_u = std::uint64_t{cells.u} << std::min(levels.level_u, 32u);
+    const std::uint64_t fine_v = std::uint64_t{cells.v} << std::min(levels.level_v, 32u);
+    if (fine_u > max_grid || fine_v > max_grid || fine_u * fine_v > most_cells) {
+        return false;
+    }
+    const std::uint64_t halves = triangle ? 2 : 1; // a square cell is two triangles
+    std::vector<bool> filled(fine_u * fine_v * halves, false);
+    std::uint64_t count = 0;
+    const auto mark = [&](std::uint64_t u, std::uint64_t v, std::uint64_t half) {
+        const std::uint64_t at = (v * fine_u + u) * halves + half;
+        const bool free = !filled[at];
+        filled[at] = true;
+        ++count;
+        return free;
+    };
+    for (const GridPart& part : parts) {
+        const Grid grid = grid_of(cells, part);
+        if ((triangle && part.level_u != part.level_v) || part.cell >= grid.u * grid.v) {
+            return false;
+        }
+        const std::uint32_t width = 1u << (levels.level_u - part.level_u);
+        const std::uint32_t height = 1u << (levels.level_v - part.level_v);
+        const TriangleCell cell = triangle ? triangle_cell(grid.u, part.cell)
+                                           : TriangleCell{part.cell / grid.u, part.cell % grid.u, true};
+        for (std::uint32_t v = 0; v < height; ++v) {
+            for (std::uint32_t u = 0; u < width; ++u) {
+                for (std::uint32_t half = 0; half < halves; ++half) {
+                    // The upright triangle is the lower half of its square.
+                    if ((!triangle || (u + v + half < width) == cell.upright) &&
+                        !mark(std::uint64_t{cell.along} * width + u, std::uint64_t{cell.strip} * height + v,
+                              half)) {
+                        return false;
+                    }
+                }
+            }
+        }
+    }
+    return count == (triangle ? fine_u * fine_u : fine_u * fine_v);
+}
+
 std::uint32_t cells_along(double length, double patch_size) {
     // A hair of slack, so that an edge of exactly n patch sizes is not cut n + 1 ways by rounding.
     const double cells = std::ceil(length / patch_size * (1.0 - 1e-9));
@@ -166,23 +292,40 @@ PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
     groups_ = scene.groups;
     bounds_ = scene.bounds();
 
-    std::uint64_t count = 0;
     grids_.reserve(surfaces_.size());
-    first_patch_.reserve(surfaces_.size() + 1);
     for (const Surface& surface : surfaces_) {
-        const Grid grid = choose_grid(surface, scene, subdivision);
-        grids_.push_back(grid);
+        grids_.push_back(choose_grid(surface, scene, subdivision));
+    }
+    parts_ = subdivision.parts;
+    if (!parts_.empty() && parts_.size() != surfaces_.size()) {
+        throw InvalidArgument(
+            fmt::format("parts of {} surfaces; the scene has {}", parts_.size(), surfaces_.size()));
+    }
+    for (std::uint32_t s = 0; s < parts_.size(); ++s) {
+        if (!parts_[s].empty() && !fill(surfaces_[s].vertex_count == 3, grids_[s], parts_[s])) {
+            throw InvalidArgument(fmt::format("the parts of surface {} (group \"{}\") do not fill it", s,
+                                              groups_[surfaces_[s].group]));
+        }
+    }
+    measure();
+}
+
+void PatchMesh::measure() {
+    std::uint64_t count = 0;
+    first_patch_.reserve(surfaces_.size() + 1);
+    for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
         first_patch_.push_back(static_cast<std::uint32_t>(count));
+        const Grid grid = grids_[s];
         const std::uint64_t most = std::uint64_t{1} << 31;
-        const std::uint64_t per_side = std::uint64_t{grid.u} * grid.v;
+        const std::uint64_t per_side = parts(s).empty() ? std::uint64_t{grid.u} * grid.v : parts(s).size();
         if (per_side < most) {
-            count += per_side * (surface.two_sided ? 2 : 1);
+            count += per_side * (surfaces_[s].two_sided ? 2 : 1);
         }
         if (per_side >= most || count >= most) {
             throw InvalidArgument(
                 fmt::format("surface {} (group \"{}\"), cut into {} x {}, brings the scene to {} "
                             "patches or more; choose larger patches",
-                            first_patch_.size() - 1, groups_[surface.group], grid.u, grid.v, most));
+                            s, groups_[surfaces_[s].group], grid.u, grid.v, most));
         }
     }
     first_patch_.push_back(static_cast<std::uint32_t>(count));
@@ -192,16 +335,15 @@ PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
     surface_of_.reserve(count);
     surface_normals_.reserve(surfaces_.size());
     for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
-        const Surface& surface = surfaces_[s];
-        surface_normals_.push_back(glm::normalize(area_vector(surface.polygon())));
+        surface_normals_.push_back(glm::normalize(area_vector(surfaces_[s].polygon())));
         const std::uint32_t per_side = patches_per_side(s);
         for (std::uint32_t local = 0; local < per_side; ++local) {
-            const PatchCorners corners = front_corners(surface, grids_[s], local);
+            const PatchCorners corners = local_corners(s, local);
             areas_.push_back(glm::length(area_vector(corners.polygon())));
             centres_.push_back(area_centroid(corners.polygon()));
             surface_of_.push_back(s);
         }
-        if (surface.two_sided) {
+        if (surfaces_[s].two_sided) {
             for (std::uint32_t local = 0; local < per_side; ++local) {
                 areas_.push_back(areas_[first_patch_[s] + local]);
                 centres_.push_back(centres_[first_patch_[s] + local]);
@@ -209,6 +351,80 @@ PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
             }
         }
     }
+}
+
+PatchCorners PatchMesh::part_corners(std::uint32_t s, const GridPart& part) const {
+    return front_corners(surfaces_[s], grid_of(grids_[s], part), part.cell);
+}
+
+PatchCorners PatchMesh::local_corners(std::uint32_t s, std::uint32_t local) const {
+    return parts(s).empty() ? front_corners(surfaces_[s], grids_[s], local)
+                            : part_corners(s, parts(s)[local]);
+}
+
+SplitMesh PatchMesh::split(std::span<const std::uint32_t> patches, Cut how) const {
+    std::vector<std::vector<std::uint32_t>> wanted(surfaces_.size());
+    for (const std::uint32_t patch : patches) {
+        const std::uint32_t s = surface_of_[patch];
+        wanted[s].push_back((patch - first_patch_[s]) % patches_per_side(s));
+    }
+    std::vector<std::uint32_t> parents;
+    PatchMesh mesh;
+    mesh.surfaces_ = surfaces_;
+    mesh.groups_ = groups_;
+    mesh.bounds_ = bounds_;
+    mesh.grids_ = grids_;
+    mesh.parts_.resize(surfaces_.size());
+    for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+        std::sort(wanted[s].begin(), wanted[s].end());
+        const bool triangle = surfaces_[s].vertex_count == 3;
+        const std::vector<GridPart> old =
+            parts(s).empty() ? whole_cells(grids_[s]) : std::vector(parts(s).begin(), parts(s).end());
+        std::vector<std::pair<GridPart, std::uint32_t>> parts; // and whose they are
+        for (std::uint32_t local = 0; local < old.size(); ++local) {
+            if (!std::binary_search(wanted[s].begin(), wanted[s].end(), local)) {
+                parts.emplace_back(old[local], local);
+                continue;
+            }
+            const bool four = triangle || how == Cut::in_four;
+            const auto [u, v] = lengths(part_corners(s, old[local]));
+            for (const GridPart& part :
+                 cut(triangle, grids_[s], old[local], four || u > 0.51 * v, four || v > 0.51 * u)) {
+                parts.emplace_back(part, local);
+            }
+        }
+        std::vector<GridPart> all;
+        for (const auto& part : parts) {
+            all.push_back(part.first);
+        }
+        const Grid fine = grid_of(grids_[s], finest(all));
+        if (std::uint64_t{fine.u} * fine.v > most_cells) {
+            throw InvalidArgument(fmt::format("surface {} (group \"{}\") would be cut into {} x {}", s,
+                                              groups_[surfaces_[s].group], fine.u, fine.v));
+        }
+        // Parts of one size are the cells of a finer grid.
+        const GridPart& first = parts[0].first;
+        const bool even = std::all_of(parts.begin(), parts.end(), [&first](const auto& part) {
+            return part.first.level_u == first.level_u && part.first.level_v == first.level_v;
+        });
+        if (even) {
+            mesh.grids_[s] = grid_of(grids_[s], first);
+            std::sort(parts.begin(), parts.end(),
+                      [](const auto& a, const auto& b) { return a.first.cell < b.first.cell; });
+        } else {
+            mesh.parts_[s] = std::move(all);
+        }
+        for (std::uint32_t side = 0; side < (surfaces_[s].two_sided ? 2u : 1u); ++side) {
+            for (const auto& part : parts) {
+                parents.push_back(first_patch_[s] + side * patches_per_side(s) + part.second);
+            }
+        }
+    }
+    if (std::all_of(mesh.parts_.begin(), mesh.parts_.end(), [](const auto& of) { return of.empty(); })) {
+        mesh.parts_.clear();
+    }
+    mesh.measure();
+    return {std::move(mesh), std::move(parents)};
 }
 
 double PatchMesh::rounding() const {
@@ -221,7 +437,7 @@ double PatchMesh::rounding() const {
 }
 
 std::uint32_t PatchMesh::patches_per_side(std::uint32_t s) const {
-    return grids_[s].u * grids_[s].v;
+    return parts(s).empty() ? grids_[s].u * grids_[s].v : static_cast<std::uint32_t>(parts(s).size());
 }
 
 bool PatchMesh::is_back(std::uint32_t patch) const {
@@ -238,7 +454,7 @@ PatchCorners PatchMesh::corners(std::uint32_t patch) const {
     const std::uint32_t s = surface_of_[patch];
     const std::uint32_t per_side = patches_per_side(s);
     const std::uint32_t local = patch - first_patch_[s];
-    PatchCorners corners = front_corners(surfaces_[s], grids_[s], local % per_side);
+    PatchCorners corners = local_corners(s, local % per_side);
     if (local >= per_side) {
         std::reverse(corners.points.begin(), corners.points.begin() + corners.count);
     }
@@ -248,13 +464,17 @@ PatchCorners PatchMesh::corners(std::uint32_t patch) const {
 std::array<double, 2> PatchMesh::grid_coordinates(std::uint32_t patch) const {
     const std::uint32_t s = surface_of_[patch];
     const std::uint32_t local = (patch - first_patch_[s]) % patches_per_side(s);
+    const GridPart part = parts(s).empty() ? GridPart{0, 0, local} : parts(s)[local];
+    const Grid grid = grid_of(grids_[s], part);
+    double u = part.cell % grid.u + 0.5;
+    double v = part.cell / grid.u + 0.5;
     if (surfaces_[s].vertex_count == 3) {
-        const TriangleCell cell = triangle_cell(grids_[s].u, local);
+        const TriangleCell cell = triangle_cell(grid.u, part.cell);
         const double third = cell.upright ? 1.0 / 3.0 : 2.0 / 3.0;
-        return {cell.along + third, cell.strip + third};
+        u = cell.along + third;
+        v = cell.strip + third;
     }
-    const std::uint32_t row = local / grids_[s].u;
-    return {local % grids_[s].u + 0.5, row + 0.5};
+    return {std::ldexp(u, -static_cast<int>(part.level_u)), std::ldexp(v, -static_cast<int>(part.level_v))};
 }
 
 std::uint64_t PatchMesh::geometry_hash() const {
@@ -266,6 +486,9 @@ std::uint64_t PatchMesh::geometry_hash() const {
         hash.add((std::uint64_t{grids_[s].u} << 32) | grids_[s].v);
         for (const Vec3& vertex : surface.polygon()) {
             hash.add(vertex);
+        }
+        for (const GridPart& part : parts(static_cast<std::uint32_t>(s))) {
+            hash.add((std::uint64_t{part.level_u} << 40) | (std::uint64_t{part.level_v} << 32) | part.cell);
         }
     }
     return hash.value();

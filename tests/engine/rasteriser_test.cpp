@@ -305,7 +305,7 @@ TEST_CASE("Rasteriser: a polygon's coverage is what it shows where it is drawn a
         std::vector<DrawList> single_lists(list.polygons.size(), list);
         for (std::size_t p = 0; p < list.polygons.size(); ++p) {
             single_lists[p].polygons = {list.polygons[p]};
-            single_lists[p].polygon_of_surface.assign(list.polygon_of_surface.size(), 1); // none
+            single_lists[p].polygons_of_surface.assign(list.polygons_of_surface.size(), {1, 1}); // none
         }
         for (std::uint32_t patch = 0; patch < mesh.size(); patch += 1 + mesh.size() / 6) {
             const EyePoint& eye = geometry.eyes.of(patch)[0];
@@ -315,7 +315,7 @@ TEST_CASE("Rasteriser: a polygon's coverage is what it shows where it is drawn a
             const std::vector<TexelTally> seen = tally(rasteriser->ids(), weights, list.item_of_id.size());
             for (std::uint32_t p = 0; p < list.polygons.size(); ++p) {
                 const DrawPolygon& polygon = list.polygons[p];
-                if (p == list.polygon_of_surface[eye.surface]) {
+                if (list.polygons_of_surface[eye.surface].holds(p)) {
                     continue;
                 }
                 const RasterScene scene_of_one(single_lists[p]);

@@ -472,3 +472,144 @@ TEST_CASE("emissivities: 1 less the mean reflectance over the channels, for ever
     REQUIRE(mesh.size() == 3);
     CHECK(emissivities(mesh, scene.materials) == std::vector<double>{0.5, 0.5, 1.0});
 }
+
+namespace {
+
+/// Every third patch, and the last.
+std::vector<std::uint32_t> some_patches(const PatchMesh& mesh) {
+    std::vector<std::uint32_t> patches;
+    for (std::uint32_t i = 0; i < mesh.size(); i += 3) {
+        patches.push_back(i);
+    }
+    patches.push_back(mesh.size() - 1);
+    return patches;
+}
+
+} // namespace
+
+TEST_CASE("PatchMesh::split: parts fill their patches, on both sides alike", "[scene]") {
+    for (const Scene& scene : various_scenes()) {
+        const PatchMesh coarse(scene);
+        const std::vector<std::uint32_t> wanted = some_patches(coarse);
+        const auto [fine, parents] = coarse.split(wanted);
+        // Again, so that three sizes meet.
+        const auto [finer, between] = fine.split(some_patches(fine));
+        std::vector<double> areas(coarse.size(), 0.0);
+        REQUIRE(between.size() == finer.size());
+        REQUIRE(finer.surface_of().size() == finer.size());
+        for (std::uint32_t k = 0; k < finer.size(); ++k) {
+            const std::uint32_t i = parents[between[k]];
+            REQUIRE(finer.surface_of()[k] == coarse.surface_of()[i]);
+            REQUIRE(finer.is_back(k) == coarse.is_back(i));
+            areas[i] += finer.areas()[k];
+            // Its corners are where the patch is.
+            const PatchCorners outer = coarse.corners(i);
+            for (const Vec3& point : finer.corners(k).polygon()) {
+                for (std::uint32_t c = 0; c < outer.count; ++c) {
+                    const Vec3 edge = outer.points[(c + 1) % outer.count] - outer.points[c];
+                    const double inside =
+                        glm::dot(glm::cross(edge, point - outer.points[c]), coarse.normal(i));
+                    REQUIRE(inside >= -1e-12 * glm::dot(edge, edge));
+                }
+            }
+            const auto coarse_at = coarse.grid_coordinates(i);
+            const auto at = finer.grid_coordinates(k);
+            const Grid was = coarse.grid(coarse.surface_of()[i]);
+            const Grid is = finer.grid(finer.surface_of()[k]);
+            REQUIRE(std::abs(at[0] / is.u - coarse_at[0] / was.u) < 0.7 / was.u);
+            REQUIRE(std::abs(at[1] / is.v - coarse_at[1] / was.v) < 0.7 / was.v);
+        }
+        for (std::uint32_t i = 0; i < coarse.size(); ++i) {
+            REQUIRE(areas[i] == Approx(coarse.areas()[i]).epsilon(1e-12));
+        }
+        for (std::uint32_t s = 0; s < finer.surfaces().size(); ++s) {
+            const std::uint32_t count = finer.patches_per_side(s);
+            for (std::uint32_t k = 0; k < count && finer.surfaces()[s].two_sided; ++k) {
+                const std::uint32_t front = finer.first_patch(s) + k;
+                REQUIRE(finer.centres()[front] == finer.centres()[front + count]);
+            }
+        }
+        CHECK(finer.geometry_hash() != fine.geometry_hash());
+        CHECK(fine.geometry_hash() != coarse.geometry_hash());
+    }
+}
+
+TEST_CASE("PatchMesh::split: all of them are a finer grid, bit by bit", "[scene]") {
+    Scene scene = various_scenes()[3];
+    const PatchMesh coarse(scene);
+    std::vector<std::uint32_t> all(coarse.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const auto [fine, parents] = coarse.split(all, Cut::in_four);
+    for (Surface& surface : scene.surfaces) {
+        surface.patches = Grid{2 * surface.patches->u, 2 * surface.patches->v};
+    }
+    const PatchMesh expected(scene);
+    REQUIRE(fine.size() == expected.size());
+    CHECK(fine.parts().empty());
+    CHECK(fine.geometry_hash() == expected.geometry_hash());
+    for (std::uint32_t k = 0; k < fine.size(); ++k) {
+        REQUIRE(same_bits(fine.centres()[k], expected.centres()[k]));
+        REQUIRE(fine.areas()[k] == expected.areas()[k]);
+    }
+    CHECK(std::count(parents.begin(), parents.end(), 7u) == 4);
+    // Some first, then the others: the same mesh.
+    const auto [some, first_parents] = coarse.split(some_patches(coarse), Cut::in_four);
+    std::vector<std::uint32_t> rest;
+    for (std::uint32_t k = 0; k < some.size(); ++k) {
+        if (std::count(first_parents.begin(), first_parents.end(), first_parents[k]) == 1) {
+            rest.push_back(k);
+        }
+    }
+    CHECK(some.split(rest, Cut::in_four).mesh.geometry_hash() == expected.geometry_hash());
+}
+
+TEST_CASE("PatchMesh::split: long patches are cut across, triangles always in four", "[scene]") {
+    const auto parts_of = [](const Scene& scene, Cut how) {
+        return PatchMesh(scene).split(std::vector<std::uint32_t>{0}, how).mesh.size();
+    };
+    CHECK(parts_of(one_polygon(rectangle(5, 1)), Cut::by_shape) == 2);
+    CHECK(parts_of(one_polygon(rectangle(1, 2)), Cut::by_shape) == 2);
+    CHECK(parts_of(one_polygon(rectangle(1.9, 1)), Cut::by_shape) == 4);
+    CHECK(parts_of(one_polygon(rectangle(5, 1)), Cut::in_four) == 4);
+    CHECK(parts_of(one_polygon(triangle), Cut::by_shape) == 4);
+}
+
+TEST_CASE("PatchMesh: parts are stored and read back, and refused where they do not fill", "[scene]") {
+    for (Scene scene : various_scenes()) {
+        const PatchMesh coarse(scene);
+        const PatchMesh first = coarse.split(some_patches(coarse)).mesh;
+        const PatchMesh fine = first.split(some_patches(first)).mesh;
+        for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
+            scene.surfaces[s].patches = fine.grid(s);
+        }
+        Subdivision subdivision;
+        subdivision.parts = fine.parts();
+        const PatchMesh again(scene, subdivision);
+        REQUIRE(again.size() == fine.size());
+        CHECK(again.geometry_hash() == fine.geometry_hash());
+        const auto refuses = [&scene](const Subdivision& wrong) {
+            CHECK_THROWS_AS(PatchMesh(scene, wrong), InvalidArgument);
+        };
+        std::size_t s = 0;
+        while (subdivision.parts[s].empty()) {
+            ++s;
+        }
+        Subdivision wrong = subdivision;
+        wrong.parts[s].pop_back();
+        refuses(wrong);
+        wrong = subdivision;
+        wrong.parts[s].back() = wrong.parts[s].front();
+        refuses(wrong);
+        wrong = subdivision;
+        wrong.parts[s][0].cell = 1u << 30;
+        refuses(wrong);
+        wrong = subdivision;
+        wrong.parts[s][0].level_u = 4000000000u;
+        refuses(wrong);
+        wrong = subdivision;
+        wrong.parts.pop_back();
+        refuses(wrong);
+    }
+    const PatchMesh mesh(one_polygon(rectangle(1, 1), Grid{65535, 1}));
+    CHECK_THROWS_AS(mesh.split(std::vector<std::uint32_t>{0}, Cut::in_four), InvalidArgument);
+}

@@ -10,10 +10,23 @@
 
 namespace hemi {
 
+/// A patch of a surface whose patches differ in size: a cell of the grid that is 2^level_u x 2^level_v times
+/// as fine as the surface's own.
+struct GridPart {
+    std::uint32_t level_u = 0; ///< of a triangle equal to level_v
+    std::uint32_t level_v = 0;
+    std::uint32_t cell = 0; ///< of that grid, numbered as the patches of a surface with this grid
+
+    bool operator==(const GridPart&) const = default; ///< member by member
+};
+
 /// How surfaces are cut into patches, over the scene's own wishes.
 struct Subdivision {
     std::optional<double> patch_size;              ///< Longest patch edge, scene units.
     std::optional<std::uint32_t> patches_per_face; ///< About so many: k x k with the smallest k² >= N.
+    /// Of every surface the patches that its grid is cut into, which fill it once; empty of a surface whose
+    /// patches are the cells of its grid; nothing at all where all surfaces are such.
+    std::vector<std::vector<GridPart>> parts;
 
     bool operator==(const Subdivision&) const = default; ///< member by member
 };
@@ -27,16 +40,27 @@ struct PatchCorners {
     [[nodiscard]] std::span<const Vec3> polygon() const { return {points.data(), count}; }
 };
 
+/// How a patch is cut.
+enum class Cut {
+    in_four,  ///< both ways
+    by_shape, ///< in two across the longer way where a quadrilateral is twice as long as wide or more
+};
+
+struct SplitMesh;
+
 /// The scene cut into patches, the unit of all that follows: row i and column i of F are patch i.
 ///
 /// Order: surfaces as listed; patches of a surface row by row (u fastest); a triangle cut n² ways goes strip
-/// by strip from the edge vertex 0 -> vertex 1, the strip's upright and inverted triangles in turn; a
-/// two-sided surface's back patches follow its front patches.
+/// by strip from the edge vertex 0 -> vertex 1, the strip's upright and inverted triangles in turn; where
+/// patches differ in size, the parts of a cell come in its place; a two-sided surface's back patches follow
+/// its front patches.
 /// Memory: about 70 bytes a patch.
 class PatchMesh {
 public:
     /// Cuts the scene, which is not needed afterwards.
-    /// @throws InvalidArgument if there would be 2^31 patches or more; InputError as validate(scene).
+    /// @throws InvalidArgument if there would be 2^31 patches or more, or if parts do not fill their
+    /// surfaces;
+    ///   InputError as validate(scene).
     explicit PatchMesh(const Scene& scene, const Subdivision& subdivision = {});
 
     /// N, the number of patches.
@@ -69,11 +93,19 @@ public:
 
     /// The scene's surfaces.
     [[nodiscard]] std::span<const Surface> surfaces() const noexcept { return surfaces_; }
-    /// Subdivision of surface `s`.
+    /// Subdivision of surface `s`; of the cells only, where they have parts.
     [[nodiscard]] Grid grid(std::uint32_t s) const { return grids_[s]; }
+    /// The patches of surface `s` where they differ in size, in their order; else empty.
+    [[nodiscard]] std::span<const GridPart> parts(std::uint32_t s) const {
+        return parts_.empty() ? std::span<const GridPart>() : parts_[s];
+    }
+    /// Those of all surfaces, as Subdivision has them.
+    [[nodiscard]] const std::vector<std::vector<GridPart>>& parts() const noexcept { return parts_; }
+    /// Corners of a part of surface `s`, counter-clockwise about the front.
+    [[nodiscard]] PatchCorners part_corners(std::uint32_t s, const GridPart& part) const;
     /// First patch of surface `s`; `s` may equal the number of surfaces (then: size()).
     [[nodiscard]] std::uint32_t first_patch(std::uint32_t s) const { return first_patch_[s]; }
-    /// Patches on one side of surface `s`: u·v, or n² for a triangle.
+    /// Patches on one side of surface `s`: u·v, or n² for a triangle; or the number of its parts.
     [[nodiscard]] std::uint32_t patches_per_side(std::uint32_t s) const;
     /// Unit normal of the front of surface `s`.
     [[nodiscard]] const Vec3& surface_normal(std::uint32_t s) const { return surface_normals_[s]; }
@@ -86,13 +118,25 @@ public:
     /// from the origin.
     [[nodiscard]] double rounding() const;
 
+    /// The same surfaces with some patches cut. What is cut on one side of a two-sided surface is on the
+    /// other.
+    /// @param patches  indices, in any order
+    /// @param how      in four, or as their shape asks for
+    /// @throws InvalidArgument if an edge would be cut more than 65,535 ways, or for 2^31 patches or more
+    [[nodiscard]] SplitMesh split(std::span<const std::uint32_t> patches, Cut how = Cut::by_shape) const;
+
     /// Hash over the corners, subdivision and sidedness of every surface, in order: equal for equal
     /// geometry, whatever the materials, lamps and names. 64-bit FNV-1a.
     [[nodiscard]] std::uint64_t geometry_hash() const;
 
 private:
+    PatchMesh() = default;
+    void measure();
+    [[nodiscard]] PatchCorners local_corners(std::uint32_t s, std::uint32_t local) const;
+
     std::vector<Surface> surfaces_;
     std::vector<Grid> grids_;
+    std::vector<std::vector<GridPart>> parts_;
     std::vector<std::uint32_t> first_patch_;
     std::vector<Vec3> surface_normals_;
     std::vector<std::string> groups_;
@@ -100,6 +144,13 @@ private:
     std::vector<Vec3> centres_;
     std::vector<std::uint32_t> surface_of_;
     Bounds bounds_;
+};
+
+/// A mesh and the coarser one that it was made of.
+struct SplitMesh {
+    PatchMesh mesh; ///< the finer one
+    std::vector<std::uint32_t>
+        parents; ///< of each of its patches the one of the coarser mesh that it lies in
 };
 
 /// A property of materials, spread over the patches: N·channels, channel c of patch i at [i·channels + c].

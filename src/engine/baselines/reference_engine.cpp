@@ -67,6 +67,20 @@ std::uint32_t local_patch(const Surface& surface, Grid grid, const Vec3& point) 
     return strip * (2 * n - strip) + 2 * along + (inverted ? 1 : 0);
 }
 
+/// The same on a surface whose patches may differ in size.
+std::uint32_t local_patch(const PatchMesh& mesh, std::uint32_t s, const Vec3& point) {
+    const Surface& surface = mesh.surfaces()[s];
+    const Grid grid = mesh.grid(s);
+    const auto parts = mesh.parts(s);
+    if (parts.empty()) {
+        return local_patch(surface, grid, point);
+    }
+    const auto holds = [&](const GridPart& part) {
+        return part.cell == local_patch(surface, {grid.u << part.level_u, grid.v << part.level_v}, point);
+    };
+    return static_cast<std::uint32_t>(std::find_if(parts.begin(), parts.end(), holds) - parts.begin());
+}
+
 class ReferenceEngine final : public RowProvider {
 public:
     ReferenceEngine(const PatchMesh& mesh, const HemicubeSettings& settings)
@@ -182,7 +196,7 @@ ReferenceTracer::Hit ReferenceTracer::trace(std::uint32_t patch, const Vec3& eye
             hit.item = item_blocked;
         } else {
             hit.item = item_first_patch + mesh_.first_patch(s) +
-                       local_patch(surface, mesh_.grid(s), eye + depth * direction) +
+                       local_patch(mesh_, s, eye + depth * direction) +
                        (back ? mesh_.patches_per_side(s) : 0);
         }
     }

@@ -5,12 +5,15 @@
 #include "core/welder.hpp"
 #include "engine/hemicube/lattice.hpp"
 #include "engine/hemicube/outline.hpp"
+#include "engine/hemicube/surface_pieces.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace hemi {
 
@@ -50,7 +53,7 @@ private:
         list_.tolerance = mesh_.rounding();
         weld();
         list_.item_of_id = {item_nothing, item_blocked};
-        list_.polygon_of_surface.assign(mesh_.surfaces().size(), none);
+        list_.polygons_of_surface.assign(mesh_.surfaces().size(), {});
         if (merge_lattices_) {
             for (const MergedLattice& lattice :
                  find_lattices(mesh_, surface_vertices_, positions_, touching())) {
@@ -58,7 +61,7 @@ private:
             }
         }
         for (std::uint32_t s = 0; s < mesh_.surfaces().size(); ++s) {
-            if (list_.polygon_of_surface[s] == none) {
+            if (list_.polygons_of_surface[s].count == 0) {
                 add_surface(s);
             }
         }
@@ -73,6 +76,15 @@ private:
                 vertices[c] = welder.add(surface.vertices[c]);
             }
             surface_vertices_.push_back(vertices);
+        }
+        for (std::uint32_t s = 0; s < mesh_.surfaces().size(); ++s) {
+            for (SurfacePiece& piece : pieces_of(mesh_, s)) {
+                std::array<std::uint32_t, 4> vertices{};
+                for (std::uint32_t c = 0; c < piece.corners.count; ++c) {
+                    vertices[c] = welder.add(piece.corners.points[c]);
+                }
+                pieces_[s].emplace_back(std::move(piece), vertices);
+            }
         }
         positions_ = welder.points();
     }
@@ -138,7 +150,7 @@ private:
         const auto gu = static_cast<double>(lattice.cells.u);
         const auto gv = static_cast<double>(lattice.cells.v);
         for (const std::uint32_t s : lattice.surfaces) {
-            list_.polygon_of_surface[s] = static_cast<std::uint32_t>(list_.polygons.size());
+            list_.polygons_of_surface[s] = {static_cast<std::uint32_t>(list_.polygons.size()), 1};
         }
         outlines_.push_back({{lattice.vertices[0], 0.0, 0.0},
                              {lattice.vertices[1], gu, 0.0},
@@ -149,28 +161,40 @@ private:
     }
 
     void add_surface(std::uint32_t s) {
-        const Surface& surface = mesh_.surfaces()[s];
-        const auto& vertices = surface_vertices_[s];
+        const auto first = static_cast<std::uint32_t>(list_.polygons.size());
+        const auto pieces = pieces_.find(s);
+        if (pieces == pieces_.end()) {
+            const Surface& surface = mesh_.surfaces()[s];
+            add_piece(s, {{surface.vertices, surface.vertex_count}, mesh_.grid(s), {}}, surface_vertices_[s]);
+        } else {
+            for (const auto& [piece, vertices] : pieces->second) {
+                add_piece(s, piece, vertices);
+            }
+        }
+        list_.polygons_of_surface[s] = {first, static_cast<std::uint32_t>(list_.polygons.size()) - first};
+    }
+
+    void add_piece(std::uint32_t s, const SurfacePiece& piece, const std::array<std::uint32_t, 4>& vertices) {
         DrawPolygon polygon;
-        polygon.grid = mesh_.grid(s);
+        polygon.grid = piece.grid;
         polygon.normal = mesh_.surface_normal(s);
         check_grid(polygon.grid);
         const auto gu = static_cast<double>(polygon.grid.u);
         const auto gv = static_cast<double>(polygon.grid.v);
-        const bool one_patch = mesh_.patches_per_side(s) == 1;
+        const bool one_patch = polygon.grid.u * polygon.grid.v == 1;
         Outline outline;
         std::uint32_t start = 0; // corner that the polygon's grid begins at
-        if (surface.vertex_count == 3) {
+        if (piece.corners.count == 3) {
             polygon.split = one_patch ? 0 : 1;
             outline = {{vertices[0], 0.0, 0.0}, {vertices[1], gu, 0.0}, {vertices[2], 0.0, gv}};
-        } else if (one_patch || is_parallelogram(surface)) {
+        } else if (one_patch || is_parallelogram(piece.corners)) {
             outline = {{vertices[0], 0.0, 0.0},
                        {vertices[1], gu, 0.0},
                        {vertices[2], gu, gv},
                        {vertices[3], 0.0, gv}};
         } else {
-            start = sharpest_corner(surface);
-            const auto far_corner = frame_coordinates(surface, start);
+            start = sharpest_corner(piece.corners);
+            const auto far_corner = frame_coordinates(piece.corners, start);
             polygon.bilinear = 1;
             polygon.twist_u = static_cast<float>(far_corner[0] - 1.0);
             polygon.twist_v = static_cast<float>(far_corner[1] - 1.0);
@@ -183,26 +207,25 @@ private:
                        {vertices[(start + 3) % 4], 0.0, 1.0}};
         }
         polygon.front_id = reserve_ids(polygon.grid, polygon.split);
-        fill_ids(s, polygon, polygon.front_id, 0, start);
-        if (surface.two_sided) {
+        fill_ids(s, piece, polygon, polygon.front_id, 0, start);
+        if (mesh_.surfaces()[s].two_sided) {
             polygon.back_id = reserve_ids(polygon.grid, polygon.split);
-            fill_ids(s, polygon, polygon.back_id, mesh_.patches_per_side(s), start);
+            fill_ids(s, piece, polygon, polygon.back_id, mesh_.patches_per_side(s), start);
         }
-        list_.polygon_of_surface[s] = static_cast<std::uint32_t>(list_.polygons.size());
         list_.polygons.push_back(polygon);
         outlines_.push_back(std::move(outline));
     }
 
-    static bool is_parallelogram(const Surface& surface) {
-        const auto& p = surface.vertices;
+    static bool is_parallelogram(const PatchCorners& corners) {
+        const auto& p = corners.points;
         const double edge = std::min(glm::length(p[1] - p[0]), glm::length(p[3] - p[0]));
         return glm::length(p[0] - p[1] + p[2] - p[3]) <= 1e-6 * edge;
     }
 
     /// The corner whose edges span the largest area: the best frame for the grid. Another one may be
     /// straight.
-    static std::uint32_t sharpest_corner(const Surface& surface) {
-        const auto& p = surface.vertices;
+    static std::uint32_t sharpest_corner(const PatchCorners& corners) {
+        const auto& p = corners.points;
         std::uint32_t best = 0;
         double largest = -1.0;
         for (std::uint32_t c = 0; c < 4; ++c) {
@@ -216,8 +239,8 @@ private:
     }
 
     /// The corner opposite to `start` in the frame of `start` and its two neighbours.
-    static std::array<double, 2> frame_coordinates(const Surface& surface, std::uint32_t start) {
-        const auto& p = surface.vertices;
+    static std::array<double, 2> frame_coordinates(const PatchCorners& corners, std::uint32_t start) {
+        const auto& p = corners.points;
         const Vec3 u = p[(start + 1) % 4] - p[start];
         const Vec3 v = p[(start + 3) % 4] - p[start];
         const Vec3 cross = glm::cross(u, v);
@@ -244,21 +267,24 @@ private:
         }
     }
 
-    void fill_ids(std::uint32_t s, const DrawPolygon& polygon, std::uint32_t first_id, std::uint32_t offset,
-                  std::uint32_t start) {
+    void fill_ids(std::uint32_t s, const SurfacePiece& piece, const DrawPolygon& polygon,
+                  std::uint32_t first_id, std::uint32_t offset, std::uint32_t start) {
         const std::uint32_t first_item = item_first_patch + mesh_.first_patch(s) + offset;
-        const std::uint32_t per_side = mesh_.patches_per_side(s);
+        const std::uint32_t cells = piece.grid.u * piece.grid.v;
+        const auto item_of = [&](std::uint32_t cell) {
+            return first_item + (piece.patches.empty() ? cell : piece.patches[cell]);
+        };
         if (polygon.split == 0) {
-            const Grid grid = mesh_.grid(s);
-            for (std::uint32_t local = 0; local < per_side; ++local) {
-                const std::uint32_t cell = turned_cell(grid, local % grid.u, local / grid.u, start);
-                list_.item_of_id[first_id + cell] = first_item + local;
+            for (std::uint32_t cell = 0; cell < cells; ++cell) {
+                const std::uint32_t turned =
+                    turned_cell(piece.grid, cell % piece.grid.u, cell / piece.grid.u, start);
+                list_.item_of_id[first_id + turned] = item_of(cell);
             }
             return;
         }
-        for (std::uint32_t local = 0; local < per_side; ++local) {
-            const auto at = mesh_.grid_coordinates(mesh_.first_patch(s) + local);
-            list_.item_of_id[first_id + cell_of(polygon.grid, 1, at[0], at[1])] = first_item + local;
+        for (std::uint32_t cell = 0; cell < cells; ++cell) {
+            const auto at = mesh_.grid_coordinates(mesh_.first_patch(s) + cell); // of a whole surface
+            list_.item_of_id[first_id + cell_of(polygon.grid, 1, at[0], at[1])] = item_of(cell);
         }
         // Rounding along the hypotenuse overflows into the cells' other halves and beyond: they stand for
         // the triangle next to them.
@@ -312,6 +338,8 @@ private:
     bool merge_lattices_;
     DrawList list_;
     std::vector<std::array<std::uint32_t, 4>> surface_vertices_;
+    /// Of surfaces whose patches differ in size, with their welded corners.
+    std::map<std::uint32_t, std::vector<std::pair<SurfacePiece, std::array<std::uint32_t, 4>>>> pieces_;
     std::vector<Vec3> positions_;
     std::vector<Outline> outlines_;
 };

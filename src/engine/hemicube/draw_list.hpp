@@ -21,9 +21,9 @@ namespace hemi {
 // mean what they mean as items. From 2 on, every side of a polygon that has patches owns a block of
 // consecutive ids, one a cell; DrawList::item_of_id gives the item of each.
 //
-// The cells of a polygon are a grid of grid.u x grid.v: the patches of one surface, or those of coplanar
-// surfaces merged into a lattice. With (u, v) counted in cells from the polygon's first corner, and i and j
-// their whole parts, clamped to the grid:
+// The cells of a polygon are a grid of grid.u x grid.v: the patches of one surface, or of a piece of it whose
+// patches are of one size, or those of coplanar surfaces merged into a lattice. With (u, v) counted in cells
+// from the polygon's first corner, and i and j their whole parts, clamped to the grid:
 //   id = first_id + ((j * grid.u + i) << split) + half
 // split is 1 where every cell is two triangles, cut from (i + 1, j) to (i, j + 1), and half is 1 beyond that
 // cut, where (u - i) + (v - j) > 1; else both are 0. Triangles that are subdivided have the grid of the
@@ -66,6 +66,14 @@ struct DrawPolygon {
     [[nodiscard]] bool shows_one_id() const { return grid.u * grid.v == 1 && split == 0; }
 };
 
+/// Polygons one after the other: one, or the pieces of a surface whose patches differ in size.
+struct PolygonRange {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+
+    [[nodiscard]] bool holds(std::uint32_t polygon) const { return polygon - first < count; }
+};
+
 /// What the item buffers are drawn from: polygons with welded vertices and outlines without T-junctions, and
 /// what every draw id stands for.
 struct DrawList {
@@ -74,8 +82,8 @@ struct DrawList {
     std::vector<OutlineCorner> corners;
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< positions in their polygon's outline
     std::vector<std::uint32_t> item_of_id;               ///< draw id -> item
-    std::vector<std::uint32_t> polygon_of_surface;
-    double tolerance = 0.0; ///< lengths below are rounding: scene units
+    std::vector<PolygonRange> polygons_of_surface;       ///< those that show the surface
+    double tolerance = 0.0;                              ///< lengths below are rounding: scene units
 };
 
 /// @throws InvalidArgument if a surface is cut more than 65,535 ways along an edge.

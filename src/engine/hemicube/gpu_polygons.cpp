@@ -32,7 +32,7 @@ struct PolygonRecord {
 };
 static_assert(sizeof(PolygonRecord) == 64);
 static_assert(offsetof(FaceView, eye_low) == 64 && offsetof(FaceView, own_polygon) == 76 &&
-              offsetof(FaceView, grain) == 96);
+              offsetof(FaceView, grain) == 100);
 
 /// GridMap of hemicube.vert.
 struct GridMapRecord {
@@ -252,7 +252,8 @@ void GpuPolygons::add(const EyePoint& eye, const EyeFrame& frame, std::uint32_t 
     FaceView view;
     view.eye_high = position.high;
     view.eye_low = position.low;
-    view.own_polygon = list_.polygon_of_surface[eye.surface];
+    view.own_polygon = list_.polygons_of_surface[eye.surface].first;
+    view.own_count = list_.polygons_of_surface[eye.surface].count;
     view.texel = 2.0f / static_cast<float>(atlas_.resolution);
     view.tolerance = static_cast<float>(list_.tolerance * coordinates_.scale);
     view.near = 0.5f * view.tolerance; // what comes nearer lies on the eye, and is not drawn

@@ -35,6 +35,7 @@ struct alignas(256) FaceView {
     float unused3 = 0.0f;
     std::array<float, 3> eye_low{};
     std::uint32_t own_polygon = 0;
+    std::uint32_t own_count = 0;
     std::uint32_t first_row = 0;
     float texel = 0.0f;
     float near = 0.0f;

@@ -91,8 +91,11 @@ private:
         return positions_[vertices_[s][corner % count(s)]];
     }
 
-    /// Parallelograms and triangles; others are drawn as they are.
+    /// Parallelograms and triangles with patches of one size; others are drawn as they are.
     [[nodiscard]] bool usable(std::uint32_t s) const {
+        if (!mesh_.parts(s).empty()) {
+            return false;
+        }
         if (count(s) == 3) {
             return true;
         }

@@ -84,11 +84,11 @@ void ViewBuilder::transform(const EyePoint& eye, const EyeFrame& frame) {
 
 void ViewBuilder::cull(const EyePoint& eye) {
     seen_.clear();
-    const std::uint32_t own = list_.polygon_of_surface[eye.surface];
+    const PolygonRange own = list_.polygons_of_surface[eye.surface];
     for (std::uint32_t p = 0; p < list_.polygons.size(); ++p) {
         const DrawPolygon& polygon = list_.polygons[p];
         const Vec3 to_eye = eye.position - polygon.centre;
-        if (p == own || glm::dot(to_eye, eye.normal) > polygon.radius) {
+        if (own.holds(p) || glm::dot(to_eye, eye.normal) > polygon.radius) {
             continue;
         }
         const Vec3& on_plane = list_.vertices[list_.corners[polygon.first_corner].vertex];

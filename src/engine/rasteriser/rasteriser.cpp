@@ -53,7 +53,7 @@ public:
               Coverage* coverage) override {
         projection_.set(eye, frame);
         target_.clear(weights, coverage);
-        own_polygon_ = scene_.list.polygon_of_surface[eye.surface];
+        own_ = scene_.list.polygons_of_surface[eye.surface];
         small_.count = 0;
         if (coverage != nullptr) {
             draw_all<true>();
@@ -141,7 +141,9 @@ private:
                                 hn::Mul(hn::Load(floats, &scene_.plane[2][first + t]), ez)),
                         hn::Load(floats, &scene_.plane[3][first + t]));
             const Mask own = hn::RebindMask(
-                floats, hn::Eq(hn::Load(ids_of, &scene_.polygon[first + t]), hn::Set(ids_of, own_polygon_)));
+                floats,
+                hn::Lt(hn::Sub(hn::Load(ids_of, &scene_.polygon[first + t]), hn::Set(ids_of, own_.first)),
+                       hn::Set(ids_of, own_.count)));
             hn::Store(hn::IfThenZeroElse(own, height), floats, &side_[t]);
             const Mask close = hn::AndNot(
                 own, hn::And(hn::Lt(hn::Abs(height), set(near_plane_)), hn::FirstN(floats, count - t)));
@@ -480,7 +482,7 @@ private:
     template <bool covering>
     void draw_grid_polygon(std::uint32_t grid, std::uint32_t group_faces, bool occlusion) {
         const RasterScene::GridPolygon& drawn = scene_.grid_polygons[grid];
-        if (drawn.polygon == own_polygon_) {
+        if (own_.holds(drawn.polygon)) {
             return;
         }
         std::uint32_t faces = group_faces & projection_.faces_of(drawn.centre, drawn.radius);
@@ -574,7 +576,7 @@ private:
     alignas(64) std::array<float, cluster_size> outside_{}; ///< bits
     alignas(64) std::array<float, cluster_size> side_{};    ///< by triangle
 
-    std::uint32_t own_polygon_ = 0;
+    PolygonRange own_;   ///< that the eye lies on
     FramePoints points_; ///< of what is being culled or drawn
     SmallTriangles small_{};
 };

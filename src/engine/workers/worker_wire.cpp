@@ -147,7 +147,7 @@ std::string pack(const EngineGeometry& geometry, const HemicubeSettings& setting
     append(bytes, std::span<const OutlineCorner>(list.corners));
     append(bytes, std::span<const std::array<std::uint32_t, 3>>(list.triangles));
     append(bytes, std::span<const std::uint32_t>(list.item_of_id));
-    append(bytes, std::span<const std::uint32_t>(list.polygon_of_surface));
+    append(bytes, std::span<const PolygonRange>(list.polygons_of_surface));
     append(bytes, list.tolerance);
     append(bytes, std::span<const EyePoint>(geometry.eyes.points));
     append(bytes, std::span<const std::uint32_t>(geometry.eyes.first));
@@ -177,7 +177,7 @@ UnpackedGeometry unpack(std::span<const std::byte> bytes) {
     list.corners = from.array<OutlineCorner>();
     list.triangles = from.array<std::array<std::uint32_t, 3>>();
     list.item_of_id = from.array<std::uint32_t>();
-    list.polygon_of_surface = from.array<std::uint32_t>();
+    list.polygons_of_surface = from.array<PolygonRange>();
     list.tolerance = from.value<double>();
     result.geometry.eyes.points = from.array<EyePoint>();
     result.geometry.eyes.first = from.array<std::uint32_t>();
