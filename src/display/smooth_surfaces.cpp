@@ -31,7 +31,7 @@ SmoothSurfaces::SmoothSurfaces(const PatchMesh& mesh) {
         looks_.push_back({mesh.normal(patch), mesh.material(patch), mesh.group(patch)});
     }
     weld(mesh);
-    connect();
+    connect(mesh);
 }
 
 bool SmoothSurfaces::continues(std::uint32_t a, std::uint32_t b) const {
@@ -60,7 +60,7 @@ void SmoothSurfaces::weld(const PatchMesh& mesh) {
     vertices_ = welder.points();
 }
 
-void SmoothSurfaces::connect() {
+void SmoothSurfaces::connect(const PatchMesh& mesh) {
     const auto patch_count = static_cast<std::uint32_t>(counts_.size());
     std::vector<std::pair<std::uint32_t, std::uint32_t>> meetings; // vertex, patch
     std::vector<Edge> edges;
@@ -106,6 +106,9 @@ void SmoothSurfaces::connect() {
             for (const std::uint32_t vertex : found) {
                 if (vertex != edges[i].low && vertex != edges[i].high) {
                     meetings.emplace_back(vertex, edges[i].patch);
+                    if (!mesh.parts(mesh.surface_of()[edges[i].patch]).empty()) {
+                        add_hanging(vertex, edges[i].patch, edges[i].low, edges[i].high);
+                    }
                 }
             }
         }
@@ -123,6 +126,28 @@ void SmoothSurfaces::connect() {
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         first_incident_[v + 1] += first_incident_[v];
     }
+
+    // Of other surfaces, whose vertices lie on the edge by chance or by another grid, neither interpolates.
+    std::erase_if(hanging_, [&](const Hanging& hanging) {
+        const auto around = patches_at(hanging.vertex);
+        return std::none_of(around.begin(), around.end(), [&](std::uint32_t patch) {
+            const auto ring = corners(patch);
+            return mesh.surface_of()[patch] == mesh.surface_of()[hanging.patch] &&
+                   std::find(ring.begin(), ring.end(), hanging.vertex) != ring.end();
+        });
+    });
+    const auto length = [this](const Hanging& hanging) {
+        return glm::distance(vertices_[hanging.from], vertices_[hanging.to]);
+    };
+    std::stable_sort(hanging_.begin(), hanging_.end(),
+                     [&length](const Hanging& a, const Hanging& b) { return length(a) > length(b); });
+}
+
+void SmoothSurfaces::add_hanging(std::uint32_t vertex, std::uint32_t patch, std::uint32_t from,
+                                 std::uint32_t to) {
+    const Vec3 edge = vertices_[to] - vertices_[from];
+    hanging_.push_back({vertex, patch, from, to,
+                        glm::dot(vertices_[vertex] - vertices_[from], edge) / glm::dot(edge, edge)});
 }
 
 } // namespace hemi

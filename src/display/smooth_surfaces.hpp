@@ -31,13 +31,26 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> patches_at(std::uint32_t v) const {
         return {incident_.data() + first_incident_[v], first_incident_[v + 1] - first_incident_[v]};
     }
+    /// A vertex in the middle of an edge of a larger patch of the same surface.
+    struct Hanging {
+        std::uint32_t vertex;
+        std::uint32_t patch; ///< the larger one
+        std::uint32_t from;  ///< ends of its edge
+        std::uint32_t to;
+        double share; ///< of the way from one to the other
+    };
+    /// All of them, those of long edges first: ends that hang themselves come before what hangs between them.
+    [[nodiscard]] std::span<const Hanging> hanging() const { return hanging_; }
+
     /// Whether light runs smoothly from one patch to the other where they meet: same material, same group,
     /// normals within the crease angle.
     [[nodiscard]] bool continues(std::uint32_t a, std::uint32_t b) const;
 
 private:
     void weld(const PatchMesh& mesh);
-    void connect();
+    void connect(const PatchMesh& mesh);
+
+    void add_hanging(std::uint32_t vertex, std::uint32_t patch, std::uint32_t from, std::uint32_t to);
 
     struct Appearance {
         Vec3 normal;
@@ -50,6 +63,7 @@ private:
     std::vector<Appearance> looks_;
     std::vector<std::size_t> first_incident_;
     std::vector<std::uint32_t> incident_;
+    std::vector<Hanging> hanging_;
     double tolerance_ = 0.0;
 };
 

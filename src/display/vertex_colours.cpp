@@ -44,10 +44,38 @@ public:
                 }
             }
         }
+        interpolate_hanging();
         return std::move(result_);
     }
 
 private:
+    /// Gives vertices on edges of larger patches what those show there.
+    void interpolate_hanging() {
+        for (const SmoothSurfaces::Hanging& hanging : surfaces_.hanging()) {
+            const auto larger = surfaces_.corners(hanging.patch);
+            const auto corner_at = [&](std::uint32_t vertex) {
+                return static_cast<std::uint32_t>(std::find(larger.begin(), larger.end(), vertex) -
+                                                  larger.begin());
+            };
+            const std::size_t from = slot(hanging.patch, corner_at(hanging.from));
+            const std::size_t to = slot(hanging.patch, corner_at(hanging.to));
+            for (const std::uint32_t patch : surfaces_.patches_at(hanging.vertex)) {
+                const auto ring = surfaces_.corners(patch);
+                for (std::uint32_t k = 0; k < ring.size() && surfaces_.continues(hanging.patch, patch); ++k) {
+                    if (ring[k] != hanging.vertex) {
+                        continue;
+                    }
+                    for (std::uint32_t c = 0; c < channels_; ++c) {
+                        const float a = result_[from * channels_ + c];
+                        const float b = result_[to * channels_ + c];
+                        result_[slot(patch, k) * channels_ + c] =
+                            a + static_cast<float>(hanging.share) * (b - a);
+                    }
+                }
+            }
+        }
+    }
+
     [[nodiscard]] static std::size_t slot(std::uint32_t patch, std::uint32_t k) {
         return std::size_t{patch} * 4 + k;
     }

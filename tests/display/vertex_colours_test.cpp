@@ -1,5 +1,7 @@
 #include "hemi/display/vertex_colours.hpp"
 
+#include "support/scenes.hpp"
+
 #include "display/display_fixtures.hpp"
 #include "hemi/core/error.hpp"
 
@@ -261,4 +263,47 @@ TEST_CASE("CornerValues: a hundred thousand loose triangles take seconds at most
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     CHECK(values[0] == 1.0F);
     CHECK(seconds.count() < 10.0); // 0.2 s on an idle core; sanitizers and a busy machine need room
+}
+
+TEST_CASE("corner values: between patches of different sizes there is no step", "[display]") {
+    Scene scene = test::empty_scene();
+    test::add_polygon(scene, "floor", {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}, {4, 4});
+    const PatchMesh coarse(scene);
+    const PatchMesh once = coarse.split(std::vector<std::uint32_t>{5, 6}, Cut::in_four).mesh;
+    std::vector<std::uint32_t> again;
+    for (std::uint32_t i = 0; i < once.size(); ++i) {
+        if (once.areas()[i] < 0.3 && once.centres()[i].x < 1.5) {
+            again.push_back(i); // two of the four parts of one
+        }
+    }
+    const PatchMesh mesh = once.split(again, Cut::in_four).mesh;
+    std::vector<double> values;
+    for (const Vec3& centre : mesh.centres()) {
+        values.push_back(std::sin(3.0 * centre.x) * std::cos(2.0 * centre.y));
+    }
+    const std::vector<float> corners = corner_values(mesh, 1, values, {});
+    // What a patch shows at a point of its rim, between the ends of an edge.
+    std::uint32_t on_edges = 0;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const PatchCorners larger = mesh.corners(i);
+        for (std::uint32_t e = 0; e < 4; ++e) {
+            const Vec3 from = larger.points[e];
+            const Vec3 edge = larger.points[(e + 1) % 4] - from;
+            for (std::uint32_t j = 0; j < mesh.size(); ++j) {
+                for (std::uint32_t k = 0; k < 4; ++k) {
+                    const Vec3 way = mesh.corners(j).points[k] - from;
+                    const double t = glm::dot(way, edge) / glm::dot(edge, edge);
+                    if (glm::length(way - t * edge) > 1e-9 || t < 1e-9 || t > 1.0 - 1e-9) {
+                        continue;
+                    }
+                    ++on_edges;
+                    const auto at = [&](std::uint32_t patch, std::uint32_t corner) {
+                        return static_cast<double>(corners[std::size_t{patch} * 4 + corner]);
+                    };
+                    REQUIRE(at(j, k) == Approx((1.0 - t) * at(i, e) + t * at(i, (e + 1) % 4)).margin(1e-6));
+                }
+            }
+        }
+    }
+    CHECK(on_edges > 20);
 }

@@ -14,7 +14,8 @@ namespace hemi {
 /// A corner's value is the area-weighted mean over the patches that meet there and belong to the same smooth
 /// surface: same material, same group, normals within 20°, and not covered. Corners of covered patches take
 /// what uncovered patches give them, and else the mean of the nearest corners that have a value.
-/// Patches that touch a corner in the middle of one of their edges count as meeting there.
+/// Patches that touch a corner in the middle of one of their edges count as meeting there; where they are
+/// parts of the same surface (PatchMesh::parts), the corner has what the longer edge shows there.
 /// @param mesh      N patches
 /// @param channels  numbers a patch
 /// @param values    N·channels, of channel c of patch i at [i·channels + c]
