@@ -98,6 +98,7 @@ void show_groups(const FactorsArguments& arguments, const FormFactors& factors, 
 }
 
 ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
+    refuse_chosen_settings(arguments.common, arguments.rows);
     const bool is_scene = io::is_scene_file(arguments.scene.path);
     const Outputs outputs = check_outputs(arguments);
     if (arguments.rows.resume && !(is_scene && keeps_rows(arguments))) {

@@ -76,7 +76,28 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
         group_of[i] = mesh.group(i);
     }
     stop_if_interrupted();
-    return {std::move(scene), std::move(mesh), std::move(group_of), watch.seconds()};
+    return {std::move(scene), std::move(mesh), options.subdivision, std::move(group_of), watch.seconds()};
+}
+
+void LoadedScene::adopt(PatchMesh other) {
+    mesh = std::move(other);
+    adopt_mesh(scene, subdivision, mesh);
+    group_of.clear();
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        group_of.push_back(mesh.group(i));
+    }
+}
+
+void refuse_chosen_settings(const CommonOptions& common, const RowOptions& rows) {
+    if (!rows.error_target || rows.error_of != ErrorOf::factors) {
+        return;
+    }
+    for (const std::string& option : common.given) {
+        if (option == "--preset" || option == "--eye-points" || option == "--resolution" ||
+            option == "--shadow-rays") {
+            throw InvalidArgument(fmt::format("{} is what --error-target chooses; leave one out", option));
+        }
+    }
 }
 
 void refuse_all_but(const CommonOptions& common, std::span<const std::string> allowed,

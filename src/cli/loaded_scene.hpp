@@ -17,8 +17,12 @@ namespace hemi::cli {
 struct LoadedScene {
     Scene scene;
     PatchMesh mesh;
+    Subdivision subdivision;             ///< with the scene it makes the mesh
     std::vector<std::uint32_t> group_of; ///< group of every patch
     double seconds = 0.0;
+
+    /// Takes another mesh of the same surfaces.
+    void adopt(PatchMesh other);
 
     [[nodiscard]] PatchNames names() const { return {mesh.groups(), group_of, mesh.centres()}; }
 };
@@ -26,6 +30,10 @@ struct LoadedScene {
 /// Reads the scene and cuts it into patches; `--enclosure` and `--environment` replace the scene's own.
 /// @throws InputError for the file; InvalidArgument for options that do not fit it.
 [[nodiscard]] LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal);
+
+/// Refuses settings on the command line that --error-target chooses.
+/// @throws InvalidArgument
+void refuse_chosen_settings(const CommonOptions& common, const RowOptions& rows);
 
 /// Refuses options on the command line that say nothing about a stored file.
 /// @param allowed  options that do ("--json"); @throws InvalidArgument

@@ -16,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -46,6 +47,15 @@ Outputs check_outputs(const SolveArguments& arguments) {
 }
 
 void check_input(const SolveArguments& arguments) {
+    refuse_chosen_settings(arguments.common, arguments.rows);
+    if (arguments.refines() && arguments.factors) {
+        throw InvalidArgument(
+            "--factors holds rows of the patches that the scene is cut into; it cannot be used "
+            "where patches are cut further: leave it out, or --error-target and --refine");
+    }
+    if (arguments.budget > 0.0 && !arguments.refines()) {
+        throw InvalidArgument("--budget needs --error-target or --refine, by which patches are cut");
+    }
     if (arguments.rows.error_target && has_rows(arguments)) {
         throw InvalidArgument(fmt::format("--error-target chooses settings, but the rows of {} are there "
                                           "already; leave one out",
@@ -101,6 +111,34 @@ Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loade
     return {std::move(found.factors), std::move(found.solution)};
 }
 
+/// Solves on patches that are cut until the result is good enough; the scene gets their mesh.
+/// @param missed  becomes a sentence where it is not
+Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& loaded, Observer& observer,
+                              Seconds& seconds, Report& report, std::string& missed) {
+    const Stopwatch watch;
+    RefinementGoal goal;
+    goal.error = arguments.rows.error_target;
+    goal.error_of = arguments.rows.error_of;
+    goal.patches = arguments.refine;
+    goal.seconds = arguments.budget;
+    goal.gather = arguments.picture.flat ? Gather::off : arguments.gather;
+    const bool own_size = loaded.subdivision != Subdivision{}; // asked for on the command line
+    Refinement found =
+        solve_refined(loaded.scene, own_size ? loaded.mesh : coarse_mesh(loaded.scene),
+                      arguments.rows.factors, arguments.solver, goal, arguments.with_irradiance(), observer);
+    loaded.adopt(std::move(found.mesh));
+    seconds["solve"] = found.solution.seconds;
+    seconds["refine"] = watch.seconds() - found.solution.seconds;
+    report = refinement_report(found.steps, found.stopped);
+    if (!found.stopped.empty() && goal.error) {
+        const double error = found.steps.back().error;
+        missed = fmt::format("an error of {} % ({}) is not met: {}; the estimated error is {}",
+                             100.0 * *goal.error, to_word(goal.error_of), found.stopped,
+                             std::isfinite(error) ? fmt::format("{:.2g} %", 100.0 * error) : "not known");
+    }
+    return {std::move(found.factors), std::move(found.solution)};
+}
+
 /// Whether a file of that name is replaced when it is written again; a pipe would get both.
 bool is_replaced(const std::filesystem::path& path) {
     std::error_code unknown;
@@ -115,7 +153,7 @@ void write_solution(const SolveArguments& arguments, const LoadedScene& loaded, 
         return path && (!only_replaced || is_replaced(*path));
     };
     if (wanted(arguments.result)) {
-        io::write_hres(*arguments.result, {loaded.scene, arguments.scene.subdivision, solution});
+        io::write_hres(*arguments.result, {loaded.scene, loaded.subdivision, solution});
     }
     if (wanted(arguments.radiosity)) {
         io::write_radiosity_csv(*arguments.radiosity, loaded.mesh, loaded.scene.channels, solution.exitance,
@@ -166,17 +204,21 @@ Report draw(const SolveArguments& arguments, const LoadedScene& loaded, const So
 ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     check_input(arguments);
     const Outputs outputs = check_outputs(arguments);
-    Seconds seconds({"load", "factors", "repair", "solve", "gather", "estimate", "search", "render"});
-    const LoadedScene loaded = load_scene(arguments.scene, terminal);
+    Seconds seconds(
+        {"load", "factors", "repair", "solve", "gather", "estimate", "search", "refine", "render"});
+    LoadedScene loaded = load_scene(arguments.scene, terminal);
     seconds["load"] = loaded.seconds;
     if (arguments.picture.output) { // tested before the work
         (void)channels_to_show(loaded.scene.channels, arguments.picture.show);
         (void)choose_camera(loaded.scene, loaded.mesh, arguments.picture);
     }
     TerminalObserver observer(terminal);
-    auto [factors, solution] = arguments.rows.error_target
-                                   ? solve_to_target(arguments, loaded, observer, terminal, seconds)
-                                   : solve(arguments, loaded, observer, terminal, seconds);
+    Report refinement;
+    std::string missed;
+    auto [factors, solution] =
+        arguments.refines() ? solve_on_finer_patches(arguments, loaded, observer, seconds, refinement, missed)
+        : arguments.rows.error_target ? solve_to_target(arguments, loaded, observer, terminal, seconds)
+                                      : solve(arguments, loaded, observer, terminal, seconds);
     const double max_row_error = arguments.rows.max_row_error;
     const RowSums sums = row_sums(factors.matrix);
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
@@ -188,9 +230,13 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     write_solution(arguments, loaded, solution, true);
     Report picture;
     try {
-        gather(arguments, loaded, observer, solution, seconds);
+        if (!arguments.refines()) {
+            gather(arguments, loaded, observer, solution, seconds);
+        }
         picture = draw(arguments, loaded, solution, seconds);
-        estimate_patch_size(arguments, loaded, factors, observer, solution, seconds);
+        if (!arguments.refines()) {
+            estimate_patch_size(arguments, loaded, factors, observer, solution, seconds);
+        }
     } catch (const Cancelled&) {
         write_solution(arguments, loaded, solution, false);
         throw;
@@ -198,10 +244,14 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     write_solution(arguments, loaded, solution, false);
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
     Report report = solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, seconds);
-    report.text += picture.text;
+    report.text += refinement.text + picture.text;
+    report.json.update(refinement.json);
     outputs.show(report, arguments.common.json, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
-    return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
+    if (!missed.empty()) {
+        terminal.warn(missed);
+    }
+    return enclosure.leaks.empty() && missed.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }
 
 } // namespace hemi::cli

@@ -201,9 +201,28 @@ FormFactors compute_visibility_weighted_rows(const Scene& scene, const PatchMesh
     return factors;
 }
 
-/// Better rows of a few patches, about a tenth of the work that the rows were.
-void add_reference(FormFactors& factors, const PatchMesh& mesh, const FactorSettings& settings,
-                   Observer& observer) {
+} // namespace
+
+FormFactors compute_raw_form_factors(const Scene& scene, const PatchMesh& mesh,
+                                     std::span<const std::uint32_t> patches, const FactorSettings& settings,
+                                     Observer& observer, RowCheckpoint* checkpoint) {
+    if (settings.method == Method::hemicube && patches.empty()) {
+        FormFactors factors = describe(scene, mesh, settings);
+        factors.provenance.renderer = "none";
+        return factors;
+    }
+    const auto compute = settings.method != Method::hemicube ? compute_baseline_rows
+                         : settings.preset == Preset::plain  ? compute_plain_rows
+                                                             : compute_visibility_weighted_rows;
+    FormFactors factors = compute(scene, mesh, patches, settings, observer, checkpoint);
+    if (settings.estimate_error) {
+        add_reference_rows(factors, mesh, settings, observer);
+    }
+    return factors;
+}
+
+void add_reference_rows(FormFactors& factors, const PatchMesh& mesh, const FactorSettings& settings,
+                        Observer& observer) {
     std::vector<std::uint32_t> known;
     for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
         if (factors.matrix.known(i)) {
@@ -230,26 +249,6 @@ void add_reference(FormFactors& factors, const PatchMesh& mesh, const FactorSett
     observer.detail(fmt::format("error estimate: {} compared with better ones in {}",
                                 plural(patches.size(), "row", "rows"),
                                 seconds_text(factors.work.reference_seconds)));
-}
-
-} // namespace
-
-FormFactors compute_raw_form_factors(const Scene& scene, const PatchMesh& mesh,
-                                     std::span<const std::uint32_t> patches, const FactorSettings& settings,
-                                     Observer& observer, RowCheckpoint* checkpoint) {
-    if (settings.method == Method::hemicube && patches.empty()) {
-        FormFactors factors = describe(scene, mesh, settings);
-        factors.provenance.renderer = "none";
-        return factors;
-    }
-    const auto compute = settings.method != Method::hemicube ? compute_baseline_rows
-                         : settings.preset == Preset::plain  ? compute_plain_rows
-                                                             : compute_visibility_weighted_rows;
-    FormFactors factors = compute(scene, mesh, patches, settings, observer, checkpoint);
-    if (settings.estimate_error) {
-        add_reference(factors, mesh, settings, observer);
-    }
-    return factors;
 }
 
 FormFactors compute_form_factors(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,

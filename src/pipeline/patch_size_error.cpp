@@ -7,6 +7,7 @@
 #include "hemi/display/vertex_colours.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/matrix/error_estimate.hpp"
+#include "hemi/pipeline/radiosity.hpp"
 #include "hemi/solver/solver.hpp"
 #include "pipeline/group_importance.hpp"
 #include "pipeline/visible_radiosity.hpp"
@@ -40,7 +41,7 @@ constexpr double linear_over_quarters = 4.0 / 3.0;
 class Interpolation {
 public:
     Interpolation(const PatchMesh& mesh, std::vector<float> corners, std::uint32_t channels)
-        : mesh_(mesh), corners_(std::move(corners)), channels_(channels) {}
+        : mesh_(&mesh), corners_(std::move(corners)), channels_(channels) {}
 
     /// Of a corner of the patch, 0 to 3.
     [[nodiscard]] double at_corner(std::uint32_t patch, std::uint32_t corner, std::uint32_t channel) const {
@@ -49,7 +50,7 @@ public:
 
     /// Weights of the corners in the middle of a quarter.
     [[nodiscard]] std::array<double, 4> weights(std::uint32_t patch, const PatchCorners& quarter) const {
-        const PatchCorners corners = mesh_.corners(patch);
+        const PatchCorners corners = mesh_->corners(patch);
         // The corner that both have: in slanted patches another one may be nearer to the quarter's centre.
         std::uint32_t nearest = 0;
         double least = std::numeric_limits<double>::infinity();
@@ -92,7 +93,7 @@ public:
 
     /// Of the corner values about the patch's own value in one channel, mean square.
     [[nodiscard]] double square(std::uint32_t patch, const Solution& solution, std::uint32_t channel) const {
-        const std::uint32_t count = mesh_.corners(patch).count;
+        const std::uint32_t count = mesh_->corners(patch).count;
         const double own = solution.radiosity[std::size_t{patch} * channels_ + channel];
         double squares = 0.0;
         for (std::uint32_t k = 0; k < count; ++k) {
@@ -101,8 +102,19 @@ public:
         return squares / count;
     }
 
+    /// Of the patch's own value and the mean of its corners, the difference squared: how fast the change
+    /// changes.
+    [[nodiscard]] double bend(std::uint32_t patch, const Solution& solution, std::uint32_t channel) const {
+        const std::uint32_t count = mesh_->corners(patch).count;
+        double difference = -solution.radiosity[std::size_t{patch} * channels_ + channel];
+        for (std::uint32_t k = 0; k < count; ++k) {
+            difference += at_corner(patch, k, channel) / count;
+        }
+        return difference * difference;
+    }
+
 private:
-    const PatchMesh& mesh_;
+    const PatchMesh* mesh_;
     std::vector<float> corners_;
     std::uint32_t channels_;
 };
@@ -141,6 +153,10 @@ std::vector<Drawn> draw_sample(const std::vector<std::uint32_t>& patches,
 class Errors {
 public:
     void add(double error, double area) { errors_.push_back({std::abs(error), area}); }
+    /// A patch of the sample is complete: what it adds to the variance of squares().
+    /// @param weight  how many patches it stands for
+    /// @param square  what it added to squares(), with that weight
+    void end_patch(double weight, double square) { variance_ += (weight - 1.0) / weight * square * square; }
 
     /// Sum of their squares times areas.
     [[nodiscard]] double squares() const {
@@ -164,6 +180,7 @@ public:
         }
         std::sort(errors_.begin(), errors_.end());
         result.rms = std::sqrt(more * squares() / total) / unit;
+        result.doubt = std::sqrt(more * (squares() + std::sqrt(variance_)) / total) / unit - result.rms;
         double below = 0.0;
         for (const auto& [error, area] : errors_) {
             result.percentile95 = std::sqrt(more) * error / unit;
@@ -177,6 +194,7 @@ public:
 
 private:
     std::vector<std::pair<double, double>> errors_;
+    double variance_ = 0.0; ///< of the sum of squares
 };
 
 /// A sum over all patches, from those of a sample.
@@ -202,11 +220,12 @@ public:
                        const Solution& solution)
         : scene_(scene), mesh_(mesh), factors_(factors), solution_(solution), channels_(solution.channels),
           reflectance_(patch_values(mesh, scene.materials, &Material::reflectance)),
-          interpolation_(mesh,
-                         solution.vertex_radiosity.empty()
-                             ? corner_values(mesh, channels_, solution.radiosity, solution.back_face_share)
-                             : solution.vertex_radiosity,
-                         channels_) {
+          means_(mesh, corner_values(mesh, channels_, solution.radiosity, solution.back_face_share),
+                 channels_),
+          shown_(solution.vertex_radiosity.empty()
+                     ? means_
+                     : Interpolation(mesh, solution.vertex_radiosity, channels_)),
+          gathered_(!solution.vertex_radiosity.empty()) {
         const std::size_t values = std::size_t{mesh.size()} * channels_;
         if (solution.radiosity.size() != values || reflectance_.size() != values ||
             factors.matrix.size() != mesh.size() ||
@@ -220,8 +239,9 @@ public:
         return std::any_of(units_.begin(), units_.end(), [](double unit) { return unit > 0.0; });
     }
 
-    [[nodiscard]] std::optional<PatchSizeError> run(const FactorSettings& settings, Observer& observer) {
-        const std::vector<Drawn> sample = draw();
+    [[nodiscard]] std::optional<PatchSizeError> run(const FactorSettings& settings, Gather gather,
+                                                    double effort, Observer& observer) {
+        const std::vector<Drawn> sample = draw(effort);
         const auto [fine, parents] = mesh_.split(all_patches(mesh_.size()), Cut::in_four);
         const std::vector<std::array<std::uint32_t, 4>> quarters = find_quarters(sample, parents);
         std::vector<std::uint32_t> rows;
@@ -236,6 +256,9 @@ public:
             return std::nullopt;
         }
 
+        if (gather == Gather::on && solution_.vertex_radiosity.empty()) {
+            gather_sample(sample, settings, observer);
+        }
         RowPlan plan = plan_rows(settings, mesh_.size());
         plan.hemicube.seed = ~plan.hemicube.seed; // not the rows that the solution rests on
         const auto engine = make_visibility_provider(fine, plan.hemicube, settings);
@@ -249,16 +272,30 @@ public:
         std::vector<Errors> vertices(channels_);
         std::vector<Errors> field(channels_);
         std::vector<SampledSum> groups(std::size_t{importance_.groups()} * channels_);
+        std::vector<double> squares;
         for (std::size_t k = 0; k < sample.size(); ++k) {
+            std::vector<double> before;
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                before.push_back(vertices[c].squares());
+                before.push_back(field[c].squares());
+            }
             add_patch(sample[k], quarters[k], fine, parents, factors, vertices, field, groups);
+            const double area = sample[k].weight * mesh_.areas()[sample[k].patch];
+            for (std::uint32_t c = 0; c < channels_; ++c) {
+                const double square = vertices[c].squares() - before[2 * c];
+                squares.push_back(square / area);
+                vertices[c].end_patch(sample[k].weight, square);
+                field[c].end_patch(sample[k].weight, field[c].squares() - before[2 * c + 1]);
+            }
         }
         PatchSizeError result;
         result.groups = group_errors(groups);
-        result.patches = model_patches(sample, vertices);
+        result.patches = model_patches(sample, squares);
         result.sampled = static_cast<std::uint32_t>(sample.size());
         const auto take_worst = [](FieldError& worst, const FieldError& error) {
             worst.rms = std::max(worst.rms, error.rms);
             worst.percentile95 = std::max(worst.percentile95, error.percentile95);
+            worst.doubt = std::max(worst.doubt, error.doubt);
         };
         for (std::uint32_t c = 0; c < channels_; ++c) {
             if (units_[c] > 0.0) {
@@ -300,16 +337,15 @@ private:
         }
     }
 
-    [[nodiscard]] std::vector<Drawn> draw() const {
+    [[nodiscard]] std::vector<Drawn> draw(double effort) const {
         std::vector<double> importance;
         for (const std::uint32_t patch : patches_) {
             // The square root of what a patch is likely to add makes the sum's variance least.
-            importance.push_back(
-                mesh_.areas()[patch] *
-                std::sqrt(interpolation_.spread(patch, solution_, units_) + least_doubt * least_doubt));
+            importance.push_back(mesh_.areas()[patch] * std::sqrt(means_.spread(patch, solution_, units_) +
+                                                                  least_doubt * least_doubt));
         }
-        const double count =
-            std::clamp(sampled_share * static_cast<double>(patches_.size()), min_sampled, max_sampled);
+        const double count = effort * std::clamp(sampled_share * static_cast<double>(patches_.size()),
+                                                 min_sampled, max_sampled);
         return draw_sample(patches_, importance, count);
     }
 
@@ -329,31 +365,88 @@ private:
         return quarters;
     }
 
-    /// What makes a patch's error large, squared and absolute: how fast the field changes there, and a little
-    /// everywhere.
-    [[nodiscard]] double expected_square(std::uint32_t patch, std::uint32_t channel) const {
+    /// What makes the error of a patch large, squared and absolute: how fast the radiosity changes there, how
+    /// fast the change changes, and a little everywhere.
+    [[nodiscard]] std::array<double, 2> signs(std::uint32_t patch, std::uint32_t channel) const {
         constexpr double least = 1e-3; // of the channel's unit
         const double even = least * units_[channel];
-        return interpolation_.square(patch, solution_, channel) + even * even;
+        return {means_.square(patch, solution_, channel) + even * even,
+                means_.bend(patch, solution_, channel) + even * even};
     }
 
-    /// Errors of all patches that count: what is expected of them, scaled to the errors of the sample.
+    /// Errors of all patches that count, modelled: a sum of both signs, neither below 0, that agrees best
+    /// with the sample, relative to what the signs are there; then scaled to the sample's whole.
+    /// @param squares  of the sample: area means of the squared errors of every patch, channel by channel
     [[nodiscard]] std::vector<double> model_patches(const std::vector<Drawn>& sample,
-                                                    const std::vector<Errors>& errors) const {
+                                                    const std::vector<double>& squares) const {
         std::vector<double> result(std::size_t{mesh_.size()} * channels_, 0.0);
         for (std::uint32_t c = 0; c < channels_; ++c) {
-            double expected = 0.0;
-            for (const Drawn& drawn : sample) {
-                expected += drawn.weight * mesh_.areas()[drawn.patch] * expected_square(drawn.patch, c);
+            std::array<std::array<double, 2>, 2> products{};
+            std::array<double, 2> right{};
+            for (std::size_t k = 0; k < sample.size(); ++k) {
+                const auto sign = signs(sample[k].patch, c);
+                const double weight =
+                    sample[k].weight * mesh_.areas()[sample[k].patch] / std::pow(sign[0] + sign[1], 2.0);
+                for (std::size_t a = 0; a < 2; ++a) {
+                    for (std::size_t b = 0; b < 2; ++b) {
+                        products[a][b] += weight * sign[a] * sign[b];
+                    }
+                    right[a] += weight * sign[a] * squares[k * channels_ + c];
+                }
             }
-            const double scale = expected > 0.0 ? errors[c].squares() / expected : 0.0;
+            const std::array<double, 2> shares = least_squares(products, right);
+            double expected = 0.0;
+            double found = 0.0;
+            const auto modelled = [&](std::uint32_t patch) {
+                const auto sign = signs(patch, c);
+                return shares[0] * sign[0] + shares[1] * sign[1];
+            };
+            for (std::size_t k = 0; k < sample.size(); ++k) {
+                const double area = sample[k].weight * mesh_.areas()[sample[k].patch];
+                expected += area * modelled(sample[k].patch);
+                found += area * squares[k * channels_ + c];
+            }
+            const double scale = expected > 0.0 ? found / expected : 0.0;
             for (const std::uint32_t patch : patches_) {
                 if (reflectance_[at(patch, c)] > 0.0) {
-                    result[at(patch, c)] = std::sqrt(scale * expected_square(patch, c));
+                    result[at(patch, c)] = std::sqrt(scale * modelled(patch));
                 }
             }
         }
         return result;
+    }
+
+    /// Of two equations, the solution without negative numbers that comes nearest.
+    static std::array<double, 2> least_squares(const std::array<std::array<double, 2>, 2>& products,
+                                               const std::array<double, 2>& right) {
+        const double determinant = products[0][0] * products[1][1] - products[0][1] * products[1][0];
+        if (determinant > 1e-9 * products[0][0] * products[1][1]) {
+            const double first = (right[0] * products[1][1] - right[1] * products[0][1]) / determinant;
+            const double second = (right[1] * products[0][0] - right[0] * products[1][0]) / determinant;
+            if (first >= 0.0 && second >= 0.0) {
+                return {first, second};
+            }
+            // One of them alone explains more.
+            if (second < 0.0 || first > second) {
+                return {right[0] / products[0][0], 0.0};
+            }
+            return {0.0, right[1] / products[1][1]};
+        }
+        return {products[0][0] > 0.0 ? right[0] / products[0][0] : 0.0, 0.0};
+    }
+
+    /// What the corners of the sample would show if all were gathered.
+    void gather_sample(const std::vector<Drawn>& sample, const FactorSettings& settings, Observer& observer) {
+        std::vector<std::uint32_t> patches;
+        for (const Drawn& drawn : sample) {
+            patches.push_back(drawn.patch);
+        }
+        VertexGather vertices(mesh_, solution_.back_face_share, patches);
+        shown_ = Interpolation(mesh_,
+                               vertices.compute(patch_values(scene_, mesh_), solution_.radiosity, settings,
+                                                scene_.enclosure, 0, observer),
+                               channels_);
+        gathered_ = true;
     }
 
     /// Importance of every patch for every group, where there are not too many groups.
@@ -425,7 +518,7 @@ private:
     /// How the radiosity varies within the patches, where it is known well enough: at gathered vertices. A
     /// gather takes patches for even, which is the error that it leaves.
     void find_variation(const PatchMesh& fine, const std::vector<std::uint32_t>& parents) {
-        if (solution_.vertex_radiosity.empty()) {
+        if (!gathered_) {
             return;
         }
         const std::vector<double> visible =
@@ -435,11 +528,11 @@ private:
         std::vector<double> means(std::size_t{mesh_.size()} * channels_, 0.0);
         for (std::uint32_t k = 0; k < fine.size(); ++k) {
             const std::uint32_t patch = parents[k];
-            const auto weights = interpolation_.weights(patch, fine.corners(k));
+            const auto weights = shown_.weights(patch, fine.corners(k));
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 double value = 0.0;
                 for (std::uint32_t corner = 0; corner < mesh_.corners(patch).count; ++corner) {
-                    value += weights[corner] * interpolation_.at_corner(patch, corner, c);
+                    value += weights[corner] * shown_.at_corner(patch, corner, c);
                 }
                 variation_[std::size_t{k} * channels_ + c] = value;
                 means[at(patch, c)] += value * fine.areas()[k] / mesh_.areas()[patch];
@@ -509,6 +602,9 @@ private:
     /// [g·channels + c].
     [[nodiscard]] std::vector<SampledSum> factor_error_sums() const {
         std::vector<SampledSum> sums(std::size_t{importance_.groups()} * channels_);
+        if (factors_.reference.size() != mesh_.size()) {
+            return sums; // their errors are not known
+        }
         const IrradianceErrors errors = irradiance_errors(factors_.matrix, factors_.reference, channels_,
                                                           solution_.radiosity, scene_.environment);
         double known = 0.0;
@@ -550,18 +646,21 @@ private:
             const std::vector<double> importance = gathered(
                 row, parents, groups.size(), [this](std::uint32_t source) { return importance_.of(source); });
             const std::vector<double> varying = varying_light(row);
-            const auto weights = interpolation_.weights(patch, fine.corners(quarters[q]));
+            const auto weights = shown_.weights(patch, fine.corners(quarters[q]));
             const double stands_for = drawn.weight * fine.areas()[quarters[q]];
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 const double change = reflectance_[at(patch, c)] * (light[q][c] - mean[c]);
                 double shown = -solution_.radiosity[at(patch, c)];
                 for (std::uint32_t corner = 0; corner < mesh_.corners(patch).count; ++corner) {
-                    shown += weights[corner] * interpolation_.at_corner(patch, corner, c);
+                    shown += weights[corner] * shown_.at_corner(patch, corner, c);
                 }
                 field[c].add(change, stands_for);
                 vertices[c].add(shown - change - reflectance_[at(patch, c)] * varying[c], stands_for);
                 // Here the quarters' mean counts, too: it differs from what the patch's own row gets where
                 // visibility and F0 change together.
+                if (groups.empty()) {
+                    continue;
+                }
                 const double error = light[q][c] - irradiance_[at(patch, c)];
                 for (std::size_t column = c; column < groups.size(); column += channels_) {
                     const double own = column / channels_ == mesh_.group(patch) ? 1.0 : 0.0;
@@ -581,7 +680,9 @@ private:
     const Solution& solution_;
     std::uint32_t channels_;
     std::vector<double> reflectance_;
-    Interpolation interpolation_;
+    Interpolation means_;                // over the patches that meet at a corner
+    Interpolation shown_;                // what pictures show
+    bool gathered_;                      // whether these are gathered values, at least those of the sample
     std::vector<std::uint32_t> patches_; // those that reflect and are not buried, ascending
     std::vector<double> units_;          // a channel: rms of B - E over them
     GroupImportance importance_;
@@ -593,13 +694,14 @@ private:
 
 std::optional<PatchSizeError> estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh,
                                                         const FormFactors& factors, const Solution& solution,
-                                                        const FactorSettings& settings, Observer& observer) {
+                                                        const FactorSettings& settings, Observer& observer,
+                                                        Gather gather, double effort) {
     const Stopwatch watch;
     PatchSizeEstimator estimator(scene, mesh, factors, solution);
     if (!estimator.anything_reflects()) {
         return std::nullopt;
     }
-    std::optional<PatchSizeError> error = estimator.run(settings, observer);
+    std::optional<PatchSizeError> error = estimator.run(settings, gather, effort, observer);
     if (error) {
         error->seconds = watch.seconds();
         observer.detail(fmt::format("patch size: {} of {} patches cut in four in {:.2g} s", error->sampled,

@@ -494,6 +494,13 @@ std::uint64_t PatchMesh::geometry_hash() const {
     return hash.value();
 }
 
+void adopt_mesh(Scene& scene, Subdivision& subdivision, const PatchMesh& mesh) {
+    for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
+        scene.surfaces[s].patches = mesh.grid(s);
+    }
+    subdivision = {{}, {}, mesh.parts()};
+}
+
 std::vector<double> patch_values(const PatchMesh& mesh, std::span<const Material> materials,
                                  std::vector<double> Material::*property) {
     std::vector<double> values;

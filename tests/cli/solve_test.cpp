@@ -330,3 +330,56 @@ TEST_CASE("solve --gather: vertices have light of their own, in pictures, stored
     CHECK(wrong.status == 2);
     CHECK(wrong.err.find("auto, on or off") != std::string::npos);
 }
+
+TEST_CASE("solve --error-target: patches are cut until the estimate meets it", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(2));
+    const auto solve = [&](Words more) {
+        Words words{"solve", scene, "--device", "osmesa", "--jobs", "2", "--json"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_hemi(words);
+    };
+    for (const std::string of : {"vertices", "field"}) {
+        INFO(of);
+        const double target = of == "field" ? 0.06 : 0.005;
+        const Outcome run = solve({"--error-target", of == "field" ? "6%" : "0.005", "--error-target-of", of,
+                                   "--result", directory.path("a.hres"), "-o", directory.path("a.hdr"),
+                                   "--patches", directory.path("a.csv"), "--size", "64x64"});
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        const Json json = run.json();
+        CHECK(json["error"][of]["rms"] <= target);
+        const Json& steps = json["refinement"]["steps"];
+        REQUIRE(steps.size() >= 1);
+        CHECK(steps.back()["patches"] == json["patches"]);
+        CHECK(json["refinement"]["stopped"] == "");
+        std::uint64_t rows = 0;
+        for (const Json& step : steps) {
+            rows += step["rows"].get<std::uint64_t>();
+        }
+        CHECK(rows == json["refinement"]["rows"].get<std::uint64_t>());
+        CHECK(rows < 2 * json["patches"].get<std::uint64_t>());
+        // What was stored is that mesh and its light.
+        const Json info = run_hemi({"info", directory.path("a.hres"), "--json"}).json();
+        CHECK(info["patches"] == json["patches"]);
+        REQUIRE(run_hemi({"render", directory.path("a.hres"), "--device", "osmesa", "-o",
+                          directory.path("again.hdr"), "--size", "64x64", "-q"})
+                    .status == 0);
+        const bool same = directory.read("again.hdr") == directory.read("a.hdr");
+        CHECK(same);
+    }
+    const Outcome number = solve({"--refine", "700"});
+    REQUIRE(number.status == 0);
+    CHECK(number.json()["patches"] >= 700);
+    CHECK(number.json()["patches"] < 900);
+    const Outcome missed =
+        solve({"--error-target", "1e-9", "--refine", "450", "--radiosity", directory.path("r.csv")});
+    CHECK(missed.status == 5);
+    CHECK(missed.err_has("is not met"));
+    CHECK(directory.has("r.csv"));
+    for (const Words& wrong :
+         {Words{"--error-target", "1%", "--factors", directory.path("f.hff")}, Words{"--budget", "1s"},
+          Words{"--error-target-of", "field"}, Words{"--refine", "0"}, Words{"--error-target", "%"}}) {
+        CHECK(solve(wrong).status == 2);
+    }
+}

@@ -96,32 +96,38 @@ TEST_CASE("error target: the cheapest settings that do are found, said and store
     CHECK(info["preset"] == "fast");
     CHECK(info["chosen_for"] == close.json()["chosen_for"]);
 
-    const Outcome solved = run_hemi(on_osmesa(
-        {"solve", scene, "--error-target", "1e-5", "--json", "--result", directory.path("a.hres")}));
+    const Outcome solved = run_hemi(on_osmesa({"solve", scene, "--error-target", "1e-5", "--error-target-of",
+                                               "factors", "--json", "--result", directory.path("a.hres")}));
     REQUIRE(solved.status == 0);
     CHECK(solved.json()["chosen_for"] == "preset fast, for an error target of 1e-05");
     CHECK(solved.json()["error_estimate"]["radiosity"]["rms"] <= 1e-5);
     CHECK(run_hemi({"info", directory.path("a.hres")}).out_has("for an error target of 1e-05"));
-    CHECK(run_hemi(on_osmesa({"solve", scene, "--error-target", "1e-5"})).out_has("chosen"));
+    CHECK(run_hemi(on_osmesa({"solve", scene, "--error-target", "1e-5", "--error-target-of", "factors"}))
+              .out_has("chosen"));
 }
 
 TEST_CASE("error target: what cannot be met is status 5, what contradicts it is usage", "[cli]") {
     const Directory directory;
     const std::string scene = directory.write("cube.json", cube(2));
     for (const char* command : {"factors", "solve"}) {
-        const Outcome missed = run_hemi(on_osmesa({command, scene, "--error-target", "1e-15"}));
+        const auto with_target = [&](Words words) {
+            if (std::string(command) == "solve") {
+                words.insert(words.end(), {"--error-target-of", "factors"});
+            }
+            return run_hemi(on_osmesa(words));
+        };
+        const Outcome missed = with_target({command, scene, "--error-target", "1e-15"});
         CHECK(missed.status == 5);
         CHECK(missed.err_has("an error target of 1e-15 cannot be met: the best settings"));
         CHECK(missed.out.empty());
-        const Outcome poor =
-            run_hemi(on_osmesa({command, scene, "--error-target", "1e-4", "--max-memory", "1K"}));
+        const Outcome poor = with_target({command, scene, "--error-target", "1e-4", "--max-memory", "1K"});
         CHECK(poor.status == 5);
         CHECK(poor.err_has("needs more than the 1.0 KiB"));
     }
     for (const Words& more :
          {Words{"--preset", "fast"}, Words{"--eye-points", "4"}, Words{"--shadow-rays", "4"},
           Words{"--resolution", "64"}, Words{"--no-estimate"}}) {
-        Words words{"solve", scene, "--error-target", "1e-3"};
+        Words words{"solve", scene, "--error-target", "1e-3", "--error-target-of", "factors"};
         words.insert(words.end(), more.begin(), more.end());
         const Outcome refused = run_hemi(words);
         CHECK(refused.status == 2);

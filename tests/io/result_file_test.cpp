@@ -256,4 +256,42 @@ TEST_CASE("Patch tables: one line a patch, names in quotes where needed, numbers
     REQUIRE(folder.files() == 2);
 }
 
+TEST_CASE("HRES: patches of different sizes are stored, and refused where they do not fill a surface",
+          "[io]") {
+    const Folder folder;
+    io::ResultFile a = sample();
+    const PatchMesh coarse(a.scene);
+    const PatchMesh once = coarse.split(std::vector<std::uint32_t>{0, 4, 7}).mesh;
+    const PatchMesh mesh = once.split(std::vector<std::uint32_t>{1, once.size() - 1}).mesh;
+    adopt_mesh(a.scene, a.subdivision, mesh);
+    REQUIRE_FALSE(mesh.parts().empty());
+    a.solution.radiosity.resize(mesh.size() * 2);
+    a.solution.irradiance.resize(mesh.size() * 2);
+    a.solution.row_sum.resize(mesh.size());
+    a.solution.environment_share.resize(mesh.size());
+    a.solution.back_face_share.resize(mesh.size());
+    a.solution.factor_error->rows.resize(mesh.size());
+    a.solution.error->patches.resize(mesh.size() * 2);
+    a.solution.patch_size_error->patches.resize(mesh.size() * 2);
+    a.solution.vertex_radiosity.resize(std::size_t{mesh.size()} * 8);
+    io::write_hres(folder / "a.hres", a);
+    const io::ResultFile b = io::read_hres(folder / "a.hres");
+    CHECK(b.subdivision.parts == mesh.parts());
+    CHECK(PatchMesh(b.scene, b.subdivision).geometry_hash() == mesh.geometry_hash());
+    // One part twice, another one missing: the numbers are those of before.
+    std::size_t surface = 0;
+    while (mesh.parts()[surface].empty()) {
+        ++surface;
+    }
+    std::ifstream file(folder / "a.hres", std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const GridPart& last = mesh.parts()[surface].back();
+    const std::size_t first = 4 * mesh.parts().size();
+    const auto twice = folder.write(
+        "b.hres", with_payload(bytes, 1, first, raw(last.level_u) + raw(last.level_v) + raw(last.cell)));
+    require_parts(message_of<InputError>([&] { (void)io::read_hres(twice); }), {"b.hres:", "do not fill"});
+    const auto many = folder.write("c.hres", with_payload(bytes, 1, 0, raw(1000000u)));
+    require_parts(message_of<InputError>([&] { (void)io::read_hres(many); }), {"c.hres:", "more parts than"});
+}
+
 } // namespace hemi::io_test

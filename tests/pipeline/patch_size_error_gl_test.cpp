@@ -358,3 +358,19 @@ TEST_CASE("patch size: corner values of slanted patches are interpolated as thos
         CHECK(error->vertices.rms < 0.5 * error->field.rms);
     }
 }
+
+TEST_CASE("patch size: groups without an error where there are too many of them", "[pipeline][gl]") {
+    Scene scene = lit_room(3, 0.5, 0.3);
+    for (int k = 0; k < 64; ++k) {
+        const double x = 0.05 + 0.01 * k;
+        add_polygon(scene, "strip " + std::to_string(k),
+                    {Vec3(x, 0.9, 0.001), Vec3(x + 0.008, 0.9, 0.001), Vec3(x + 0.008, 0.95, 0.001),
+                     Vec3(x, 0.95, 0.001)});
+    }
+    const Solved coarse = solved(scene, Preset::fast);
+    const auto error = estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution,
+                                                 settings_of(Preset::fast));
+    REQUIRE(error);
+    CHECK(error->groups.empty());
+    CHECK(error->field.rms > 0.01);
+}

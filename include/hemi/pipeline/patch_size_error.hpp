@@ -3,6 +3,7 @@
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/settings.hpp"
+#include "hemi/pipeline/vertex_gather.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/solver/solution.hpp"
 
@@ -41,12 +42,16 @@ namespace hemi {
 /// @param settings  sample points and texels of the quarters' rows, which are unoccluded factors times
 ///   visibility whatever the preset; device, workers and the limit of memory
 /// @param observer  gets progress and may cancel; gets a warning where the memory does not allow it
+/// @param gather    on: `vertices` is what it would be, were the solution gathered (VertexGather), found by
+///   gathering at the corners of the sample; a solution that was gathered needs no such word
+/// @param effort    so many times the usual number of patches in the sample
 /// @return nothing where nothing is reflected, or where memory is short
 /// @throws InvalidArgument if the solution is of another mesh; as make_visibility_engine(); Cancelled
 [[nodiscard]] std::optional<PatchSizeError>
 estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
                           const Solution& solution, const FactorSettings& settings,
-                          Observer& observer = no_observer());
+                          Observer& observer = no_observer(), Gather gather = Gather::off,
+                          double effort = 1.0);
 
 /// The same where the solution must not be lost: what cannot be estimated is told to the observer as a
 /// warning.

@@ -153,6 +153,11 @@ struct SplitMesh {
         parents; ///< of each of its patches the one of the coarser mesh that it lies in
 };
 
+/// Makes PatchMesh(scene, subdivision) a mesh again that was split or cut otherwise than the scene wants.
+/// @param scene        that the mesh is of; gets its grids
+/// @param subdivision  becomes that of the mesh
+void adopt_mesh(Scene& scene, Subdivision& subdivision, const PatchMesh& mesh);
+
 /// A property of materials, spread over the patches: N·channels, channel c of patch i at [i·channels + c].
 /// @param mesh       N patches
 /// @param materials  those of the scene, by the surfaces' index; all with the same number of channels

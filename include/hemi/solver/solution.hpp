@@ -37,6 +37,9 @@ struct Names<SolverMethod> {
 struct FieldError {
     double rms = 0.0;          ///< rms of the error over rms of B - E
     double percentile95 = 0.0; ///< what 95 % of the area stays below, over rms of B - E
+    /// By how much the rms may be off since it is from a sample of the patches: one standard error; not
+    /// stored.
+    double doubt = 0.0;
 };
 
 /// What the mean irradiance of a group is off by, relative to it, in the worst channel. Not a number where

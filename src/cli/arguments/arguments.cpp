@@ -230,13 +230,36 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
     Options options(app, "Form factors");
     options.flag("--no-estimate", rows.factors.estimate_error,
                  "skip the error estimates, which take a tenth of the time of new form factors", false);
-    auto* target = options.value(
-        "--error-target", "T", "choose the cheapest settings whose estimated error is at most T",
-        [&rows](const std::string& text) { rows.error_target = parse_positive("--error-target", text); });
-    for (const char* name : {"--preset", "--method", "--eye-points", "--resolution", "--shadow-rays",
-                             "--rays", "--no-estimate"}) {
+    const char* help =
+        rows.error_of == ErrorOf::factors
+            ? "choose the cheapest settings whose estimated error is at most T, such as 1e-3 or 0.1%"
+            : "cut patches, or choose settings, until the estimated error is at most T, such as 1%";
+    auto* target = options.value("--error-target", "T", help, [&rows](const std::string& text) {
+        const bool percent = text.ends_with('%');
+        rows.error_target =
+            parse_positive("--error-target", percent ? text.substr(0, text.size() - 1) : text) *
+            (percent ? 0.01 : 1.0);
+    });
+    for (const char* name : {"--method", "--rays", "--no-estimate"}) {
         target->excludes(app.get_option(name));
     }
+}
+
+/// Patches that are cut until the solution is good enough.
+void add_refinement(CLI::App& app, SolveArguments& a) {
+    Options options(app, "Refinement");
+    options
+        .choice<ErrorOf>(
+            "--error-target-of", "ERROR",
+            "what --error-target is for: vertices (of pictures; the default), field (one value a patch) "
+            "or groups (their mean irradiance): patches are cut; factors: settings are chosen",
+            a.rows.error_of)
+        ->needs(app.get_option("--error-target"));
+    auto* refine = options.value("--refine", "N", "cut patches where it tells, until there are N",
+                                 [&a](const std::string& text) { a.refine = to_index("--refine", text, 1); });
+    options.value("--budget", "TIME", "cut no more patches after this time, such as 30s or 5m",
+                  [&a](const std::string& text) { a.budget = parse_duration("--budget", text); });
+    refine->excludes(app.get_option("--method"))->excludes(app.get_option("--no-estimate"));
 }
 
 /// @param output  the file of form factors beside which rows are kept
@@ -342,11 +365,13 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
 }
 
 void add_solve(CLI::App& app, SolveArguments& a) {
+    a.rows.error_of = ErrorOf::vertices;
     add_scene(app, a.scene);
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
     add_repair(app, a.rows.factors.repair);
     add_estimate(app, a.rows);
+    add_refinement(app, a);
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
     add_solver(app, a.solver);

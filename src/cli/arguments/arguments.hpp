@@ -4,8 +4,8 @@
 #include "cli/terminal.hpp"
 #include "hemi/display/picture.hpp"
 #include "hemi/matrix/repair.hpp"
+#include "hemi/pipeline/refinement.hpp"
 #include "hemi/pipeline/settings.hpp"
-#include "hemi/pipeline/vertex_gather.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 #include "hemi/solver/solver.hpp"
@@ -48,8 +48,9 @@ struct SceneOptions {
 struct RowOptions {
     FactorSettings factors;
     double max_row_error = 1e-4;
-    std::optional<double> error_target; ///< the program chooses the settings
-    bool resume = false;                ///< use the rows that an interrupted run left
+    std::optional<double> error_target;  ///< the program chooses settings, or how patches are cut
+    ErrorOf error_of = ErrorOf::factors; ///< which error it is for
+    bool resume = false;                 ///< use the rows that an interrupted run left
 };
 
 struct PictureOptions {
@@ -74,11 +75,17 @@ struct SolveArguments {
     SolverSettings solver;
     PictureOptions picture;
     Gather gather = Gather::automatic;
+    std::uint32_t refine = 0; ///< number of patches that they are cut into; 0: as the scene wants
+    double budget = 0.0;      ///< seconds, after which no patches are split any more; 0: no limit
     std::optional<std::filesystem::path> factors;
     std::optional<std::filesystem::path> result;
     std::optional<std::filesystem::path> radiosity;
     std::optional<std::filesystem::path> patches;
 
+    /// Whether patches become smaller until the result is good enough.
+    [[nodiscard]] bool refines() const {
+        return refine > 0 || (rows.error_target && rows.error_of != ErrorOf::factors);
+    }
     /// Whether an output holds the irradiance, which takes the rows of all patches.
     [[nodiscard]] bool with_irradiance() const { return result || radiosity; }
 };

@@ -167,6 +167,28 @@ Json group_means_json(const LoadedScene& loaded, const FormFactorMatrix& factors
 
 } // namespace
 
+Report refinement_report(const std::vector<Refinement::Step>& steps, const std::string& stopped) {
+    Json json = Json::array();
+    std::vector<std::string> sizes;
+    std::uint64_t rows = 0;
+    for (const Refinement::Step& step : steps) {
+        sizes.push_back(count_text(step.patches));
+        rows += step.rows;
+        json.push_back({{"patches", step.patches},
+                        {"rows", step.rows},
+                        {"error", std::isfinite(step.error) ? Json(step.error) : Json()}});
+    }
+    Report report;
+    report.add("refinement",
+               fmt::format("{} of {} patches; {} computed in all", plural(steps.size(), "mesh", "meshes"),
+                           fmt::join(sizes, ", "), plural(rows, "row", "rows")),
+               {{"refinement", {{"steps", std::move(json)}, {"rows", rows}, {"stopped", stopped}}}});
+    if (!stopped.empty()) {
+        report.add("", "stopped: " + stopped);
+    }
+    return report;
+}
+
 Report stored_solution_report(const Solution& solution, const PatchMesh& mesh) {
     Report report;
     report.add("renderer", solution.renderer, {{"renderer", solution.renderer}});

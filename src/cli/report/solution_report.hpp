@@ -4,6 +4,7 @@
 #include "cli/report/report.hpp"
 #include "cli/report/seconds.hpp"
 #include "hemi/matrix/form_factors.hpp"
+#include "hemi/pipeline/refinement.hpp"
 #include "hemi/solver/solution.hpp"
 
 /// Report of a solution.
@@ -13,6 +14,9 @@ namespace hemi::cli {
 /// @param rows  report of the rows
 [[nodiscard]] Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
                                   const Solution& solution, const Seconds& seconds);
+/// Report of the meshes on the way to the last one.
+[[nodiscard]] Report refinement_report(const std::vector<Refinement::Step>& steps,
+                                       const std::string& stopped);
 /// Report of a stored solution: its solver and errors.
 [[nodiscard]] Report stored_solution_report(const Solution& solution, const PatchMesh& mesh);
 /// With -v: the work that was saved: rows, channels and polygons that were left out.

@@ -64,6 +64,7 @@ Json header(const ResultFile& result, const PatchMesh& mesh) {
               {"surfaces", mesh.surfaces().size()},
               {"patches", mesh.size()},
               {"gathered", !result.solution.vertex_radiosity.empty()},
+              {"parts", !mesh.parts().empty()},
               {"solver", to_word(result.solution.method)},
               {"sweeps", result.solution.sweeps},
               {"residual", result.solution.residual},
@@ -181,6 +182,7 @@ struct Sizes {
     std::uint64_t surfaces = 0;
     std::uint64_t patches = 0;
     bool gathered = false; ///< there is radiosity at vertices
+    bool parts = false;    ///< patches of some surfaces differ in size
 };
 
 Sizes read_header(const JsonNode& head, ResultFile& result) {
@@ -220,7 +222,8 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
         result.solution.dominance = head.member("dominance").number();
     }
     return {head.member("surfaces").integer(most), head.member("patches").integer(most),
-            head.has("gathered") && head.member("gathered").boolean()};
+            head.has("gathered") && head.member("gathered").boolean(),
+            head.has("parts") && head.member("parts").boolean()};
 }
 
 Surface scene_surface(const StoredSurface& stored) {
@@ -236,14 +239,50 @@ Surface scene_surface(const StoredSurface& stored) {
     return surface;
 }
 
-void read_surfaces(Payload payload, const Sizes& sizes, Scene& scene) {
+/// Numbers of parts of all surfaces, and then the parts: three numbers each.
+std::vector<std::uint32_t> stored_parts(const PatchMesh& mesh) {
+    std::vector<std::uint32_t> numbers;
+    for (const auto& parts : mesh.parts()) {
+        numbers.push_back(static_cast<std::uint32_t>(parts.size()));
+    }
+    for (const auto& parts : mesh.parts()) {
+        for (const GridPart& part : parts) {
+            numbers.insert(numbers.end(), {part.level_u, part.level_v, part.cell});
+        }
+    }
+    return numbers;
+}
+
+void read_parts(Payload payload, const Sizes& sizes, Subdivision& subdivision) {
+    std::uint64_t all = 0;
+    for (const std::uint32_t count : payload.take_array<std::uint32_t>(sizes.surfaces)) {
+        all += count;
+        if (all > sizes.patches) {
+            payload.fail(fmt::format("more parts than the {} patches of the solution", sizes.patches));
+        }
+        subdivision.parts.emplace_back(count);
+    }
+    const std::vector<std::uint32_t> numbers = payload.take_array<std::uint32_t>(3 * all);
+    std::size_t next = 0;
+    for (auto& parts : subdivision.parts) {
+        for (GridPart& part : parts) {
+            part = {numbers[next], numbers[next + 1], numbers[next + 2]};
+            next += 3;
+        }
+    }
+    payload.expect_end();
+}
+
+void read_surfaces(Payload payload, const Sizes& sizes, const Subdivision& subdivision, Scene& scene) {
     std::uint64_t patches = 0;
     for (const StoredSurface& stored : payload.take_array<StoredSurface>(sizes.surfaces)) {
         if (stored.vertex_count < 3 || stored.vertex_count > 4 || stored.two_sided > 1) {
             payload.fail(fmt::format("a surface of {} vertices and {} sides", stored.vertex_count,
                                      std::uint64_t{stored.two_sided} + 1));
         }
-        const std::uint64_t per_side = std::uint64_t{stored.grid_u} * stored.grid_v;
+        const std::size_t parts =
+            subdivision.parts.empty() ? 0 : subdivision.parts[scene.surfaces.size()].size();
+        const std::uint64_t per_side = parts > 0 ? parts : std::uint64_t{stored.grid_u} * stored.grid_v;
         patches += per_side <= most ? per_side * (stored.two_sided + 1) : most + 1;
         if (patches > sizes.patches) {
             break;
@@ -297,6 +336,9 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
 
     ChunkWriter writer(path, hres_format);
     writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh)))});
+    if (!mesh.parts().empty()) {
+        writer.chunk("PART", {bytes_of(stored_parts(mesh))});
+    }
     writer.chunk("SURF", {bytes_of(stored_surfaces(mesh))});
     writer.chunk("RADI", {bytes_of(result.solution.radiosity)});
     writer.chunk("IRRA", {bytes_of(result.solution.irradiance)});
@@ -322,10 +364,18 @@ ResultFile read_hres(const std::filesystem::path& path) {
     const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
     const Sizes sizes = read_header(JsonNode(document, reader.file()), result);
     check_patch_size(result, [&reader](const std::string& what) { reader.fail(what); });
-    read_surfaces(reader.chunk("SURF"), sizes, result.scene);
+    if (sizes.parts) {
+        read_parts(reader.chunk("PART"), sizes, result.subdivision);
+    }
+    read_surfaces(reader.chunk("SURF"), sizes, result.subdivision, result.scene);
     try {
         validate(result.scene);
+        if (sizes.parts) {
+            (void)PatchMesh(result.scene, result.subdivision); // whether parts fill their surfaces
+        }
     } catch (const InputError& error) {
+        reader.fail(error.what());
+    } catch (const InvalidArgument& error) {
         reader.fail(error.what());
     }
     const std::uint64_t values = sizes.patches * result.scene.channels.size();

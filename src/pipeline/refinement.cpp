@@ -1,0 +1,451 @@
+#include "hemi/pipeline/refinement.hpp"
+
+#include "hemi/core/buried.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/core/text.hpp"
+#include "hemi/display/vertex_colours.hpp"
+#include "hemi/engine/touching_faces.hpp"
+#include "hemi/pipeline/patch_size_error.hpp"
+#include "hemi/pipeline/radiosity.hpp"
+#include "matrix/split_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace hemi {
+
+namespace {
+
+/// Patches that a refinement begins with, about: few enough to cost little, enough to see where the light is.
+constexpr double first_patches = 400.0;
+/// Of the square of a patch's error, what its parts together still have: between a smooth field's 1/16 and
+/// the half that is left along the edge of a shadow.
+constexpr double left_by_parts = 0.25;
+/// A step aims a little below the goal, since estimates scatter.
+constexpr double aim = 0.9;
+/// A step splits at least and at most such shares of the patches: fewer are not worth a step's solution and
+/// estimate, more would follow an estimate from a mesh that is too coarse to see where the error is.
+constexpr double least_split = 1.0 / 16.0;
+constexpr double most_split = 1.0 / 3.0;
+/// Times the usual sample of patches for every estimate: refinement stops where it says so, and would stop
+/// too early by a lucky one.
+constexpr double effort = 2.0;
+/// Patches are not cut into more than this share of the scene's diagonal: two surfaces that touch have
+/// singular light there, at any size.
+constexpr double least_size = 1e-3;
+/// Bytes a pair of a new row and a patch while visibilities are combined, and an entry of two matrices.
+constexpr double pair_bytes = 4.0;
+constexpr double entry_bytes = 2 * 9.0;
+
+/// Contributions of the patches to the square of the error that the goal is for: area times squared error,
+/// relative to what is reflected, of the channel where it is largest.
+std::vector<double> contributions(const PatchMesh& mesh, const Solution& solution, ErrorOf error_of) {
+    const std::uint32_t channels = solution.channels;
+    std::vector<double> reflected(channels, 0.0);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        for (std::uint32_t c = 0; c < channels; ++c) {
+            const std::size_t at = std::size_t{i} * channels + c;
+            reflected[c] += mesh.areas()[i] * std::pow(solution.radiosity[at] - solution.exitance[at], 2.0);
+        }
+    }
+    std::vector<float> corners;
+    if (error_of != ErrorOf::vertices) {
+        corners = corner_values(mesh, channels, solution.radiosity, solution.back_face_share);
+    }
+    std::vector<double> result(mesh.size(), 0.0);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        if (solution.back_face_share[i] > buried_above) {
+            continue;
+        }
+        const std::uint32_t count = mesh.corners(i).count;
+        for (std::uint32_t c = 0; c < channels; ++c) {
+            const std::size_t at = std::size_t{i} * channels + c;
+            double square = 0.0;
+            if (error_of == ErrorOf::vertices) {
+                square = std::pow(solution.patch_size_error->patches[at], 2.0);
+            } else {
+                for (std::uint32_t k = 0; k < count; ++k) {
+                    const auto corner = static_cast<double>(corners[(std::size_t{i} * 4 + k) * channels + c]);
+                    square += std::pow(corner - solution.radiosity[at], 2.0) / count;
+                }
+            }
+            if (reflected[c] > 0.0) {
+                result[i] = std::max(result[i], mesh.areas()[i] * square / reflected[c]);
+            }
+        }
+    }
+    return result;
+}
+
+/// Of the patch-size part of the goal's error and of all of it.
+struct Errors {
+    double patch_size = 0.0;
+    double all = 0.0;
+    double at_most = 0.0; ///< all of it, with the sample's standard error
+};
+Errors errors_of(const Solution& solution, ErrorOf error_of) {
+    const auto worst = [](double so_far, double error) { return error > so_far ? error : so_far; };
+    const PatchSizeError& of_size = *solution.patch_size_error;
+    Errors errors;
+    double doubt = 0.0;
+    switch (error_of) {
+    case ErrorOf::field:
+        errors.patch_size = of_size.field.rms;
+        doubt = of_size.field.doubt;
+        break;
+    case ErrorOf::groups:
+        for (const GroupError& group : of_size.groups) {
+            errors.patch_size = worst(errors.patch_size, group.patch_size);
+        }
+        break;
+    default:
+        errors.patch_size = of_size.vertices.rms;
+        doubt = of_size.vertices.doubt;
+    }
+    errors.all = errors.patch_size;
+    if (const auto total = solution_error(solution)) {
+        errors.all = error_of == ErrorOf::field      ? total->field.rms
+                     : error_of == ErrorOf::vertices ? total->vertices.rms
+                                                     : 0.0;
+        for (const double group : total->groups) {
+            errors.all = error_of == ErrorOf::groups ? worst(errors.all, group) : errors.all;
+        }
+    }
+    errors.at_most = errors.all + doubt; // errors of groups have it
+    return errors;
+}
+
+/// The patches of a surface by where they lie on its grid, to find those beside a patch.
+class Neighbours {
+public:
+    explicit Neighbours(const PatchMesh& mesh) : mesh_(mesh) {
+        for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
+            const auto parts = mesh.parts(s);
+            for (std::uint32_t k = 0; k < parts.size(); ++k) {
+                by_cell_[{s, parts[k].level_u, parts[k].level_v, parts[k].cell}] = k;
+            }
+        }
+    }
+
+    /// Larger patches of a quadrilateral surface along the edges of a patch, to which this is a second step
+    /// in size if it is split.
+    [[nodiscard]] std::vector<std::uint32_t> larger(std::uint32_t patch) const {
+        const std::uint32_t s = mesh_.surface_of()[patch];
+        const auto parts = mesh_.parts(s);
+        std::vector<std::uint32_t> found;
+        if (parts.empty() || mesh_.surfaces()[s].vertex_count == 3) {
+            return found;
+        }
+        const std::uint32_t local = (patch - mesh_.first_patch(s)) % mesh_.patches_per_side(s);
+        const GridPart& part = parts[local];
+        const Grid grid = mesh_.grid(s);
+        const std::int64_t width = std::int64_t{grid.u} << part.level_u;
+        const std::int64_t height = std::int64_t{grid.v} << part.level_v;
+        const std::int64_t u = part.cell % width;
+        const std::int64_t v = part.cell / width;
+        for (const auto& [du, dv] :
+             {std::array{-1, 0}, std::array{1, 0}, std::array{0, -1}, std::array{0, 1}}) {
+            const std::int64_t at_u = u + du;
+            const std::int64_t at_v = v + dv;
+            if (at_u < 0 || at_v < 0 || at_u >= width || at_v >= height) {
+                continue;
+            }
+            for (std::uint32_t up = 1; up <= std::max(part.level_u, part.level_v); ++up) {
+                const std::uint32_t level_u = part.level_u - std::min(up, part.level_u);
+                const std::uint32_t level_v = part.level_v - std::min(up, part.level_v);
+                const std::int64_t cell_u = at_u >> (part.level_u - level_u);
+                const std::int64_t cell_v = at_v >> (part.level_v - level_v);
+                const auto entry = by_cell_.find(
+                    {s, level_u, level_v,
+                     static_cast<std::uint32_t>(cell_v * (std::int64_t{grid.u} << level_u) + cell_u)});
+                if (entry != by_cell_.end()) {
+                    found.push_back(mesh_.first_patch(s) + entry->second);
+                }
+            }
+        }
+        return found;
+    }
+
+private:
+    const PatchMesh& mesh_;
+    std::map<std::array<std::uint32_t, 4>, std::uint32_t> by_cell_;
+};
+
+class Refiner {
+public:
+    Refiner(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,
+            const SolverSettings& solver, const RefinementGoal& goal, bool with_irradiance,
+            Observer& observer)
+        : scene_(scene), settings_(settings), solver_(solver), goal_(goal), with_irradiance_(with_irradiance),
+          observer_(observer), result_{coarse, {}, {}, {}, {}, {}} {
+        settings_.estimate_error = false; // of the rows, until the mesh is the last one
+    }
+
+    Refinement run() {
+        Refinement::Step step{result_.mesh.size(), result_.mesh.size(), not_known};
+        result_.raw = compute_raw_form_factors(scene_, result_.mesh, all_patches(result_.mesh.size()),
+                                               settings_, observer_);
+        solve();
+        for (;;) {
+            Errors errors = estimate(false);
+            step.error = errors.all;
+            result_.steps.push_back(step);
+            observer_.detail(fmt::format("refinement: {}, error {:.2g} %",
+                                         plural(step.patches, "patch", "patches"), 100.0 * step.error));
+            const bool enough = is_enough(errors.at_most);
+            if (enough || !may_go_on()) {
+                errors = finish();
+                result_.steps.back().error = errors.all;
+                if (is_enough(errors.at_most) || !result_.stopped.empty()) {
+                    return std::move(result_);
+                }
+            }
+            const std::vector<std::uint32_t> chosen = choose(errors);
+            if (chosen.empty()) {
+                result_.stopped = fmt::format("no patch is left that is larger than {:.2g}",
+                                              least_size * result_.mesh.bounds().diagonal());
+                result_.steps.back().error = finish().all;
+                return std::move(result_);
+            }
+            step = split(chosen);
+            if (!result_.stopped.empty()) {
+                result_.steps.back().error = finish().all;
+                return std::move(result_);
+            }
+            solve();
+        }
+    }
+
+private:
+    static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+    [[nodiscard]] bool is_enough(double error) const {
+        if (goal_.error) {
+            return error <= *goal_.error;
+        }
+        return result_.mesh.size() >= goal_.patches;
+    }
+
+    /// Whether limits allow another step; says why not.
+    bool may_go_on() {
+        if (goal_.error && goal_.patches > 0 && result_.mesh.size() >= goal_.patches) {
+            result_.stopped = fmt::format("{} are as many as were asked for",
+                                          plural(result_.mesh.size(), "patch", "patches"));
+        } else if (goal_.error && is_stuck()) {
+            result_.stopped =
+                "smaller patches no longer make the error smaller: what is left comes from the form "
+                "factors, which a better preset would improve";
+        } else if (goal_.seconds > 0.0 && watch_.seconds() > goal_.seconds) {
+            result_.stopped = fmt::format("the {} of the budget are over", seconds_text(goal_.seconds));
+        }
+        return result_.stopped.empty();
+    }
+
+    /// Whether two steps have not brought the error below nine tenths of what it was before.
+    [[nodiscard]] bool is_stuck() const {
+        if (result_.steps.size() < 4) {
+            return false;
+        }
+        const auto least = [](auto begin, auto end) {
+            return std::min_element(begin, end,
+                                    [](const auto& a, const auto& b) { return a.error < b.error; })
+                ->error;
+        };
+        const auto recent = result_.steps.end() - 2;
+        return least(recent, result_.steps.end()) > 0.9 * least(result_.steps.begin(), recent);
+    }
+
+    void solve() {
+        result_.factors = result_.raw;
+        prepare_form_factors(result_.factors, settings_.repair);
+        result_.solution =
+            solve_radiosity(scene_, result_.mesh, result_.factors, solver_, observer_, with_irradiance_);
+    }
+
+    /// @param last  with all vertices, if they are gathered, and the form factors' error
+    Errors estimate(bool last) {
+        const bool gathers = should_gather(goal_.gather, settings_, result_.mesh, result_.solution);
+        result_.solution.patch_size_error =
+            estimate_patch_size_error(scene_, result_.mesh, result_.factors, result_.solution, settings_,
+                                      observer_, gathers && !last ? Gather::on : Gather::off, effort);
+        if (!result_.solution.patch_size_error) {
+            if (!result_.steps.empty()) {
+                result_.stopped = fmt::format("memory is short to estimate the error of {}",
+                                              plural(result_.mesh.size(), "patch", "patches"));
+                return {not_known, not_known, not_known};
+            }
+            if (goal_.error) {
+                throw InvalidArgument("the error cannot be estimated: nothing in the scene reflects, or "
+                                      "memory is short",
+                                      {"error-target"});
+            }
+            return {};
+        }
+        return errors_of(result_.solution, goal_.error_of);
+    }
+
+    /// Errors of the form factors and gathered vertices for the mesh as it is now.
+    Errors finish() {
+        add_reference_rows(result_.raw, result_.mesh, settings_, observer_);
+        result_.factors.reference = result_.raw.reference;
+        estimate_error(result_.factors);
+        result_.raw.error = result_.factors.error;
+        result_.solution =
+            solve_radiosity(scene_, result_.mesh, result_.factors, solver_, observer_, with_irradiance_);
+        gather_at_vertices(scene_, result_.mesh, settings_, goal_.gather, result_.solution, observer_);
+        return estimate(true);
+    }
+
+    /// Patches that are to be split, ascending.
+    [[nodiscard]] std::vector<std::uint32_t> choose(const Errors& errors) const {
+        const PatchMesh& mesh = result_.mesh;
+        const std::vector<double> parts = contributions(mesh, result_.solution, goal_.error_of);
+        const double total = std::accumulate(parts.begin(), parts.end(), 0.0);
+        std::vector<std::uint32_t> order;
+        const double smallest = std::pow(least_size * mesh.bounds().diagonal(), 2.0);
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            if (parts[i] > 0.0 && mesh.areas()[i] > smallest) {
+                order.push_back(i);
+            }
+        }
+        std::stable_sort(order.begin(), order.end(),
+                         [&parts](std::uint32_t a, std::uint32_t b) { return parts[a] > parts[b]; });
+        // What the error's other parts leave for the patches' size, of the square of what it is now.
+        double wanted = 0.0;
+        if (goal_.error && errors.patch_size > 0.0) {
+            const double others = errors.all * errors.all - errors.patch_size * errors.patch_size;
+            wanted = std::max(0.0, std::pow(aim * *goal_.error, 2.0) - std::max(0.0, others)) /
+                     (errors.patch_size * errors.patch_size);
+        }
+        const auto share = [&mesh](double of) {
+            return static_cast<std::size_t>(std::ceil(of * mesh.size()));
+        };
+        std::size_t most = share(most_split);
+        if (goal_.patches > 0) { // a split in four adds three
+            most = std::min(most, (static_cast<std::size_t>(goal_.patches) - mesh.size()) / 3 + 1);
+        }
+        double left = total;
+        std::vector<bool> chosen(mesh.size(), false);
+        std::size_t count = 0;
+        for (const std::uint32_t i : order) {
+            if (count >= most || (count >= share(least_split) && goal_.error && left <= wanted * total)) {
+                break;
+            }
+            left -= (1.0 - left_by_parts) * parts[i];
+            chosen[i] = true;
+            ++count;
+        }
+        grade(chosen);
+        std::vector<std::uint32_t> result;
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            if (chosen[i]) {
+                result.push_back(i);
+            }
+        }
+        return result;
+    }
+
+    /// Adds patches beside which others would become more than one step smaller.
+    void grade(std::vector<bool>& chosen) const {
+        const Neighbours neighbours(result_.mesh);
+        std::vector<std::uint32_t> queue;
+        for (std::uint32_t i = 0; i < chosen.size(); ++i) {
+            if (chosen[i]) {
+                queue.push_back(i);
+            }
+        }
+        while (!queue.empty()) {
+            const std::uint32_t i = queue.back();
+            queue.pop_back();
+            for (const std::uint32_t larger : neighbours.larger(i)) {
+                if (!chosen[larger]) {
+                    chosen[larger] = true;
+                    queue.push_back(larger);
+                }
+            }
+        }
+    }
+
+    /// Splits patches and finds the rows of their parts. Where memory is short, nothing changes but
+    /// Refinement::stopped.
+    Refinement::Step split(const std::vector<std::uint32_t>& chosen) {
+        SplitMesh finer = result_.mesh.split(chosen);
+        std::vector<std::uint32_t> parts(result_.mesh.size(), 0);
+        for (const std::uint32_t parent : finer.parents) {
+            ++parts[parent];
+        }
+        std::vector<std::uint32_t> fresh;
+        for (std::uint32_t k = 0; k < finer.mesh.size(); ++k) {
+            if (parts[finer.parents[k]] > 1) {
+                fresh.push_back(k);
+            }
+        }
+        const double growth = static_cast<double>(finer.mesh.size()) / result_.mesh.size();
+        const double bytes =
+            pair_bytes * static_cast<double>(fresh.size()) * finer.mesh.size() +
+            entry_bytes * growth * growth * static_cast<double>(result_.raw.matrix.entries());
+        if (bytes > static_cast<double>(memory_limit(settings_))) {
+            result_.stopped =
+                fmt::format("{} would need about {} of memory", plural(finer.mesh.size(), "patch", "patches"),
+                            memory_text(static_cast<std::uint64_t>(bytes)));
+            return {};
+        }
+        FormFactors rows = compute_raw_form_factors(scene_, finer.mesh, fresh, settings_, observer_);
+        if (rows.matrix.has_visibility() != result_.raw.matrix.has_visibility()) {
+            result_.stopped = "memory is short for unoccluded factors of more patches";
+            return {};
+        }
+        rows.matrix = split_rows(result_.raw.matrix, rows.matrix, finer.parents, finer.mesh.areas());
+        rows.touching = find_touching_faces(rows.matrix, finer.mesh);
+        rows.work.rows += result_.raw.work.rows;
+        rows.work.hemicubes += result_.raw.work.hemicubes;
+        rows.work.seconds += result_.raw.work.seconds;
+        result_.raw = std::move(rows);
+        result_.mesh = std::move(finer.mesh);
+        return {result_.mesh.size(), fresh.size(), not_known};
+    }
+
+    const Scene& scene_;
+    FactorSettings settings_;
+    const SolverSettings& solver_;
+    RefinementGoal goal_;
+    bool with_irradiance_;
+    Observer& observer_;
+    Stopwatch watch_;
+    Refinement result_;
+};
+
+} // namespace
+
+PatchMesh coarse_mesh(const Scene& scene) {
+    double area = 0.0;
+    for (const Surface& surface : scene.surfaces) {
+        area += glm::length(area_vector(surface.polygon())) * (surface.two_sided ? 2.0 : 1.0);
+    }
+    Subdivision subdivision;
+    subdivision.patch_size = std::sqrt(area / first_patches);
+    return PatchMesh(scene, subdivision);
+}
+
+Refinement solve_refined(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,
+                         const SolverSettings& solver, const RefinementGoal& goal, bool with_irradiance,
+                         Observer& observer) {
+    if (goal.error_of == ErrorOf::factors || (!goal.error && goal.patches == 0)) {
+        throw InvalidArgument("refinement: the goal must be an error that depends on the patches' size, or a "
+                              "number of patches",
+                              {"error-target"});
+    }
+    if (settings.method != Method::hemicube) {
+        throw InvalidArgument("refinement: patches are split with hemicubes only", {"method"});
+    }
+    return Refiner(scene, coarse, settings, solver, goal, with_irradiance, observer).run();
+}
+
+} // namespace hemi

@@ -1,0 +1,257 @@
+#include "hemi/pipeline/refinement.hpp"
+
+#include "matrix/split_rows.hpp"
+#include "support/device.hpp"
+#include "support/scenes.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/display/vertex_colours.hpp"
+#include "hemi/engine/exchange_area.hpp"
+#include "hemi/pipeline/patch_size_error.hpp"
+#include "hemi/pipeline/radiosity.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+using namespace hemi;
+using namespace hemi::test;
+
+namespace {
+
+FactorSettings settings_of(Preset preset = Preset::standard) {
+    FactorSettings settings;
+    settings.preset = preset;
+    settings.engine.device = test_device();
+    settings.engine.jobs = 2;
+    return settings;
+}
+
+/// A black lamp over a floor, and a black sheet between them; the floor reflects half, once.
+Scene lamp_and_sheet(std::uint32_t cells) {
+    Scene scene = empty_scene();
+    scene.materials.push_back({"lamp", {0.0}, {10.0}});
+    scene.materials.push_back({"black", {0.0}, {0.0}});
+    add_polygon(scene, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {cells, cells});
+    add_polygon(scene, "lamp", {{-0.1, -0.1, 2}, {-0.1, 0.1, 2}, {0.1, 0.1, 2}, {0.1, -0.1, 2}});
+    scene.surfaces.back().material = 1;
+    add_polygon(scene, "sheet", {{-0.15, -0.2, 1}, {0.25, -0.2, 1}, {0.25, 0.2, 1}, {-0.15, 0.2, 1}});
+    scene.surfaces.back().material = 2;
+    scene.surfaces.back().two_sided = true;
+    return scene;
+}
+
+/// Radiosity of the floor there, in closed form: the lamp less the part behind the sheet, whose image on the
+/// lamp's plane is a rectangle.
+double exact_floor(const Vec3& at) {
+    const auto lamp_part = [&at](double x0, double x1, double y0, double y1) {
+        if (!(x0 < x1 && y0 < y1)) {
+            return 0.0;
+        }
+        const std::vector<Vec3> part{{x0, y0, 2}, {x0, y1, 2}, {x1, y1, 2}, {x1, y0, 2}};
+        return point_factor(at, {0, 0, 1}, part);
+    };
+    const double hidden = lamp_part(std::max(-0.1, -0.3 - at.x), std::min(0.1, 0.5 - at.x),
+                                    std::max(-0.1, -0.4 - at.y), std::min(0.1, 0.4 - at.y));
+    return 0.5 * 10.0 * (lamp_part(-0.1, 0.1, -0.1, 0.1) - hidden);
+}
+
+/// What the interpolated vertices of the floor are off by, at 8 x 8 points of every patch, rms over rms.
+double true_error(const PatchMesh& mesh, const Solution& solution) {
+    const auto corners = solution.vertex_radiosity.empty()
+                             ? corner_values(mesh, 1, solution.radiosity, solution.back_face_share)
+                             : solution.vertex_radiosity;
+    double squares = 0.0;
+    double light = 0.0;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        if (mesh.groups()[mesh.group(i)] != "floor") {
+            continue;
+        }
+        const PatchCorners at = mesh.corners(i);
+        for (int k = 0; k < 64; ++k) {
+            const double u = (k % 8 + 0.5) / 8;
+            const double v = (k / 8 + 0.5) / 8;
+            const std::array<double, 4> weights{(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+            double shown = 0.0;
+            Vec3 point(0.0);
+            for (std::size_t c = 0; c < 4; ++c) {
+                shown += weights[c] * static_cast<double>(corners[std::size_t{i} * 4 + c]);
+                point += weights[c] * at.points[c];
+            }
+            const double exact = exact_floor(point);
+            squares += mesh.areas()[i] * std::pow(shown - exact, 2.0);
+            light += mesh.areas()[i] * exact * exact;
+        }
+    }
+    return std::sqrt(squares / light);
+}
+
+} // namespace
+
+TEST_CASE("refinement: rows go on where patches were not split, and parts are seen by reciprocity",
+          "[pipeline][every-device]") {
+    const Scene scene = room_with_blocks(5);
+    const PatchMesh coarse(scene);
+    FactorSettings settings = settings_of();
+    settings.estimate_error = false;
+    const FormFactors before = compute_raw_form_factors(scene, coarse, all_patches(coarse.size()), settings);
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t i = 0; i < coarse.size(); i += 6) {
+        some.push_back(i);
+    }
+    const auto [fine, parents] = coarse.split(some, Cut::in_four);
+    std::vector<std::uint32_t> parts(coarse.size(), 0);
+    for (const std::uint32_t parent : parents) {
+        ++parts[parent];
+    }
+    std::vector<std::uint32_t> fresh;
+    for (std::uint32_t k = 0; k < fine.size(); ++k) {
+        if (parts[parents[k]] > 1) {
+            fresh.push_back(k);
+        }
+    }
+    const FormFactors rows = compute_raw_form_factors(scene, fine, fresh, settings);
+    const FormFactorMatrix all = split_rows(before.matrix, rows.matrix, parents, fine.areas());
+    REQUIRE(all.all_known());
+    const auto at = [](const FormFactorMatrix& matrix, std::uint32_t i, std::uint32_t j) {
+        const RowView row = matrix.row(i);
+        const auto found = std::lower_bound(row.columns.begin(), row.columns.end(), j);
+        return found != row.columns.end() && *found == j
+                   ? row.values[static_cast<std::size_t>(found - row.columns.begin())]
+                   : 0.0F;
+    };
+    double folded = 0.0;
+    double lost = 0.0;
+    for (std::uint32_t i = 0; i < fine.size(); ++i) {
+        const RowView row = all.row(i);
+        REQUIRE(std::is_sorted(row.columns.begin(), row.columns.end()));
+        for (std::size_t e = 0; e < row.columns.size(); ++e) {
+            const std::uint32_t j = row.columns[e];
+            const double there = static_cast<double>(row.values[e]) * fine.areas()[i];
+            const double back = static_cast<double>(at(all, j, i)) * fine.areas()[j];
+            REQUIRE(there == Approx(back).epsilon(1e-5).margin(1e-12));
+            if (parts[parents[i]] == 1 && parts[parents[j]] == 1) {
+                REQUIRE(row.values[e] == at(before.matrix, parents[i], parents[j]));
+            }
+        }
+        if (parts[parents[i]] == 1) {
+            std::vector<double> of_parents(coarse.size(), 0.0);
+            for (std::size_t e = 0; e < row.columns.size(); ++e) {
+                of_parents[parents[row.columns[e]]] += static_cast<double>(row.values[e]);
+            }
+            for (std::uint32_t j = 0; j < coarse.size(); ++j) {
+                folded +=
+                    std::pow(of_parents[j] - static_cast<double>(at(before.matrix, parents[i], j)), 2.0);
+            }
+            lost = std::max(lost, std::abs(row.sum() - before.matrix.row(parents[i]).sum()));
+        }
+    }
+    CHECK(std::sqrt(folded / fine.size()) < 0.01); // visibility by another end's texels
+    CHECK(lost < 0.05);
+    CHECK_THROWS_AS(split_rows(before.matrix, rows.matrix, std::vector<std::uint32_t>{0}, fine.areas()),
+                    InvalidArgument);
+}
+
+TEST_CASE("refinement: the error that was asked for is met, with fewer patches than evenly cut ones",
+          "[pipeline][every-device]") {
+    const Scene scene = lamp_and_sheet(4);
+    RefinementGoal goal;
+    for (const Gather gather : {Gather::on, Gather::off}) {
+        goal.error = gather == Gather::on ? 0.03 : 0.06;
+        goal.gather = gather;
+        const Refinement found = solve_refined(scene, PatchMesh(scene), settings_of(), {}, goal);
+        REQUIRE(found.stopped.empty());
+        REQUIRE(found.steps.size() > 1);
+        const auto printed = solution_error(found.solution);
+        REQUIRE(printed);
+        const double truth = true_error(found.mesh, found.solution);
+        INFO(found.mesh.size() << " patches, printed " << printed->vertices.rms << ", true " << truth);
+        CHECK(printed->vertices.rms <= *goal.error);
+        CHECK(truth < 2.0 * *goal.error);
+        CHECK(truth > printed->vertices.rms / 4.0);
+        CHECK(found.mesh.size() == found.steps.back().patches);
+        // Evenly cut, with as many patches, it is off by more.
+        const auto cells = static_cast<std::uint32_t>(std::sqrt(found.mesh.size()));
+        const Scene even = lamp_and_sheet(cells);
+        const PatchMesh mesh(even);
+        const FormFactors factors = compute_form_factors(even, mesh, settings_of());
+        Solution solution = solve_radiosity(even, mesh, factors);
+        gather_at_vertices(even, mesh, settings_of(), gather, solution);
+        CHECK(true_error(mesh, solution) > 1.1 * truth);
+    }
+}
+
+TEST_CASE("refinement: nothing is cut where nothing is wrong, and as much as was asked for else",
+          "[pipeline]") {
+    Scene furnace = empty_scene();
+    furnace.materials[0] = {"wall", {0.5}, {1.0}};
+    add_room(furnace, Vec3(0.0), Vec3(1.0), 3);
+    RefinementGoal goal;
+    goal.error = 1e-4;
+    const Refinement even = solve_refined(furnace, PatchMesh(furnace), settings_of(), {}, goal);
+    CHECK(even.steps.size() == 1);
+    CHECK(even.stopped.empty());
+
+    const Scene scene = lamp_and_sheet(4);
+    goal = {};
+    goal.patches = 120;
+    const Refinement number = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
+    CHECK(number.mesh.size() >= 120);
+    CHECK(number.mesh.size() < 200);
+    goal.error = 1e-9;
+    const Refinement stopped = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
+    CHECK_FALSE(stopped.stopped.empty());
+    CHECK(stopped.steps.back().error > 1e-9);
+    goal.patches = 0;
+    FactorSettings little = settings_of(Preset::fast);
+    little.max_memory = 400000;
+    const Refinement poor = solve_refined(scene, PatchMesh(scene), little, {}, goal);
+    CHECK(poor.stopped.find("memory") != std::string::npos);
+
+    goal.seconds = 1e-9;
+    const Refinement late = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
+    CHECK(late.stopped.find("budget") != std::string::npos);
+    CHECK(late.steps.size() == 1);
+
+    goal.error_of = ErrorOf::factors;
+    CHECK_THROWS_AS(solve_refined(scene, PatchMesh(scene), settings_of(), {}, goal), InvalidArgument);
+    CHECK_THROWS_AS(solve_refined(scene, PatchMesh(scene), settings_of(), {}, {}), InvalidArgument);
+    goal.error_of = ErrorOf::field;
+    FactorSettings rays = settings_of();
+    rays.method = Method::montecarlo;
+    CHECK_THROWS_AS(solve_refined(scene, PatchMesh(scene), rays, {}, goal), InvalidArgument);
+}
+
+TEST_CASE("refinement: an error below what the form factors allow is given up", "[pipeline][slow]") {
+    const Scene scene = lamp_and_sheet(4);
+    RefinementGoal goal;
+    goal.error = 1e-3;
+    const Refinement stuck = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
+    CHECK(stuck.stopped.find("no longer") != std::string::npos);
+    CHECK(stuck.mesh.size() < 20000);
+}
+
+TEST_CASE("refinement: sizes of patches side by side differ by a factor of two at most", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4);
+    RefinementGoal goal;
+    goal.patches = 400;
+    const PatchMesh mesh = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal).mesh;
+    double largest = 0.0;
+    for (std::uint32_t i = 0; i < mesh.patches_per_side(0); ++i) {
+        for (std::uint32_t j = 0; j < mesh.patches_per_side(0); ++j) {
+            const double a = std::sqrt(mesh.areas()[i]);
+            const double b = std::sqrt(mesh.areas()[j]);
+            const Vec3 way = glm::abs(mesh.centres()[i] - mesh.centres()[j]);
+            // They share a piece of an edge.
+            if (std::max(way.x, way.y) < 0.5 * (a + b) * 1.0001 &&
+                std::min(way.x, way.y) < 0.4999 * (a + b)) {
+                largest = std::max(largest, a / b);
+            }
+        }
+    }
+    CHECK(largest == Approx(2.0));
+}
