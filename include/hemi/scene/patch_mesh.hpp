@@ -13,9 +13,9 @@ namespace hemi {
 /// A patch of a surface whose patches differ in size: a cell of the grid that is 2^level_u x 2^level_v times
 /// as fine as the surface's own.
 struct GridPart {
-    std::uint32_t level_u = 0; ///< of a triangle equal to level_v
-    std::uint32_t level_v = 0;
-    std::uint32_t cell = 0; ///< of that grid, numbered as the patches of a surface with this grid
+    std::uint32_t level_u = 0; ///< halvings along u
+    std::uint32_t level_v = 0; ///< halvings along v; of a triangle as many
+    std::uint32_t cell = 0;    ///< of that grid, numbered as the patches of a surface with this grid
 
     bool operator==(const GridPart&) const = default; ///< member by member
 };
@@ -156,6 +156,7 @@ struct SplitMesh {
 /// Makes PatchMesh(scene, subdivision) a mesh again that was split or cut otherwise than the scene wants.
 /// @param scene        that the mesh is of; gets its grids
 /// @param subdivision  becomes that of the mesh
+/// @param mesh         of the same surfaces, in their order
 void adopt_mesh(Scene& scene, Subdivision& subdivision, const PatchMesh& mesh);
 
 /// A property of materials, spread over the patches: N·channels, channel c of patch i at [i·channels + c].
