@@ -203,6 +203,7 @@ Light Document::of_materials() const {
     return {patch_values(*input_.mesh, materials_, &Material::reflectance),
             patch_values(*input_.mesh, materials_, &Material::exitance),
             {},
+            {},
             {}};
 }
 

@@ -4,6 +4,7 @@
 #include "benchmark/frames.hpp"
 #include "benchmark/measurements.hpp"
 #include "benchmark/program.hpp"
+#include "benchmark/refinement.hpp"
 #include "engine/workers/worker_pool.hpp"
 #include "gl/context.hpp"
 
@@ -29,6 +30,7 @@ struct Options {
     std::string json;
     bool quick = false;
     bool files = false;
+    bool refinement = false;
 };
 
 void declare(CLI::App& app, Options& options) {
@@ -38,6 +40,7 @@ void declare(CLI::App& app, Options& options) {
     app.add_option("--json", options.json, "write the figures to this file too");
     app.add_flag("--quick", options.quick, "no table, small samples");
     app.add_flag("--files", options.files, "only writers and readers of files");
+    app.add_flag("--refinement", options.refinement, "only patches that are cut until an error is met");
 }
 
 void print_table(Measurements& measurements, const Report& report, const Case& office, const Case& city) {
@@ -110,6 +113,14 @@ void print_program_findings(Measurements& measurements, const Options& options) 
     measurements.factors_target(hemi, meshes / "bumpy-20k.obj", 1, 0.0, options.quick ? 0.0 : 8.0);
 }
 
+/// Patches that follow from the solution.
+void print_refinement_findings(Report& report, const Options& options) {
+    const std::filesystem::path scenes = options.scenes;
+    refinement_target(scenes / "cornell-box.json", 0.01, 0.25, 1.0 / 3.0, report);
+    refinement_target(scenes / "l-room.json", 0.01, 0.25, 1.0 / 3.0, report);
+    refinement_target(scenes / "office.json", 0.02, 1.0 / 3.0, 0.0, report);
+}
+
 Setup make_setup(const Options& options, const gl::Context& context, unsigned cores) {
     Setup setup;
     setup.device = context.name();
@@ -142,16 +153,22 @@ void run(const Options& options) {
     };
     write_json(); // a file that cannot be written is told now, not after minutes
     Measurements measurements(setup, report);
-    if (!options.quick && !options.files) {
+    const bool all = !options.files && !options.refinement;
+    if (!options.quick && all) {
         print_table(measurements, report, office, city);
     }
-    if (!options.files) {
+    if (all) {
         print_findings(measurements, report, office, city, options);
         print_cpu_findings(measurements, office, options);
         print_city_findings(measurements, options);
         print_program_findings(measurements, options);
     }
-    measure_files(report, setup.effort.rounds);
+    if (options.refinement || (all && !options.quick)) {
+        print_refinement_findings(report, options);
+    }
+    if (!options.refinement) {
+        measure_files(report, setup.effort.rounds);
+    }
     write_json();
 }
 

@@ -26,7 +26,7 @@ struct Subdivision {
     std::optional<std::uint32_t> patches_per_face; ///< About so many: k x k with the smallest k² >= N.
     /// Of every surface the patches that its grid is cut into, which fill it once; empty of a surface whose
     /// patches are the cells of its grid; nothing at all where all surfaces are such.
-    std::vector<std::vector<GridPart>> parts;
+    std::vector<std::vector<GridPart>> parts{};
 
     bool operator==(const Subdivision&) const = default; ///< member by member
 };
