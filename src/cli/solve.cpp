@@ -121,7 +121,7 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
     goal.error_of = arguments.rows.error_of;
     goal.patches = arguments.refine;
     goal.seconds = arguments.budget;
-    goal.gather = arguments.picture.flat ? Gather::off : arguments.gather;
+    goal.gather = arguments.picture.flat && !arguments.result ? Gather::off : arguments.gather;
     const bool own_size = loaded.subdivision != Subdivision{}; // asked for on the command line
     Refinement found =
         solve_refined(loaded.scene, own_size ? loaded.mesh : coarse_mesh(loaded.scene),
@@ -175,14 +175,16 @@ void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loa
 }
 
 /// Finds the radiosity at vertices where an output holds it.
-void gather(const SolveArguments& arguments, const LoadedScene& loaded, Observer& observer,
-            Solution& solution, Seconds& seconds) {
+void gather(const SolveArguments& arguments, const LoadedScene& loaded, const FormFactors& factors,
+            Observer& observer, Solution& solution, Seconds& seconds) {
     if (!arguments.result && (!arguments.picture.output || arguments.picture.flat)) {
         return;
     }
     const Stopwatch watch;
-    gather_at_vertices(loaded.scene, loaded.mesh, arguments.rows.factors, arguments.gather, solution,
-                       observer);
+    FactorSettings settings = arguments.rows.factors; // but rows of a file may be of another preset
+    settings.method = factors.provenance.method;
+    settings.preset = factors.provenance.preset.value_or(settings.preset);
+    gather_at_vertices(loaded.scene, loaded.mesh, settings, arguments.gather, solution, observer);
     seconds["gather"] = watch.seconds();
 }
 
@@ -231,7 +233,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     Report picture;
     try {
         if (!arguments.refines()) {
-            gather(arguments, loaded, observer, solution, seconds);
+            gather(arguments, loaded, factors, observer, solution, seconds);
         }
         picture = draw(arguments, loaded, solution, seconds);
         if (!arguments.refines()) {

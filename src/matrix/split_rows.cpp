@@ -38,8 +38,8 @@ FormFactorMatrix split_rows(const FormFactorMatrix& old, const FormFactorMatrix&
     if (parents.size() != size || areas.size() != size) {
         throw InvalidArgument("split rows: parents and areas do not fit the finer mesh");
     }
-    const bool with_visibility = fresh.has_visibility();
-    if (old.has_visibility() != with_visibility) {
+    const bool with_visibility = fresh.has_visibility() || old.has_visibility();
+    if (fresh.entries() > 0 && old.entries() > 0 && old.has_visibility() != fresh.has_visibility()) {
         throw InvalidArgument("split rows: either all rows have visibilities or none");
     }
     std::vector<std::uint32_t> now(old.size(), none); // where a patch that was not split is

@@ -44,6 +44,10 @@ constexpr double least_size = 1e-3;
 constexpr double pair_bytes = 4.0;
 constexpr double entry_bytes = 2 * 9.0;
 
+constexpr const char* factors_are_left = "smaller patches no longer make the error smaller: what is left "
+                                         "comes from the form factors, which a better "
+                                         "preset would improve";
+
 /// Contributions of the patches to the square of the error that the goal is for: area times squared error,
 /// relative to what is reflected, of the channel where it is largest.
 std::vector<double> contributions(const PatchMesh& mesh, const Solution& solution, ErrorOf error_of) {
@@ -101,6 +105,13 @@ Errors errors_of(const Solution& solution, ErrorOf error_of) {
         doubt = of_size.field.doubt;
         break;
     case ErrorOf::groups:
+        if (std::none_of(of_size.groups.begin(), of_size.groups.end(),
+                         [](const GroupError& group) { return std::isfinite(group.patch_size); })) {
+            throw InvalidArgument(
+                "errors of groups cannot be estimated: there are too many, memory is short, or "
+                "none gets light",
+                {"error-target-of"});
+        }
         for (const GroupError& group : of_size.groups) {
             errors.patch_size = worst(errors.patch_size, group.patch_size);
         }
@@ -157,16 +168,15 @@ public:
             if (at_u < 0 || at_v < 0 || at_u >= width || at_v >= height) {
                 continue;
             }
-            for (std::uint32_t up = 1; up <= std::max(part.level_u, part.level_v); ++up) {
-                const std::uint32_t level_u = part.level_u - std::min(up, part.level_u);
-                const std::uint32_t level_v = part.level_v - std::min(up, part.level_v);
-                const std::int64_t cell_u = at_u >> (part.level_u - level_u);
-                const std::int64_t cell_v = at_v >> (part.level_v - level_v);
-                const auto entry = by_cell_.find(
-                    {s, level_u, level_v,
-                     static_cast<std::uint32_t>(cell_v * (std::int64_t{grid.u} << level_u) + cell_u)});
-                if (entry != by_cell_.end()) {
-                    found.push_back(mesh_.first_patch(s) + entry->second);
+            for (std::uint32_t up_u = 0; up_u <= part.level_u; ++up_u) {
+                for (std::uint32_t up_v = up_u == 0 ? 1 : 0; up_v <= part.level_v; ++up_v) {
+                    const std::uint32_t level_u = part.level_u - up_u;
+                    const auto cell = static_cast<std::uint32_t>(
+                        (at_v >> up_v) * (std::int64_t{grid.u} << level_u) + (at_u >> up_u));
+                    const auto entry = by_cell_.find({s, level_u, part.level_v - up_v, cell});
+                    if (entry != by_cell_.end()) {
+                        found.push_back(mesh_.first_patch(s) + entry->second);
+                    }
                 }
             }
         }
@@ -203,7 +213,11 @@ public:
             if (enough || !may_go_on()) {
                 errors = finish();
                 result_.steps.back().error = errors.all;
-                if (is_enough(errors.at_most) || !result_.stopped.empty()) {
+                if (goal_.error && errors.all <= *goal_.error) {
+                    result_.stopped.clear(); // met, whatever ended it
+                    return std::move(result_);
+                }
+                if (!goal_.error || !may_go_on() || !can_help(errors)) {
                     return std::move(result_);
                 }
             }
@@ -239,11 +253,18 @@ private:
             result_.stopped = fmt::format("{} are as many as were asked for",
                                           plural(result_.mesh.size(), "patch", "patches"));
         } else if (goal_.error && is_stuck()) {
-            result_.stopped =
-                "smaller patches no longer make the error smaller: what is left comes from the form "
-                "factors, which a better preset would improve";
+            result_.stopped = factors_are_left;
         } else if (goal_.seconds > 0.0 && watch_.seconds() > goal_.seconds) {
             result_.stopped = fmt::format("the {} of the budget are over", seconds_text(goal_.seconds));
+        }
+        return result_.stopped.empty();
+    }
+
+    /// Whether smaller patches alone can meet the goal; says so where they cannot.
+    bool can_help(const Errors& errors) {
+        const double others = errors.all * errors.all - errors.patch_size * errors.patch_size;
+        if (others >= std::pow(aim * *goal_.error, 2.0)) {
+            result_.stopped = factors_are_left;
         }
         return result_.stopped.empty();
     }
@@ -281,12 +302,10 @@ private:
                                               plural(result_.mesh.size(), "patch", "patches"));
                 return {not_known, not_known, not_known};
             }
-            if (goal_.error) {
-                throw InvalidArgument("the error cannot be estimated: nothing in the scene reflects, or "
-                                      "memory is short",
-                                      {"error-target"});
-            }
-            return {};
+            throw InvalidArgument(
+                "patches cannot be cut where it tells: nothing in the scene reflects light, or "
+                "memory is short",
+                {"error-target"});
         }
         return errors_of(result_.solution, goal_.error_of);
     }
@@ -329,7 +348,7 @@ private:
         };
         std::size_t most = share(most_split);
         if (goal_.patches > 0) { // a split in four adds three
-            most = std::min(most, (static_cast<std::size_t>(goal_.patches) - mesh.size()) / 3 + 1);
+            most = std::min<std::size_t>(most, (std::max(goal_.patches, mesh.size()) - mesh.size()) / 3 + 1);
         }
         double left = total;
         std::vector<bool> chosen(mesh.size(), false);
@@ -376,6 +395,16 @@ private:
     /// Splits patches and finds the rows of their parts. Where memory is short, nothing changes but
     /// Refinement::stopped.
     Refinement::Step split(const std::vector<std::uint32_t>& chosen) {
+        try {
+            return try_split(chosen);
+        } catch (const OutOfMemory& error) {
+            result_.stopped = error.what();
+        } catch (const InvalidArgument& error) { // a surface cannot be cut any finer
+            result_.stopped = error.what();
+        }
+        return {};
+    }
+    Refinement::Step try_split(const std::vector<std::uint32_t>& chosen) {
         SplitMesh finer = result_.mesh.split(chosen);
         std::vector<std::uint32_t> parts(result_.mesh.size(), 0);
         for (const std::uint32_t parent : finer.parents) {
@@ -398,7 +427,8 @@ private:
             return {};
         }
         FormFactors rows = compute_raw_form_factors(scene_, finer.mesh, fresh, settings_, observer_);
-        if (rows.matrix.has_visibility() != result_.raw.matrix.has_visibility()) {
+        const bool both = rows.matrix.entries() > 0 && result_.raw.matrix.entries() > 0;
+        if (both && rows.matrix.has_visibility() != result_.raw.matrix.has_visibility()) {
             result_.stopped = "memory is short for unoccluded factors of more patches";
             return {};
         }
@@ -445,7 +475,11 @@ Refinement solve_refined(const Scene& scene, const PatchMesh& coarse, const Fact
     if (settings.method != Method::hemicube) {
         throw InvalidArgument("refinement: patches are split with hemicubes only", {"method"});
     }
-    return Refiner(scene, coarse, settings, solver, goal, with_irradiance, observer).run();
+    Refinement result = Refiner(scene, coarse, settings, solver, goal, with_irradiance, observer).run();
+    if (!result.solution.error) { // of form factors that are none
+        result.solution.patch_size_error.reset();
+    }
+    return result;
 }
 
 } // namespace hemi

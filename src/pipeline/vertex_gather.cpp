@@ -215,6 +215,7 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
     state.check(values, radiosity);
     const std::vector<double> seen = state.visible(values, radiosity);
     state.kept = {};
+    KeptRows kept; // the state's when all are there
     const std::uint32_t channels = values.channels;
     std::vector<float> at_points(state.points.size() * channels, 0.0F);
     std::vector<std::uint8_t> buried(state.points.size(), 0);
@@ -230,10 +231,10 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
         }
         bool keep = keep_bytes > 0;
         if (keep) {
-            state.kept.columns.resize(state.points.size());
-            state.kept.values.resize(state.points.size());
-            state.kept.environment.resize(state.points.size());
-            state.kept.blocked.resize(state.points.size());
+            kept.columns.resize(state.points.size());
+            kept.values.resize(state.points.size());
+            kept.environment.resize(state.points.size());
+            kept.blocked.resize(state.points.size());
         }
         const auto engine = make_point_visibility_provider(state.mesh, state.points, plan.hemicube, settings);
         compute_point_rows(
@@ -246,21 +247,22 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
                 if (!keep) {
                     return;
                 }
-                state.kept.bytes += row.columns.size() * (sizeof(std::uint32_t) + sizeof(float));
-                if (state.kept.bytes > keep_bytes) {
+                kept.bytes += row.columns.size() * (sizeof(std::uint32_t) + sizeof(float));
+                if (kept.bytes > keep_bytes) {
                     keep = false;
-                    state.kept = {};
+                    kept = {};
                     return;
                 }
-                state.kept.columns[index].assign(row.columns.begin(), row.columns.end());
-                state.kept.values[index].assign(row.values.begin(), row.values.end());
-                state.kept.environment[index] = row.environment;
-                state.kept.blocked[index] = row.blocked;
+                kept.columns[index].assign(row.columns.begin(), row.columns.end());
+                kept.values[index].assign(row.values.begin(), row.values.end());
+                kept.environment[index] = row.environment;
+                kept.blocked[index] = row.blocked;
             },
             [&observer](std::size_t done, std::size_t total) {
                 return observer.progress(Phase::gather, done, total);
             });
     }
+    state.kept = std::move(kept);
     return state.corners(at_points, buried, channels, radiosity);
 }
 

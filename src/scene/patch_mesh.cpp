@@ -174,6 +174,13 @@ GridPart finest(std::span<const GridPart> parts) {
 /// Cells that this grid may have, so that it can be seen whether parts fill it.
 constexpr std::uint64_t most_cells = std::uint64_t{1} << 28;
 
+/// How many cells a finer grid has, or one more than there may be.
+std::uint64_t cells_of(Grid cells, const GridPart& levels) {
+    const std::uint64_t u = std::uint64_t{cells.u} << std::min(levels.level_u, 28u);
+    const std::uint64_t v = std::uint64_t{cells.v} << std::min(levels.level_v, 28u);
+    return u > most_cells || v > most_cells ? most_cells + 1 : std::min(u * v, most_cells + 1);
+}
+
 /// Whether parts fill the cells of a surface, and none of it twice.
 bool fill(bool triangle, Grid cells, std::span<const GridPart> parts) {
     const GridPart levels = finest(parts);
@@ -301,8 +308,13 @@ PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
         throw InvalidArgument(
             fmt::format("parts of {} surfaces; the scene has {}", parts_.size(), surfaces_.size()));
     }
+    std::uint64_t cells = 0; // of all surfaces: a small file must not ask for much work
     for (std::uint32_t s = 0; s < parts_.size(); ++s) {
-        if (!parts_[s].empty() && !fill(surfaces_[s].vertex_count == 3, grids_[s], parts_[s])) {
+        if (parts_[s].empty()) {
+            continue;
+        }
+        cells += cells_of(grids_[s], finest(parts_[s]));
+        if (cells > most_cells || !fill(surfaces_[s].vertex_count == 3, grids_[s], parts_[s])) {
             throw InvalidArgument(fmt::format("the parts of surface {} (group \"{}\") do not fill it", s,
                                               groups_[surfaces_[s].group]));
         }
@@ -375,6 +387,7 @@ SplitMesh PatchMesh::split(std::span<const std::uint32_t> patches, Cut how) cons
     mesh.bounds_ = bounds_;
     mesh.grids_ = grids_;
     mesh.parts_.resize(surfaces_.size());
+    std::uint64_t cells = 0; // as the constructor counts them
     for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
         std::sort(wanted[s].begin(), wanted[s].end());
         const bool triangle = surfaces_[s].vertex_count == 3;
@@ -398,17 +411,17 @@ SplitMesh PatchMesh::split(std::span<const std::uint32_t> patches, Cut how) cons
             all.push_back(part.first);
         }
         const Grid fine = grid_of(grids_[s], finest(all));
-        if (std::uint64_t{fine.u} * fine.v > most_cells) {
+        const bool even = std::all_of(all.begin(), all.end(), [&all](const GridPart& part) {
+            return part.level_u == all[0].level_u && part.level_v == all[0].level_v;
+        });
+        cells += even ? 0 : cells_of(grids_[s], finest(all));
+        if (cells > most_cells) {
             throw InvalidArgument(fmt::format("surface {} (group \"{}\") would be cut into {} x {}", s,
                                               groups_[surfaces_[s].group], fine.u, fine.v));
         }
         // Parts of one size are the cells of a finer grid.
-        const GridPart& first = parts[0].first;
-        const bool even = std::all_of(parts.begin(), parts.end(), [&first](const auto& part) {
-            return part.first.level_u == first.level_u && part.first.level_v == first.level_v;
-        });
         if (even) {
-            mesh.grids_[s] = grid_of(grids_[s], first);
+            mesh.grids_[s] = fine;
             std::sort(parts.begin(), parts.end(),
                       [](const auto& a, const auto& b) { return a.first.cell < b.first.cell; });
         } else {

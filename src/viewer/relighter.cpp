@@ -111,6 +111,19 @@ void Relighter::wait_for_step(std::unique_lock<std::mutex>& lock, const std::sto
 }
 
 void Relighter::gather(SolveUpdate& update, const std::stop_token& stop) {
+    try {
+        try_to_gather(update, stop);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& error) {
+        gather_.reset();
+        if (input_.observer) {
+            input_.observer->warning(fmt::format("vertices have means over patches: {}", error.what()), "");
+        }
+    }
+}
+
+void Relighter::try_to_gather(SolveUpdate& update, const std::stop_token& stop) {
     Solution solution;
     solution.channels = input_.channels();
     solution.radiosity = update.light.radiosity;
@@ -140,17 +153,9 @@ void Relighter::gather(SolveUpdate& update, const std::stop_token& stop) {
         const std::lock_guard lock(mutex_);
         return !stop.stop_requested() && !wanted_;
     });
-    try {
-        update.light.vertices =
-            gather_->compute(values, solution.radiosity, *input_.factor_settings, input_.scene->enclosure,
-                             input_.factors->matrix.memory_bytes(), wanted);
-    } catch (const Cancelled&) {
-        throw;
-    } catch (const std::exception& error) {
-        if (input_.observer) {
-            input_.observer->warning(fmt::format("vertices have means over patches: {}", error.what()), "");
-        }
-    }
+    update.light.vertices =
+        gather_->compute(values, solution.radiosity, *input_.factor_settings, input_.scene->enclosure,
+                         input_.factors->matrix.memory_bytes(), wanted);
 }
 
 void Relighter::solve(Wish wish, const std::stop_token& stop) {

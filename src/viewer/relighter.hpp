@@ -65,6 +65,7 @@ private:
     /// Finds the radiosity at vertices: at once by rows that were kept, else by new ones, which take a while.
     /// @throws Cancelled when the light is no longer wanted
     void gather(SolveUpdate& update, const std::stop_token& stop);
+    void try_to_gather(SolveUpdate& update, const std::stop_token& stop);
 
     const ViewerInput& input_;
     std::function<void()> done_;

@@ -217,6 +217,23 @@ TEST_CASE("refinement: nothing is cut where nothing is wrong, and as much as was
     CHECK(late.stopped.find("budget") != std::string::npos);
     CHECK(late.steps.size() == 1);
 
+    Scene black = scene;
+    black.materials[0].reflectance = {0.0};
+    RefinementGoal more;
+    more.patches = 100;
+    CHECK_THROWS_AS(solve_refined(black, PatchMesh(black), settings_of(), {}, more), InvalidArgument);
+    Scene many = scene;
+    for (int k = 0; k < 70; ++k) {
+        const double x = -0.9 + 0.02 * k;
+        add_polygon(many, "strip " + std::to_string(k),
+                    {Vec3(x, 1.1, 0), Vec3(x + 0.01, 1.1, 0), Vec3(x + 0.01, 1.2, 0), Vec3(x, 1.2, 0)});
+    }
+    more = {};
+    more.error = 0.5;
+    more.error_of = ErrorOf::groups;
+    CHECK_THROWS_AS(solve_refined(many, PatchMesh(many), settings_of(Preset::fast), {}, more),
+                    InvalidArgument);
+
     goal.error_of = ErrorOf::factors;
     CHECK_THROWS_AS(solve_refined(scene, PatchMesh(scene), settings_of(), {}, goal), InvalidArgument);
     CHECK_THROWS_AS(solve_refined(scene, PatchMesh(scene), settings_of(), {}, {}), InvalidArgument);

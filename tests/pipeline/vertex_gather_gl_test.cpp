@@ -171,6 +171,15 @@ TEST_CASE("gather: kept rows give the same again, and follow other materials", "
     for (std::size_t k = 0; k < once.size(); ++k) {
         REQUIRE(twice[k] == 2.0F * once[k]);
     }
+    // Cancelled half way: nothing is kept that is not whole.
+    class Stops : public Observer {
+    public:
+        bool progress(Phase, std::size_t, std::size_t) override { return false; }
+    } stops;
+    CHECK_THROWS_AS(
+        gather.compute(values, solution.radiosity, settings, scene.enclosure, std::uint64_t{1} << 30, stops),
+        Cancelled);
+    CHECK_FALSE(gather.has_rows());
     // Not enough memory: nothing is kept, and the values are the same.
     CHECK(gather.compute(values, solution.radiosity, settings, scene.enclosure, 1000) == once);
     CHECK_FALSE(gather.has_rows());

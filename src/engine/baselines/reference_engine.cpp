@@ -78,7 +78,19 @@ std::uint32_t local_patch(const PatchMesh& mesh, std::uint32_t s, const Vec3& po
     const auto holds = [&](const GridPart& part) {
         return part.cell == local_patch(surface, {grid.u << part.level_u, grid.v << part.level_v}, point);
     };
-    return static_cast<std::uint32_t>(std::find_if(parts.begin(), parts.end(), holds) - parts.begin());
+    const auto found = std::find_if(parts.begin(), parts.end(), holds);
+    if (found != parts.end()) {
+        return static_cast<std::uint32_t>(found - parts.begin());
+    }
+    // On the rim rounding may put a point beside every part.
+    std::uint32_t nearest = 0;
+    const auto way = [&](std::uint32_t k) {
+        return glm::distance(mesh.centres()[mesh.first_patch(s) + k], point);
+    };
+    for (std::uint32_t k = 1; k < parts.size(); ++k) {
+        nearest = way(k) < way(nearest) ? k : nearest;
+    }
+    return nearest;
 }
 
 class ReferenceEngine final : public RowProvider {

@@ -255,14 +255,17 @@ std::vector<std::uint32_t> stored_parts(const PatchMesh& mesh) {
 
 void read_parts(Payload payload, const Sizes& sizes, Subdivision& subdivision) {
     std::uint64_t all = 0;
-    for (const std::uint32_t count : payload.take_array<std::uint32_t>(sizes.surfaces)) {
+    const std::vector<std::uint32_t> counts = payload.take_array<std::uint32_t>(sizes.surfaces);
+    for (const std::uint32_t count : counts) {
         all += count;
         if (all > sizes.patches) {
             payload.fail(fmt::format("more parts than the {} patches of the solution", sizes.patches));
         }
-        subdivision.parts.emplace_back(count);
     }
     const std::vector<std::uint32_t> numbers = payload.take_array<std::uint32_t>(3 * all);
+    for (const std::uint32_t count : counts) {
+        subdivision.parts.emplace_back(count);
+    }
     std::size_t next = 0;
     for (auto& parts : subdivision.parts) {
         for (GridPart& part : parts) {
