@@ -24,7 +24,6 @@ using Words = std::vector<std::string>;
 
 constexpr const char* help_help = "print this help";
 constexpr const char* version_help = "print version, revision, compiler and OpenGL";
-
 constexpr std::uint64_t any_whole = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t any_index = std::numeric_limits<std::uint32_t>::max() - 1;
 
@@ -230,16 +229,12 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
     Options options(app, "Form factors");
     options.flag("--no-estimate", rows.factors.estimate_error,
                  "skip the error estimates, which take a tenth of the time of new form factors", false);
-    const char* help =
-        rows.error_of == ErrorOf::factors
-            ? "choose the cheapest settings whose estimated error is at most T, such as 1e-3 or 0.1%"
-            : "cut patches, or choose settings, until the estimated error is at most T, such as 1%";
-    auto* target = options.value("--error-target", "T", help, [&rows](const std::string& text) {
-        const bool percent = text.ends_with('%');
-        rows.error_target =
-            parse_positive("--error-target", percent ? text.substr(0, text.size() - 1) : text) *
-            (percent ? 0.01 : 1.0);
-    });
+    const bool settings = rows.error_of == ErrorOf::factors;
+    auto* target = options.value(
+        "--error-target", "T",
+        fmt::format("{} the estimated error is at most T, such as 1%",
+                    settings ? "choose the cheapest settings by which" : "cut patches until"),
+        [&rows](const std::string& text) { rows.error_target = parse_share("--error-target", text); });
     for (const char* name : {"--method", "--rays", "--no-estimate"}) {
         target->excludes(app.get_option(name));
     }
@@ -249,11 +244,10 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
 void add_refinement(CLI::App& app, SolveArguments& a) {
     Options options(app, "Refinement");
     options
-        .choice<ErrorOf>(
-            "--error-target-of", "ERROR",
-            "what --error-target is for: vertices (of pictures; the default), field (one value a patch) "
-            "or groups (their mean irradiance): patches are cut; factors: settings are chosen",
-            a.rows.error_of)
+        .choice<ErrorOf>("--error-target-of", "ERROR",
+                         "error of vertices (in pictures; the default), of the field (one value a patch), of "
+                         "groups' means; or of factors: patches stay, settings are chosen",
+                         a.rows.error_of)
         ->needs(app.get_option("--error-target"));
     auto* refine = options.value("--refine", "N", "cut patches where it tells, until there are N",
                                  [&a](const std::string& text) { a.refine = to_index("--refine", text, 1); });
@@ -328,9 +322,7 @@ std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture) {
 void add_gather(CLI::App& app, Gather& gather) {
     Options(app, "Picture")
         .choice<Gather>("--gather", "auto|on|off",
-                        "radiosity at vertices by rows of their own instead of means over patches: crisp "
-                        "shadows. auto: with the presets default and exact, where it changes anything",
-                        gather);
+                        "radiosity at vertices by rows of their own: crisp shadows", gather);
 }
 
 /// @param output  the option without which these make no sense; may be none.

@@ -101,6 +101,11 @@ double parse_positive(std::string_view option, const std::string& text) {
     return *value;
 }
 
+double parse_share(std::string_view option, const std::string& text) {
+    const bool percent = text.ends_with('%');
+    return parse_positive(option, percent ? text.substr(0, text.size() - 1) : text) * (percent ? 0.01 : 1.0);
+}
+
 std::uint64_t parse_whole(std::string_view option, const std::string& text, std::uint64_t lower,
                           std::uint64_t upper) {
     std::uint64_t value = 0;

@@ -19,6 +19,8 @@ namespace hemi::cli {
 [[nodiscard]] double parse_number(std::string_view option, const std::string& text);
 /// A finite number above zero.
 [[nodiscard]] double parse_positive(std::string_view option, const std::string& text);
+/// The same, or per cent: "1%".
+[[nodiscard]] double parse_share(std::string_view option, const std::string& text);
 /// A whole number from `lower` to `upper`.
 [[nodiscard]] std::uint64_t parse_whole(std::string_view option, const std::string& text, std::uint64_t lower,
                                         std::uint64_t upper);
