@@ -504,7 +504,8 @@ TEST_CASE("PatchMesh::split: parts fill their patches, on both sides alike", "[s
             areas[i] += finer.areas()[k];
             // Its corners are where the patch is.
             const PatchCorners outer = coarse.corners(i);
-            for (const Vec3& point : finer.corners(k).polygon()) {
+            const PatchCorners inner = finer.corners(k);
+            for (const Vec3& point : inner.polygon()) {
                 for (std::uint32_t c = 0; c < outer.count; ++c) {
                     const Vec3 edge = outer.points[(c + 1) % outer.count] - outer.points[c];
                     const double inside =
