@@ -56,6 +56,19 @@ io::ResultFile sample() {
     return result;
 }
 
+/// As many values as another number of patches needs.
+void fit(Solution& solution, std::size_t patches) {
+    solution.radiosity.resize(patches * 2);
+    solution.irradiance.resize(patches * 2);
+    solution.row_sum.resize(patches);
+    solution.environment_share.resize(patches);
+    solution.back_face_share.resize(patches);
+    solution.factor_error->rows.resize(patches);
+    solution.error->patches.resize(patches * 2);
+    solution.patch_size_error->patches.resize(patches * 2);
+    solution.vertex_radiosity.resize(patches * 8);
+}
+
 } // namespace
 
 TEST_CASE("HRES: what is written is read back bit for bit", "[io]") {
@@ -123,15 +136,7 @@ TEST_CASE("HRES: the patches are those that were solved, however they were asked
         io::ResultFile a = sample();
         a.subdivision = subdivision;
         const PatchMesh mesh(a.scene, a.subdivision);
-        a.solution.radiosity.resize(mesh.size() * 2);
-        a.solution.irradiance.resize(mesh.size() * 2);
-        a.solution.row_sum.resize(mesh.size());
-        a.solution.environment_share.resize(mesh.size());
-        a.solution.back_face_share.resize(mesh.size());
-        a.solution.factor_error->rows.resize(mesh.size());
-        a.solution.error->patches.resize(mesh.size() * 2);
-        a.solution.patch_size_error->patches.resize(mesh.size() * 2);
-        a.solution.vertex_radiosity.resize(std::size_t{mesh.size()} * 8);
+        fit(a.solution, mesh.size());
         io::write_hres(folder / "a.hres", a);
         const io::ResultFile b = io::read_hres(folder / "a.hres");
         const PatchMesh again(b.scene, b.subdivision);
@@ -265,15 +270,7 @@ TEST_CASE("HRES: patches of different sizes are stored, and refused where they d
     const PatchMesh mesh = once.split(std::vector<std::uint32_t>{1, once.size() - 1}).mesh;
     adopt_mesh(a.scene, a.subdivision, mesh);
     REQUIRE_FALSE(mesh.parts().empty());
-    a.solution.radiosity.resize(mesh.size() * 2);
-    a.solution.irradiance.resize(mesh.size() * 2);
-    a.solution.row_sum.resize(mesh.size());
-    a.solution.environment_share.resize(mesh.size());
-    a.solution.back_face_share.resize(mesh.size());
-    a.solution.factor_error->rows.resize(mesh.size());
-    a.solution.error->patches.resize(mesh.size() * 2);
-    a.solution.patch_size_error->patches.resize(mesh.size() * 2);
-    a.solution.vertex_radiosity.resize(std::size_t{mesh.size()} * 8);
+    fit(a.solution, mesh.size());
     io::write_hres(folder / "a.hres", a);
     const io::ResultFile b = io::read_hres(folder / "a.hres");
     CHECK(b.subdivision.parts == mesh.parts());

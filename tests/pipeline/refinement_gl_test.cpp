@@ -2,6 +2,7 @@
 
 #include "matrix/split_rows.hpp"
 #include "support/device.hpp"
+#include "support/lamp_and_sheet.hpp"
 #include "support/scenes.hpp"
 
 #include "hemi/core/error.hpp"
@@ -29,35 +30,6 @@ FactorSettings settings_of(Preset preset = Preset::standard) {
     settings.engine.device = test_device();
     settings.engine.jobs = 2;
     return settings;
-}
-
-/// A black lamp over a floor, and a black sheet between them; the floor reflects half, once.
-Scene lamp_and_sheet(std::uint32_t cells) {
-    Scene scene = empty_scene();
-    scene.materials.push_back({"lamp", {0.0}, {10.0}});
-    scene.materials.push_back({"black", {0.0}, {0.0}});
-    add_polygon(scene, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {cells, cells});
-    add_polygon(scene, "lamp", {{-0.1, -0.1, 2}, {-0.1, 0.1, 2}, {0.1, 0.1, 2}, {0.1, -0.1, 2}});
-    scene.surfaces.back().material = 1;
-    add_polygon(scene, "sheet", {{-0.15, -0.2, 1}, {0.25, -0.2, 1}, {0.25, 0.2, 1}, {-0.15, 0.2, 1}});
-    scene.surfaces.back().material = 2;
-    scene.surfaces.back().two_sided = true;
-    return scene;
-}
-
-/// Radiosity of the floor there, in closed form: the lamp less the part behind the sheet, whose image on the
-/// lamp's plane is a rectangle.
-double exact_floor(const Vec3& at) {
-    const auto lamp_part = [&at](double x0, double x1, double y0, double y1) {
-        if (!(x0 < x1 && y0 < y1)) {
-            return 0.0;
-        }
-        const std::vector<Vec3> part{{x0, y0, 2}, {x0, y1, 2}, {x1, y1, 2}, {x1, y0, 2}};
-        return point_factor(at, {0, 0, 1}, part);
-    };
-    const double hidden = lamp_part(std::max(-0.1, -0.3 - at.x), std::min(0.1, 0.5 - at.x),
-                                    std::max(-0.1, -0.4 - at.y), std::min(0.1, 0.4 - at.y));
-    return 0.5 * 10.0 * (lamp_part(-0.1, 0.1, -0.1, 0.1) - hidden);
 }
 
 /// What the interpolated vertices of the floor are off by, at 8 x 8 points of every patch, rms over rms.
@@ -158,7 +130,7 @@ TEST_CASE("refinement: rows go on where patches were not split, and parts are se
 
 TEST_CASE("refinement: the error that was asked for is met, with fewer patches than evenly cut ones",
           "[pipeline][every-device]") {
-    const Scene scene = lamp_and_sheet(4);
+    const Scene scene = lamp_and_sheet(4, 1);
     RefinementGoal goal;
     for (const Gather gather : {Gather::on, Gather::off}) {
         goal.error = gather == Gather::on ? 0.03 : 0.06;
@@ -176,7 +148,7 @@ TEST_CASE("refinement: the error that was asked for is met, with fewer patches t
         CHECK(found.mesh.size() == found.steps.back().patches);
         // Evenly cut, with as many patches, it is off by more.
         const auto cells = static_cast<std::uint32_t>(std::sqrt(found.mesh.size()));
-        const Scene even = lamp_and_sheet(cells);
+        const Scene even = lamp_and_sheet(cells, 1);
         const PatchMesh mesh(even);
         const FormFactors factors = compute_form_factors(even, mesh, settings_of());
         Solution solution = solve_radiosity(even, mesh, factors);
@@ -196,7 +168,7 @@ TEST_CASE("refinement: nothing is cut where nothing is wrong, and as much as was
     CHECK(even.steps.size() == 1);
     CHECK(even.stopped.empty());
 
-    const Scene scene = lamp_and_sheet(4);
+    const Scene scene = lamp_and_sheet(4, 1);
     goal = {};
     goal.patches = 120;
     const Refinement number = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
@@ -244,7 +216,7 @@ TEST_CASE("refinement: nothing is cut where nothing is wrong, and as much as was
 }
 
 TEST_CASE("refinement: an error below what the form factors allow is given up", "[pipeline][slow]") {
-    const Scene scene = lamp_and_sheet(4);
+    const Scene scene = lamp_and_sheet(4, 1);
     RefinementGoal goal;
     goal.error = 1e-3;
     const Refinement stuck = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
@@ -253,7 +225,7 @@ TEST_CASE("refinement: an error below what the form factors allow is given up", 
 }
 
 TEST_CASE("refinement: sizes of patches side by side differ by a factor of two at most", "[pipeline]") {
-    const Scene scene = lamp_and_sheet(4);
+    const Scene scene = lamp_and_sheet(4, 1);
     RefinementGoal goal;
     goal.patches = 400;
     const PatchMesh mesh = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal).mesh;

@@ -1,6 +1,7 @@
 #include "hemi/pipeline/vertex_gather.hpp"
 
 #include "support/device.hpp"
+#include "support/lamp_and_sheet.hpp"
 #include "support/scenes.hpp"
 
 #include "hemi/core/buried.hpp"
@@ -39,40 +40,10 @@ double at_corner(const Solution& solution, std::uint32_t patch, std::uint32_t co
     return static_cast<double>(solution.vertex_radiosity[std::size_t{patch} * 4 + corner]);
 }
 
-/// A floor that a lamp lights past a sheet half way up, in the open; floor and sheet reflect nothing back
-/// and forth: the lamp and the sheet are black.
-Scene lamp_and_sheet(std::uint32_t cells) {
-    Scene scene = empty_scene();
-    scene.materials.push_back({"lamp", {0.0}, {10.0}});
-    scene.materials.push_back({"black", {0.0}, {0.0}});
-    add_polygon(scene, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {cells, cells});
-    add_polygon(scene, "lamp", {{-0.1, -0.1, 2}, {-0.1, 0.1, 2}, {0.1, 0.1, 2}, {0.1, -0.1, 2}}, {2, 2});
-    scene.surfaces.back().material = 1;
-    add_polygon(scene, "sheet", {{-0.15, -0.2, 1}, {0.25, -0.2, 1}, {0.25, 0.2, 1}, {-0.15, 0.2, 1}});
-    scene.surfaces.back().material = 2;
-    scene.surfaces.back().two_sided = true;
-    return scene;
-}
-
-/// Radiosity of the floor there: the lamp less the part behind the sheet, whose image on the lamp's plane is
-/// a rectangle twice as large.
-double exact_floor(const Vec3& at) {
-    const auto lamp_part = [&at](double x0, double x1, double y0, double y1) {
-        if (!(x0 < x1 && y0 < y1)) {
-            return 0.0;
-        }
-        const std::vector<Vec3> part{{x0, y0, 2}, {x0, y1, 2}, {x1, y1, 2}, {x1, y0, 2}};
-        return point_factor(at, {0, 0, 1}, part);
-    };
-    const double hidden = lamp_part(std::max(-0.1, -0.3 - at.x), std::min(0.1, 0.5 - at.x),
-                                    std::max(-0.1, -0.4 - at.y), std::min(0.1, 0.4 - at.y));
-    return 0.5 * 10.0 * (lamp_part(-0.1, 0.1, -0.1, 0.1) - hidden);
-}
-
 } // namespace
 
 TEST_CASE("gather: vertices of a floor behind a sheet have their own light", "[pipeline][every-device]") {
-    const Scene scene = lamp_and_sheet(16);
+    const Scene scene = lamp_and_sheet(16, 2);
     const PatchMesh mesh(scene);
     Solution solution = solved(scene, mesh);
     const auto error_of = [&](const std::vector<float>& corners) {
@@ -147,7 +118,7 @@ TEST_CASE("gather: a vertex under a block is not taken for dark", "[pipeline]") 
 }
 
 TEST_CASE("gather: kept rows give the same again, and follow other materials", "[pipeline]") {
-    const Scene scene = lamp_and_sheet(6);
+    const Scene scene = lamp_and_sheet(6, 2);
     const PatchMesh mesh(scene);
     const Solution solution = solved(scene, mesh);
     const PatchValues values = patch_values(scene, mesh);
@@ -188,7 +159,7 @@ TEST_CASE("gather: kept rows give the same again, and follow other materials", "
 }
 
 TEST_CASE("gather: automatic leaves plain and fast pictures alone", "[pipeline]") {
-    const Scene scene = lamp_and_sheet(4);
+    const Scene scene = lamp_and_sheet(4, 2);
     const PatchMesh mesh(scene);
     for (const Preset preset : {Preset::plain, Preset::fast}) {
         Solution solution = solved(scene, mesh, preset);
@@ -202,7 +173,7 @@ TEST_CASE("gather: automatic leaves plain and fast pictures alone", "[pipeline]"
 }
 
 TEST_CASE("gather: a picture shows the gathered values", "[pipeline]") {
-    const Scene scene = lamp_and_sheet(4);
+    const Scene scene = lamp_and_sheet(4, 2);
     const PatchMesh mesh(scene);
     Solution solution = solved(scene, mesh);
     gather_at_vertices(scene, mesh, settings_of(Preset::standard), Gather::on, solution);

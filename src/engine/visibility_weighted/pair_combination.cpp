@@ -34,17 +34,6 @@ PairEstimate combine(VisibilitySample a, VisibilitySample b, double assumed) {
     return {PairVisibility::from((weight_a * a.share() + weight_b * b.share()) / texels), texels};
 }
 
-/// Mean share of the patches that a row knows; 1 where it knows none.
-double mean_share(std::span<const VisibilitySample> row) {
-    double sum = 0.0;
-    std::size_t known = 0;
-    for (const VisibilitySample sample : row) {
-        sum += sample.known() ? sample.share() : 0.0;
-        known += sample.known() ? 1 : 0;
-    }
-    return known == 0 ? 1.0 : sum / static_cast<double>(known);
-}
-
 /// V of single pairs, by texels alone.
 class PairEstimator {
 public:

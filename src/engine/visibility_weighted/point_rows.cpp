@@ -98,16 +98,6 @@ private:
         double variance;
     };
 
-    static double mean_share(std::span<const VisibilitySample> samples) {
-        double sum = 0.0;
-        std::size_t known = 0;
-        for (const VisibilitySample sample : samples) {
-            sum += sample.known() ? sample.share() : 0.0;
-            known += sample.known() ? 1 : 0;
-        }
-        return known == 0 ? 1.0 : sum / static_cast<double>(known);
-    }
-
     /// Of the light that comes from the patch: that of a share found from so many independent trials, of
     /// which one more could have come out either way.
     [[nodiscard]] double variance(const Entry& entry, double texels) const {

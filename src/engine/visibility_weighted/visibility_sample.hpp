@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace hemi {
 
@@ -49,5 +50,16 @@ private:
 
     std::uint16_t bits_ = 0;
 };
+
+/// Mean share of the patches that a row knows; 1 where it knows none.
+[[nodiscard]] inline double mean_share(std::span<const VisibilitySample> row) {
+    double sum = 0.0;
+    std::size_t known = 0;
+    for (const VisibilitySample sample : row) {
+        sum += sample.known() ? sample.share() : 0.0;
+        known += sample.known() ? 1 : 0;
+    }
+    return known == 0 ? 1.0 : sum / static_cast<double>(known);
+}
 
 } // namespace hemi
