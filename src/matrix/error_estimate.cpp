@@ -141,8 +141,10 @@ struct Variances {
 /// Scales each model to the squared errors that the sampled rows have together.
 /// @param measured  sum of squared errors of each row of `sampled`
 /// @param weights   of the columns; may be empty
+/// @param counts    what each row counts, N; may be empty: all the same
 Variances fit_variances(const FormFactorMatrix& factors, std::span<const std::uint32_t> sampled,
-                        std::span<const double> measured, std::span<const double> weights) {
+                        std::span<const double> measured, std::span<const double> weights,
+                        std::span<const double> counts) {
     std::vector<VarianceModels> of_row(factors.size());
     parallel_for(factors.size(), FormFactorMatrix::block_rows, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -154,9 +156,10 @@ Variances fit_variances(const FormFactorMatrix& factors, std::span<const std::ui
     for (std::size_t k = 0; k < sampled.size(); ++k) {
         const VarianceModels unweighted =
             weights.empty() ? of_row[sampled[k]] : sum_models(factors.row(sampled[k]), {});
-        variance += measured[k];
+        const double count = counts.empty() ? 1.0 : counts[sampled[k]];
+        variance += count * measured[k];
         for (std::size_t m = 0; m < models; ++m) {
-            in_sample[m] += unweighted[m];
+            in_sample[m] += count * unweighted[m];
         }
     }
     const auto used = static_cast<double>(
@@ -218,9 +221,11 @@ Variances irradiance_variances(const FormFactorMatrix& factors, const FormFactor
     const double share = share_of(factors, columns);
     std::vector<double> squares(sampled.size());
     double area = 0.0;
+    double area_squares = 0.0;
     double mean = 0.0;
     double measured = 0.0;
     for (std::size_t k = 0; k < sampled.size(); ++k) {
+        const double counts = areas[sampled[k]];
         double error = 0.0;
         compare(factors.row(sampled[k]), reference.row(sampled[k]), columns,
                 [&](std::uint32_t j, double difference, double should) {
@@ -228,14 +233,15 @@ Variances irradiance_variances(const FormFactorMatrix& factors, const FormFactor
                     error += difference * b[j];
                 });
         squares[k] /= share;
-        area += areas[sampled[k]];
-        mean += areas[sampled[k]] * error / share;
-        measured += error * error / share;
+        area += counts;
+        area_squares += counts * counts;
+        mean += counts * error / share;
+        measured += counts * error * error / share;
     }
-    Variances variances = fit_variances(factors, sampled, squares, weights);
+    Variances variances = fit_variances(factors, sampled, squares, weights, areas);
     double modelled = 0.0;
     for (const std::uint32_t i : sampled) {
-        modelled += variances.mean[i];
+        modelled += areas[i] * variances.mean[i];
     }
     const double factor = modelled > 0.0 ? std::max(1.0, measured / modelled) : 0.0;
     double square = 0.0;
@@ -243,11 +249,10 @@ Variances irradiance_variances(const FormFactorMatrix& factors, const FormFactor
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
         variances.mean[i] *= factor;
         variances.largest[i] *= factor;
-        square += variances.mean[i];
-        known += factors.known(i) ? 1.0 : 0.0;
+        square += areas[i] * variances.mean[i];
+        known += factors.known(i) ? areas[i] : 0.0;
     }
-    variances.common =
-        std::abs(mean) / area + std::sqrt(square / known / static_cast<double>(sampled.size()));
+    variances.common = std::abs(mean) / area + std::sqrt(square / known * area_squares) / area;
     return variances;
 }
 
@@ -287,7 +292,7 @@ FactorErrorEstimate estimate_factor_error(const FormFactorMatrix& factors, const
                 });
         squares[k] /= share;
     }
-    const Variances variances = fit_variances(factors, sampled, squares, {});
+    const Variances variances = fit_variances(factors, sampled, squares, {}, {});
     FactorErrorEstimate estimate;
     estimate.sampled = static_cast<std::uint32_t>(sampled.size());
     double sum = 0.0;

@@ -186,6 +186,7 @@ public:
         };
         const FormFactorMatrix factors = compute_visibility_weighted(
             *engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure, go_on, go_on, go_on);
+        near_ = patches_near_surfaces(mesh_);
         find_importance(bytes_of(rows.size(), fine.size()), settings, observer);
         find_variation(fine, parents);
         std::vector<Errors> vertices(channels_);
@@ -441,8 +442,8 @@ private:
             return;
         }
         const std::vector<double> visible =
-            visible_radiosity(mesh_, SmoothSurfaces(mesh_), patches_near_surfaces(mesh_), channels_,
-                              solution_.radiosity, solution_.exitance, solution_.back_face_share);
+            visible_radiosity(mesh_, SmoothSurfaces(mesh_), near_, channels_, solution_.radiosity,
+                              solution_.exitance, solution_.back_face_share);
         variation_.assign(std::size_t{fine.size()} * channels_, 0.0);
         std::vector<double> means(std::size_t{mesh_.size()} * channels_, 0.0);
         for (std::uint32_t k = 0; k < fine.size(); ++k) {
@@ -543,19 +544,34 @@ private:
         return sums;
     }
 
+    /// Share of a patch, or of a quarter of it, that something stands on: of its back-face share, where that
+    /// comes of a surface near in front of it.
+    [[nodiscard]] double covered(std::uint32_t patch, double back_face_share) const {
+        return std::binary_search(near_.begin(), near_.end(), patch) ? back_face_share : 0.0;
+    }
+
     void add_patch(const Drawn& drawn, const std::array<std::uint32_t, 4>& quarters, const PatchMesh& fine,
                    const std::vector<std::uint32_t>& parents, const FormFactorMatrix& factors,
                    std::vector<Errors>& vertices, std::vector<Errors>& field,
                    std::vector<SampledSum>& groups) const {
         const std::uint32_t patch = drawn.patch;
         std::array<std::vector<double>, 4> light;
+        std::array<double, 4> seen{}; // area that nothing stands on
         std::vector<double> mean(channels_, 0.0);
         for (std::size_t q = 0; q < 4; ++q) {
-            light[q] = irradiance_at(factors.row(quarters[q]), parents);
+            const RowView row = factors.row(quarters[q]);
+            light[q] = irradiance_at(row, parents);
+            seen[q] = fine.areas()[quarters[q]] * (1.0 - covered(patch, row.blocked));
             for (std::uint32_t c = 0; c < channels_; ++c) {
-                mean[c] += light[q][c] * fine.areas()[quarters[q]] / mesh_.areas()[patch];
+                mean[c] += light[q][c] * fine.areas()[quarters[q]];
             }
         }
+        const double seen_of_patch = std::accumulate(seen.begin(), seen.end(), 0.0);
+        for (double& value : mean) {
+            value /= std::max(seen_of_patch, std::numeric_limits<double>::min());
+        }
+        const double covered_by =
+            solution_.back_face_share.empty() ? 0.0 : covered(patch, solution_.back_face_share[patch]);
         std::vector<double> for_groups(groups.size(), 0.0);
         for (std::size_t q = 0; q < 4; ++q) {
             const RowView row = factors.row(quarters[q]);
@@ -566,15 +582,17 @@ private:
                 row, parents, groups.size(), [this](std::uint32_t source) { return importance_.of(source); });
             const std::vector<double> varying = varying_light(row);
             const auto weights = shown_.weights(patch, fine.corners(quarters[q]));
-            const double stands_for = drawn.weight * fine.areas()[quarters[q]];
+            const double to_seen = fine.areas()[quarters[q]] / seen[q];
             for (std::uint32_t c = 0; c < channels_; ++c) {
-                const double change = reflectance_[at(patch, c)] * (light[q][c] - mean[c]);
-                double shown = -solution_.radiosity[at(patch, c)];
+                const double rho = reflectance_[at(patch, c)];
+                const double emitted = solution_.exitance[at(patch, c)];
+                const double change = rho * (to_seen * light[q][c] - mean[c]);
+                double shown = -emitted - (solution_.radiosity[at(patch, c)] - emitted) / (1.0 - covered_by);
                 for (std::uint32_t corner = 0; corner < mesh_.corners(patch).count; ++corner) {
                     shown += weights[corner] * shown_.at_corner(patch, corner, c);
                 }
-                field[c].add(change, stands_for);
-                vertices[c].add(shown - change - reflectance_[at(patch, c)] * varying[c], stands_for);
+                field[c].add(change, drawn.weight * seen[q]);
+                vertices[c].add(shown - change - rho * varying[c], drawn.weight * seen[q]);
                 // Here the quarters' mean counts, too: it differs from what the patch's own row gets where
                 // visibility and F0 change together.
                 if (groups.empty()) {
@@ -604,6 +622,7 @@ private:
     bool gathered_;                      // whether these are gathered values, at least those of the sample
     std::vector<std::uint32_t> patches_; // those that reflect and are not buried, ascending
     std::vector<double> units_;          // a channel: rms of B - E over them
+    std::vector<std::uint32_t> near_;    // patches with a surface near in front of them, ascending
     GroupImportance importance_;
     std::vector<double> variation_;  // of fine patches, with their channels; empty: not known
     std::vector<double> irradiance_; // of all patches, N·channels; with the importance

@@ -49,8 +49,8 @@ struct RadiosityErrorEstimate {
 ///
 /// A row's irradiance is off by sum_j (F(i, j) - F*(i, j)) B_j. Its variance is modelled as in
 /// estimate_factor_error, each factor's times B_j², and scaled to what the sample's irradiances are off by.
-/// To that comes what all rows have in common, the sample's mean and that mean's own error, which the scene
-/// amplifies as it does light: by sum A rho / sum A (1 - rho sum_j F).
+/// Rows count by their areas. To that comes what all rows have in common, the sample's mean and that mean's
+/// own error, which the scene amplifies as it does light: by sum A rho / sum A (1 - rho sum_j F).
 /// @param factors    N rows
 /// @param reference  N rows, some of them known
 /// @param areas      N areas
