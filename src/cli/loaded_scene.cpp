@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace hemi::cli {
 
@@ -57,6 +58,30 @@ PatchMesh make_mesh(const Scene& scene, const SceneOptions& options) {
     }
 }
 
+/// Faces that stand on others are as people build them; faces in the place of others are a mistake, mostly.
+void warn_of_overlaps(const Imprint& cut, const Scene& as_read, const Terminal& terminal) {
+    const auto warn = [&](Imprint::What what, const char* one, const char* many) {
+        std::size_t count = 0;
+        const Imprint::Finding* first = nullptr;
+        for (const Imprint::Finding& finding : cut.findings) {
+            if (finding.what == what && finding.other < as_read.surfaces.size()) {
+                first = count++ == 0 ? &finding : first;
+            }
+        }
+        if (first != nullptr) {
+            const auto name = [&](std::uint32_t face) {
+                return fmt::format("face {} of {}", face, as_read.groups[as_read.surfaces[face].group]);
+            };
+            terminal.warn(fmt::format("{}: {} by {}{}", plural(count, one, many), name(first->face),
+                                      name(first->other), count > 1 ? ", ..." : ""));
+        }
+    };
+    warn(Imprint::What::duplicate, "face is left out, covered by another one in its plane",
+         "faces are left out, covered by others in their planes");
+    warn(Imprint::What::overlapped, "face is cut, where another one lies on it in its plane",
+         "faces are cut, where others lie on them in their planes");
+}
+
 } // namespace
 
 LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
@@ -71,12 +96,24 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
         replace_environment(scene, options.environment);
     }
     PatchMesh mesh = make_mesh(scene, options);
+    Subdivision subdivision = options.subdivision;
+    std::optional<Imprint> cut = options.imprint ? imprint(scene, subdivision) : std::nullopt;
+    std::optional<Scene> as_read;
+    if (cut) {
+        as_read = std::exchange(scene, std::move(cut->scene));
+        mesh = PatchMesh(scene);
+        subdivision = {};
+        warn_of_overlaps(*cut, *as_read, terminal);
+    } else {
+        cut.emplace();
+    }
     std::vector<std::uint32_t> group_of(mesh.size());
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         group_of[i] = mesh.group(i);
     }
     stop_if_interrupted();
-    return {std::move(scene), std::move(mesh), options.subdivision, std::move(group_of), watch.seconds()};
+    return {std::move(scene),         std::move(mesh), std::move(subdivision), std::move(as_read),
+            std::move(cut->findings), cut->covered,    std::move(group_of),    watch.seconds()};
 }
 
 void LoadedScene::adopt(PatchMesh other) {

@@ -3,10 +3,12 @@
 #include "cli/arguments/arguments.hpp"
 #include "cli/report/text.hpp"
 #include "cli/terminal.hpp"
+#include "hemi/scene/imprint.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,17 +19,22 @@ namespace hemi::cli {
 struct LoadedScene {
     Scene scene;
     PatchMesh mesh;
-    Subdivision subdivision;             ///< with the scene it makes the mesh
+    Subdivision subdivision; ///< with the scene it makes the mesh
+    /// Where faces were cut, else empty: the scene as it was read, and what was done.
+    std::optional<Scene> as_read;
+    std::vector<Imprint::Finding> imprinted;
+    double covered = 0.0;                ///< area left out, scene units squared
     std::vector<std::uint32_t> group_of; ///< group of every patch
     double seconds = 0.0;
 
-    /// Takes another mesh of the same surfaces.
+    /// Takes another mesh of the scene.
     void adopt(PatchMesh other);
 
     [[nodiscard]] PatchNames names() const { return {mesh.groups(), group_of, mesh.centres()}; }
 };
 
-/// Reads the scene and cuts it into patches; `--enclosure` and `--environment` replace the scene's own.
+/// Reads the scene, cuts its faces where they touch and into patches; `--enclosure` and `--environment`
+/// replace the scene's own.
 /// @throws InputError for the file; InvalidArgument for options that do not fit it.
 [[nodiscard]] LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal);
 

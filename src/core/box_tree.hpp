@@ -3,15 +3,17 @@
 #include "hemi/core/geometry.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <vector>
 
 namespace hemi {
 
-/// Finds boxes that overlap a box: a binary tree over boxes split at the median of their centres.
-/// Memory: about 60 bytes a box.
+/// Finds boxes that overlap a box or lie along a ray: a binary tree over boxes split at the median of their
+/// centres. Memory: about 60 bytes a box.
 class BoxTree {
 public:
     explicit BoxTree(std::span<const Bounds> boxes)
@@ -41,6 +43,26 @@ public:
         }
     }
 
+    /// Calls `visit(index)` for every box that a ray passes through, in no particular order.
+    /// @param direction  of any length but 0
+    template <typename Visit>
+    void along(const Vec3& origin, const Vec3& direction, const Visit& visit) const {
+        std::uint32_t at = 0;
+        while (at < nodes_.size()) {
+            const Node& node = nodes_[at];
+            if (!passes(node.bounds, origin, direction)) {
+                at = node.after;
+                continue;
+            }
+            for (std::uint32_t k = node.first; k < node.end; ++k) {
+                if (passes(boxes_[order_[k]], origin, direction)) {
+                    visit(order_[k]);
+                }
+            }
+            ++at;
+        }
+    }
+
 private:
     struct Node {
         Bounds bounds;
@@ -55,6 +77,25 @@ private:
             }
         }
         return true;
+    }
+
+    static bool passes(const Bounds& box, const Vec3& origin, const Vec3& direction) {
+        double from = 0.0;
+        double to = std::numeric_limits<double>::infinity();
+        for (int axis = 0; axis < 3; ++axis) {
+            if (direction[axis] == 0.0) {
+                if (origin[axis] < box.lower[axis] || origin[axis] > box.upper[axis]) {
+                    return false;
+                }
+                continue;
+            }
+            const double a = (box.lower[axis] - origin[axis]) / direction[axis];
+            const double b = (box.upper[axis] - origin[axis]) / direction[axis];
+            from = std::max(from, std::min(a, b));
+            to = std::min(to, std::max(a, b));
+        }
+        constexpr double rounding = 1e-12; // a flat box has no inside
+        return from <= to + rounding * std::abs(to);
     }
 
     void split(std::uint32_t first, std::uint32_t end) {

@@ -8,6 +8,7 @@
 #include "hemi/engine/touching_faces.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/radiosity.hpp"
+#include "hemi/scene/imprint.hpp"
 #include "matrix/split_rows.hpp"
 
 #include <fmt/format.h>
@@ -454,14 +455,15 @@ private:
 
 } // namespace
 
-PatchMesh coarse_mesh(const Scene& scene) {
+PatchMesh coarse_mesh(const Scene& scene, bool with_imprint) {
     double area = 0.0;
     for (const Surface& surface : scene.surfaces) {
         area += glm::length(area_vector(surface.polygon())) * (surface.two_sided ? 2.0 : 1.0);
     }
     Subdivision subdivision;
     subdivision.patch_size = std::sqrt(area / first_patches);
-    return PatchMesh(scene, subdivision);
+    const std::optional<Imprint> cut = with_imprint ? imprint(scene, subdivision) : std::nullopt;
+    return cut ? PatchMesh(cut->scene) : PatchMesh(scene, subdivision);
 }
 
 Refinement solve_refined(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,

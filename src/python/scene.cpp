@@ -1,6 +1,7 @@
 #include "hemi/engine/baselines.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/scene/imprint.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/work.hpp"
@@ -196,7 +197,8 @@ ScenePointer scene_from_arrays(const Doubles& vertices, const py::object& faces,
 ScenePointer read_scene(const py::object& path, std::optional<double> patch_size,
                         std::optional<std::uint32_t> patches_per_face,
                         const std::optional<std::string>& enclosure, const py::object& environment,
-                        const std::vector<std::string>& two_sided, bool skip_degenerate, bool allow_outside) {
+                        const std::vector<std::string>& two_sided, bool skip_degenerate, bool allow_outside,
+                        bool with_imprint) {
     const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
     if (!two_sided.empty() && io::extension_of(file) == ".json") {
         throw InvalidArgument("two_sided is not for JSON scenes, which say \"two_sided\": true");
@@ -213,7 +215,10 @@ ScenePointer read_scene(const py::object& path, std::optional<double> patch_size
         set_environment(scene, environment);
     }
     return run([&] {
-        return std::make_shared<PatchedScene>(std::move(scene), Subdivision{patch_size, patches_per_face});
+        const Subdivision subdivision{patch_size, patches_per_face};
+        std::optional<Imprint> cut = with_imprint ? imprint(scene, subdivision) : std::nullopt;
+        return cut ? std::make_shared<PatchedScene>(std::move(cut->scene), Subdivision{})
+                   : std::make_shared<PatchedScene>(std::move(scene), subdivision);
     });
 }
 
@@ -390,7 +395,8 @@ InvalidArgument, InputError
     module.def("read_scene", &read_scene, py::arg("path"), py::kw_only(), py::arg("patch_size") = py::none(),
                py::arg("patches_per_face") = py::none(), py::arg("enclosure") = py::none(),
                py::arg("environment") = py::none(), py::arg("two_sided") = std::vector<std::string>(),
-               py::arg("skip_degenerate") = false, py::arg("allow_outside") = false, R"(
+               py::arg("skip_degenerate") = false, py::arg("allow_outside") = false,
+               py::arg("imprint") = false, R"(
 Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .ply or .stl, by its extension.
 
 Parameters
@@ -411,6 +417,8 @@ skip_degenerate : bool
     Leave out faces of zero area, with a HemiWarning, instead of refusing them.
 allow_outside : bool
     Open files outside the scene's folder that the scene names.
+imprint : bool
+    Cut faces where others stand on them, lie on them or pass through them, and leave out what is covered.
 
 Returns
 -------

@@ -508,6 +508,7 @@ std::uint64_t PatchMesh::geometry_hash() const {
 }
 
 void adopt_mesh(Scene& scene, Subdivision& subdivision, const PatchMesh& mesh) {
+    scene.surfaces.assign(mesh.surfaces().begin(), mesh.surfaces().end());
     for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
         scene.surfaces[s].patches = mesh.grid(s);
     }

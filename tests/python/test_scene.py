@@ -130,3 +130,15 @@ def test_factors_from_a_point_above_a_square():
     assert hemi.point_factors(scene, [0, 0, 0], [0, 0, 5])[0] == pytest.approx(exact, rel=1e-12)
     with pytest.raises(ValueError, match="normal"):
         hemi.point_factors(scene, [0, 0, 0], [0, 0, 0])
+
+
+def test_faces_are_cut_where_others_touch_them_if_asked(tmp_path):
+    path = tmp_path / "rug.obj"
+    path.write_text(
+        "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 3 1 0\nv 3 3 0\nv 1 3 0\n"
+        "g floor\nf 1 2 3 4\ng rug\nf 5 6 7 8\n"
+    )
+    assert hemi.read_scene(path).areas.sum() == pytest.approx(20)
+    cut = hemi.read_scene(path, imprint=True)
+    assert cut.areas.sum() == pytest.approx(16)
+    assert cut.groups == ["floor", "rug"]

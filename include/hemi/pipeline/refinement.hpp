@@ -60,7 +60,9 @@ struct Refinement {
 };
 
 /// A coarse mesh to begin with: some hundreds of patches of about one size, whatever sizes the scene wants.
-[[nodiscard]] PatchMesh coarse_mesh(const Scene& scene);
+/// @param scene          as read
+/// @param with_imprint   cut where faces touch, see imprint()
+[[nodiscard]] PatchMesh coarse_mesh(const Scene& scene, bool with_imprint = false);
 
 /// Solves a scene on patches that become smaller where that tells: begins with a coarse mesh, estimates the
 /// error, cuts the patches that add most to it (PatchMesh::split), and computes rows of the new patches

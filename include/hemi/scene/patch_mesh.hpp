@@ -154,9 +154,9 @@ struct SplitMesh {
 };
 
 /// Makes PatchMesh(scene, subdivision) a mesh again that was split or cut otherwise than the scene wants.
-/// @param scene        that the mesh is of; gets its grids
+/// @param scene        that the mesh is of; gets its surfaces and their grids
 /// @param subdivision  becomes that of the mesh
-/// @param mesh         of the same surfaces, in their order
+/// @param mesh         with the scene's materials and groups
 void adopt_mesh(Scene& scene, Subdivision& subdivision, const PatchMesh& mesh);
 
 /// A property of materials, spread over the patches: N·channels, channel c of patch i at [i·channels + c].

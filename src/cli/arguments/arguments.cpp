@@ -1,6 +1,7 @@
 #include "cli/arguments/arguments.hpp"
 
 #include "cli/arguments/completion.hpp"
+#include "cli/arguments/options.hpp"
 #include "cli/arguments/usage_errors.hpp"
 #include "cli/arguments/version.hpp"
 #include "hemi/core/error.hpp"
@@ -26,54 +27,6 @@ constexpr const char* help_help = "print this help";
 constexpr const char* version_help = "print version, revision, compiler and OpenGL";
 constexpr std::uint64_t any_whole = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t any_index = std::numeric_limits<std::uint32_t>::max() - 1;
-
-/// Options of one command. Values are read by our own functions, so that all messages have one form.
-class Options {
-public:
-    Options(CLI::App& app, std::string group) : app_(app), group_(std::move(group)) {}
-
-    void flag(const std::string& name, bool& target, const std::string& help, bool value = true) {
-        app_.add_flag_callback(
-                name, [&target, value] { target = value; }, help)
-            ->option_text(" ")
-            ->group(group_);
-    }
-
-    CLI::Option* value(const std::string& name, const std::string& form, const std::string& help,
-                       const std::function<void(const std::string&)>& read) {
-        return app_.add_option_function<std::string>(name, read, help)->option_text(form)->group(group_);
-    }
-
-    /// One of the words of an enumeration. @param read  takes the enumerator
-    template <class Enum>
-    CLI::Option* choice(const std::string& name, const std::string& form, const std::string& help,
-                        const std::function<void(Enum)>& read) {
-        return value(name, form, help,
-                     [name, read](const std::string& text) { read(parse_choice<Enum>(name, text)); })
-            ->type_name(fmt::format("{}", fmt::join(words<Enum>(), "|")));
-    }
-    template <class Enum, class Target>
-    CLI::Option* choice(const std::string& name, const std::string& form, const std::string& help,
-                        Target& target) {
-        return choice<Enum>(name, form, help, [&target](Enum value) { target = value; });
-    }
-
-    CLI::Option* path(const std::string& name, const std::string& form,
-                      std::optional<std::filesystem::path>& target, const std::string& help) {
-        return value(name, form, help,
-                     [name, &target](const std::string& text) {
-                         if (text.empty()) {
-                             throw InvalidArgument(name + " '': a file name is missing");
-                         }
-                         target = text;
-                     })
-            ->type_name(file_type);
-    }
-
-private:
-    CLI::App& app_;
-    std::string group_;
-};
 
 std::uint32_t to_index(std::string_view option, const std::string& text, std::uint64_t lower,
                        std::uint64_t upper = any_index) {
@@ -122,6 +75,7 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
     options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
     options.flag("--allow-outside", scene.allow_outside,
                  "open files outside the scene's folder that the scene names");
+    options.flag("--imprint", scene.imprint, "cut faces where others touch them; leave out what is covered");
     app.add_option("--two-sided", scene.two_sided,
                    "faces of GROUP radiate on both sides (not for .json); repeatable")
         ->allow_extra_args(false)

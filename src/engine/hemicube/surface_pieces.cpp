@@ -1,5 +1,7 @@
 #include "engine/hemicube/surface_pieces.hpp"
 
+#include "scene/rectangles.hpp"
+
 #include <array>
 #include <map>
 #include <utility>
@@ -8,32 +10,12 @@ namespace hemi {
 
 namespace {
 
-/// Patches of one size that no piece has yet: by row and column of their grid.
-using Cells = std::map<std::array<std::uint32_t, 2>, std::uint32_t>;
-
-/// Takes the largest rectangle from the first cell on, first along its row, out of the cells.
-SurfacePiece take_rectangle(const PatchMesh& mesh, std::uint32_t surface, Cells& cells) {
-    const auto [row, column] = cells.begin()->first;
-    const auto row_is_free = [&](std::uint32_t v, std::uint32_t width) {
-        for (std::uint32_t u = 0; u < width; ++u) {
-            if (!cells.contains({v, column + u})) {
-                return false;
-            }
-        }
-        return true;
-    };
+/// Takes the next rectangle of patches out of the cells.
+SurfacePiece take_piece(const PatchMesh& mesh, std::uint32_t surface, Cells& cells) {
+    Rectangle rectangle = take_rectangle(cells);
     SurfacePiece piece;
-    while (cells.contains({row, column + piece.grid.u})) {
-        ++piece.grid.u;
-    }
-    while (row_is_free(row + piece.grid.v, piece.grid.u)) {
-        ++piece.grid.v;
-    }
-    for (std::uint32_t v = 0; v < piece.grid.v; ++v) {
-        for (std::uint32_t u = 0; u < piece.grid.u; ++u) {
-            piece.patches.push_back(cells.extract({row + v, column + u}).mapped());
-        }
-    }
+    piece.grid = {rectangle.columns, rectangle.rows};
+    piece.patches = std::move(rectangle.cells);
     const auto corners_of = [&](std::uint32_t u, std::uint32_t v) {
         return mesh.part_corners(surface, mesh.parts(surface)[piece.patches[v * piece.grid.u + u]]).points;
     };
@@ -61,7 +43,7 @@ std::vector<SurfacePiece> pieces_of(const PatchMesh& mesh, std::uint32_t surface
     }
     for (auto& [level, cells] : by_level) {
         while (!cells.empty()) {
-            pieces.push_back(take_rectangle(mesh, surface, cells));
+            pieces.push_back(take_piece(mesh, surface, cells));
         }
     }
     return pieces;

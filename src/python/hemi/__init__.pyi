@@ -233,6 +233,7 @@ def read_scene(
     two_sided: Sequence[str] = (),
     skip_degenerate: bool = False,
     allow_outside: bool = False,
+    imprint: bool = False,
 ) -> Scene: ...
 def form_factors(
     scene: Scene,

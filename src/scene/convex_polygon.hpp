@@ -1,0 +1,42 @@
+#pragma once
+
+#include "hemi/core/geometry.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// Corners of a plane convex polygon, counter-clockwise about its normal.
+using Polygon = std::vector<Vec3>;
+
+/// A straight line between two points.
+struct Segment {
+    Vec3 from;
+    Vec3 to;
+};
+
+/// Whether a point of a polygon's plane lies in it or within `slack` of it.
+[[nodiscard]] bool contains(std::span<const Vec3> polygon, const Vec3& normal, const Vec3& point,
+                            double slack);
+
+/// The part of a segment in a polygon's plane that lies in it.
+/// @return nothing where no more than twice `slack` does, or where it runs along the polygon's border
+[[nodiscard]] std::optional<Segment> within(std::span<const Vec3> polygon, const Vec3& normal,
+                                            const Segment& segment, double slack);
+
+/// Whether two polygons of one plane have more in common than a strip as wide as `slack`.
+[[nodiscard]] bool overlap(std::span<const Vec3> polygon, const Vec3& normal, std::span<const Vec3> other,
+                           double slack);
+
+/// Cuts those polygons of a plane in two that a segment runs through, along its whole line.
+void split_all(std::vector<Polygon>& polygons, const Vec3& normal, const Segment& segment, double slack);
+
+/// The polygon without corners that lie within `slack` of the line between their neighbours.
+[[nodiscard]] Polygon without_straight_corners(const Polygon& polygon, double slack);
+
+/// Whether a polygon is wider than `slack`.
+[[nodiscard]] bool is_wide(std::span<const Vec3> polygon, double slack);
+
+} // namespace hemi

@@ -1,0 +1,591 @@
+#include "hemi/scene/imprint.hpp"
+
+#include "core/box_tree.hpp"
+#include "core/parallel_for.hpp"
+#include "core/welder.hpp"
+#include "scene/convex_polygon.hpp"
+#include "scene/rectangles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <utility>
+
+namespace hemi {
+
+namespace {
+
+constexpr std::uint32_t no_face = 0xFFFFFFFFu;
+/// Gaps up to this share of the scene's diagonal are none, as where corners are welded.
+constexpr double contact_share = 1e-7;
+/// Directions in which a piece must see backs alone to be covered.
+constexpr int directions = 64;
+/// What is buried is found from the outside inwards; nothing that people build is deeper.
+constexpr int max_rounds = 8;
+
+/// What a face touches.
+struct Contacts {
+    std::vector<Segment> cuts;           ///< within the face
+    std::vector<std::uint32_t> coplanar; ///< faces that lie over it in its plane
+    std::uint32_t other = no_face;       ///< one of those that cut it
+};
+
+/// A piece of a face, and the sides of it that are not covered.
+struct Piece {
+    Polygon corners;
+    std::uint32_t cell = 0; ///< of the face's grid
+    bool whole = true;      ///< all of that cell
+    bool front = true;
+    bool back = true;
+
+    [[nodiscard]] bool is_left() const { return front || back; }
+};
+
+/// A face that is cut, or looked at for what is covered of it.
+struct CutFace {
+    Contacts contacts;
+    std::vector<Piece> pieces;
+    std::uint32_t covered_by = no_face; ///< a face in its plane
+    bool split = false;                 ///< into more than its cells
+    bool buried = false;                ///< parts of it see backs alone
+};
+
+/// What hides others: a face, or a piece of one.
+struct Occluder {
+    std::span<const Vec3> corners;
+    std::uint32_t face;
+    bool front; ///< radiates from its front
+    bool back;
+};
+
+/// Corners of faces, those in one place made one.
+struct WeldedFaces {
+    std::vector<std::array<std::uint32_t, 4>> corners; ///< of every face; the fourth of a triangle is none
+    std::size_t vertex_count = 0;
+};
+
+WeldedFaces weld(const Scene& scene, double tolerance) {
+    Welder welder(tolerance);
+    WeldedFaces result;
+    for (const Surface& surface : scene.surfaces) {
+        std::array<std::uint32_t, 4>& corners = result.corners.emplace_back();
+        corners.fill(no_face);
+        for (std::uint32_t k = 0; k < surface.vertex_count; ++k) {
+            corners[k] = welder.add(surface.vertices[k]);
+        }
+    }
+    result.vertex_count = welder.points().size();
+    return result;
+}
+
+/// Directions over a hemisphere about `normal`, evenly spread.
+std::vector<Vec3> hemisphere(const Vec3& normal) {
+    const Vec3 beside = std::abs(normal.x) < 0.5 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+    const Vec3 u = glm::normalize(glm::cross(normal, beside));
+    const Vec3 v = glm::cross(normal, u);
+    std::vector<Vec3> result;
+    for (int k = 0; k < directions; ++k) {
+        const double height = (k + 0.5) / directions;
+        const double round = k * std::numbers::pi * (3.0 - std::sqrt(5.0)); // the golden angle
+        const double out = std::sqrt(1.0 - height * height);
+        result.push_back(height * normal + out * (std::cos(round) * u + std::sin(round) * v));
+    }
+    return result;
+}
+
+/// A scene without one-sided faces back to back in one place.
+struct Joined {
+    Scene scene;
+    std::vector<std::uint32_t> face_of;
+    std::vector<Imprint::Finding> findings;
+};
+
+/// Of two one-sided faces with the same corners, which look different ways and are of one material and group,
+/// makes one that is two-sided: a picture cannot tell which of two in one place is nearer.
+Joined join_back_to_back(const Scene& scene) {
+    Joined result{scene, {}, {}};
+    const Bounds bounds = scene.bounds();
+    const WeldedFaces welded = weld(scene, contact_share * bounds.diagonal());
+    std::map<std::array<std::uint32_t, 4>, std::vector<std::uint32_t>> found; // by sorted corners
+    result.scene.surfaces.clear();
+    for (std::uint32_t f = 0; f < scene.surfaces.size(); ++f) {
+        const Surface& surface = scene.surfaces[f];
+        std::array<std::uint32_t, 4> key = welded.corners[f];
+        std::sort(key.begin(), key.end());
+        auto& there = found[key]; // indices of surfaces of the result
+        const auto mate = std::find_if(there.begin(), there.end(), [&](std::uint32_t s) {
+            const Surface& other = result.scene.surfaces[s];
+            return !surface.two_sided && !other.two_sided && other.material == surface.material &&
+                   other.group == surface.group &&
+                   glm::dot(area_vector(other.polygon()), area_vector(surface.polygon())) < 0.0;
+        });
+        if (mate != there.end()) {
+            result.scene.surfaces[*mate].two_sided = true;
+            result.findings.push_back({Imprint::What::joined, f, result.face_of[*mate]});
+            continue;
+        }
+        there.push_back(static_cast<std::uint32_t>(result.scene.surfaces.size()));
+        result.scene.surfaces.push_back(surface);
+        result.face_of.push_back(f);
+    }
+    return result;
+}
+
+class Imprinter {
+public:
+    Imprinter(const Scene& scene, const Subdivision& subdivision)
+        : scene_(scene), mesh_(scene, subdivision),
+          tolerance_(std::max(contact_share * mesh_.bounds().diagonal(), mesh_.rounding())),
+          tree_(boxes(scene)), areas_(scene.surfaces.size()), welded_(weld(scene, tolerance_)) {
+        for (std::uint32_t f = 0; f < areas_.size(); ++f) {
+            areas_[f] = glm::length(area_vector(face(f)));
+        }
+    }
+
+    std::optional<Imprint> run() {
+        const std::size_t count = scene_.surfaces.size();
+        cut_.resize(count);
+        for_each_face([&](std::uint32_t f) {
+            Contacts contacts = find_contacts(f);
+            if (!contacts.cuts.empty() || !contacts.coplanar.empty()) {
+                cut_[f] = cut(f, std::move(contacts));
+            }
+        });
+        for_each_face([&](std::uint32_t f) { cover_by_coplanar(f); });
+        // What is covered hides what else is: where bodies pass through one another, each hides parts of the
+        // other from the inside of both.
+        for (int round = 0; round < max_rounds && bury(); ++round) {
+            look_at_neighbours();
+        }
+        return assemble();
+    }
+
+private:
+    static std::vector<Bounds> boxes(const Scene& scene) {
+        std::vector<Bounds> result(scene.surfaces.size());
+        for (std::size_t s = 0; s < result.size(); ++s) {
+            for (const Vec3& vertex : scene.surfaces[s].polygon()) {
+                result[s].add(vertex);
+            }
+        }
+        return result;
+    }
+
+    [[nodiscard]] std::span<const Vec3> face(std::uint32_t f) const { return scene_.surfaces[f].polygon(); }
+    [[nodiscard]] const Vec3& normal(std::uint32_t f) const { return mesh_.surface_normal(f); }
+
+    template <class Visit>
+    void for_each_face(const Visit& visit) const {
+        parallel_for(scene_.surfaces.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                visit(static_cast<std::uint32_t>(f));
+            }
+        });
+    }
+
+    [[nodiscard]] Contacts find_contacts(std::uint32_t f) const {
+        Bounds around;
+        for (const Vec3& vertex : face(f)) {
+            around.add(vertex);
+        }
+        around.lower -= tolerance_;
+        around.upper += tolerance_;
+        std::vector<std::uint32_t> others;
+        tree_.overlapping(around, [&](std::uint32_t other) {
+            if (other != f) {
+                others.push_back(other);
+            }
+        });
+        std::sort(others.begin(), others.end());
+        Contacts contacts;
+        for (const std::uint32_t other : others) {
+            add_contact(f, other, contacts);
+        }
+        return contacts;
+    }
+
+    /// Adds where face `other` touches face `f`.
+    void add_contact(std::uint32_t f, std::uint32_t other, Contacts& contacts) const {
+        const std::span<const Vec3> polygon = face(other);
+        const Vec3& origin = face(f)[0];
+        std::array<double, 4> height{};
+        int above = 0;
+        int below = 0;
+        for (std::size_t k = 0; k < polygon.size(); ++k) {
+            height[k] = glm::dot(polygon[k] - origin, normal(f));
+            above += height[k] > tolerance_ ? 1 : 0;
+            below += height[k] < -tolerance_ ? 1 : 0;
+        }
+        const std::size_t before = contacts.cuts.size();
+        const auto add = [&](const Vec3& from, const Vec3& to) {
+            if (const auto segment = within(face(f), normal(f), {from, to}, tolerance_)) {
+                contacts.cuts.push_back(*segment);
+            }
+        };
+        if (above == 0 && below == 0) {
+            if (!overlap(face(f), normal(f), polygon, tolerance_)) {
+                return;
+            }
+            contacts.coplanar.push_back(other);
+            for (std::size_t k = 0; k < polygon.size(); ++k) {
+                add(polygon[k], polygon[(k + 1) % polygon.size()]);
+            }
+        } else if (above > 0 || scene_.surfaces[f].two_sided) { // else it is behind the face
+            std::vector<Vec3> points;
+            for (std::size_t k = 0; k < polygon.size(); ++k) {
+                const std::size_t next = (k + 1) % polygon.size();
+                if (std::abs(height[k]) <= tolerance_) {
+                    points.push_back(polygon[k]);
+                } else if (std::abs(height[next]) > tolerance_ && (height[k] > 0.0) != (height[next] > 0.0)) {
+                    points.push_back(polygon[k] +
+                                     height[k] / (height[k] - height[next]) * (polygon[next] - polygon[k]));
+                }
+            }
+            // Of a quadrilateral with a straight corner three points may lie on one line.
+            if (points.size() >= 2) {
+                const auto [from, to] = farthest(points);
+                add(from, to);
+            }
+        }
+        if (contacts.cuts.size() > before) {
+            contacts.other = other;
+        }
+    }
+
+    static Segment farthest(const std::vector<Vec3>& points) {
+        Segment result{points[0], points[1]};
+        for (std::size_t a = 0; a < points.size(); ++a) {
+            for (std::size_t b = a + 1; b < points.size(); ++b) {
+                if (glm::distance(points[a], points[b]) > glm::distance(result.from, result.to)) {
+                    result = {points[a], points[b]};
+                }
+            }
+        }
+        return result;
+    }
+
+    [[nodiscard]] CutFace cut(std::uint32_t f, Contacts contacts) const {
+        CutFace face = in_cells(f);
+        std::vector<Bounds> cut_boxes(contacts.cuts.size());
+        for (std::size_t k = 0; k < cut_boxes.size(); ++k) {
+            cut_boxes[k].add(contacts.cuts[k].from);
+            cut_boxes[k].add(contacts.cuts[k].to);
+        }
+        const BoxTree cuts(cut_boxes);
+        std::vector<Piece> pieces;
+        for (Piece& cell : face.pieces) {
+            Bounds box;
+            for (const Vec3& corner : cell.corners) {
+                box.add(corner);
+            }
+            box.lower -= tolerance_;
+            box.upper += tolerance_;
+            std::vector<std::uint32_t> here;
+            cuts.overlapping(box, [&](std::uint32_t k) { here.push_back(k); });
+            std::sort(here.begin(), here.end());
+            std::vector<Polygon> parts{std::move(cell.corners)};
+            for (const std::uint32_t k : here) {
+                split_all(parts, normal(f), contacts.cuts[k], tolerance_);
+            }
+            cell.whole = parts.size() == 1;
+            face.split = face.split || !cell.whole;
+            for (Polygon& part : parts) {
+                pieces.push_back({std::move(part), cell.cell, cell.whole, cell.front, cell.back});
+            }
+        }
+        face.pieces = std::move(pieces);
+        face.contacts = std::move(contacts);
+        return face;
+    }
+
+    [[nodiscard]] CutFace in_cells(std::uint32_t f) const {
+        CutFace face;
+        const Grid grid = mesh_.grid(f);
+        for (std::uint32_t cell = 0; cell < grid.u * grid.v; ++cell) {
+            const PatchCorners corners = mesh_.part_corners(f, {0, 0, cell});
+            face.pieces.push_back({{corners.polygon().begin(), corners.polygon().end()},
+                                   cell,
+                                   true,
+                                   true,
+                                   scene_.surfaces[f].two_sided});
+        }
+        return face;
+    }
+
+    /// Finds which sides of pieces are covered by faces in their plane.
+    void cover_by_coplanar(std::uint32_t f) {
+        for (Piece& piece : cut_[f].pieces) {
+            const Vec3 centre = area_centroid(piece.corners);
+            for (const std::uint32_t other : cut_[f].contacts.coplanar) {
+                if (contains(face(other), normal(other), centre, tolerance_)) {
+                    const bool before = piece.is_left();
+                    cover(f, other, piece);
+                    cut_[f].covered_by = before && !piece.is_left() ? other : cut_[f].covered_by;
+                }
+            }
+        }
+    }
+
+    /// What face `other` covers of a piece of face `f` that it lies over, in its plane.
+    void cover(std::uint32_t f, std::uint32_t other, Piece& piece) const {
+        const bool beneath = areas_[other] < (1.0 - 1e-9) * areas_[f] ||
+                             (areas_[other] <= (1.0 + 1e-9) * areas_[f] && other > f);
+        const bool same = glm::dot(normal(other), normal(f)) > 0.0;
+        bool& towards = same ? piece.front : piece.back; // where the front of the other one looks
+        bool& away = same ? piece.back : piece.front;
+        if (scene_.surfaces[other].two_sided) {
+            towards = towards && !beneath;
+            away = away && !beneath;
+        } else if (scene_.surfaces[f].two_sided) { // a sheet on the back of a face
+            away = false;
+            towards = towards && !beneath;
+        } else if (same) {
+            piece.front = piece.front && !beneath;
+        }
+        // Of one-sided faces back to back, each is seen from its side: whether a body stands there is found
+        // by looking.
+    }
+
+    /// Takes away sides that see backs alone.
+    /// @return whether there were any
+    bool bury() {
+        std::vector<Occluder> occluders;
+        std::vector<Bounds> boxes;
+        for (std::uint32_t f = 0; f < cut_.size(); ++f) {
+            const auto add = [&](std::span<const Vec3> corners, bool front, bool back) {
+                occluders.push_back({corners, f, front, back});
+                Bounds& box = boxes.emplace_back();
+                for (const Vec3& corner : corners) {
+                    box.add(corner);
+                }
+            };
+            if (cut_[f].pieces.empty()) {
+                add(face(f), true, scene_.surfaces[f].two_sided);
+            }
+            for (const Piece& piece : cut_[f].pieces) {
+                if (piece.is_left()) {
+                    add(piece.corners, piece.front, piece.back);
+                }
+            }
+        }
+        const BoxTree tree(boxes);
+        std::vector<std::uint8_t> changed(cut_.size(), 0);
+        for_each_face([&](std::uint32_t f) { changed[f] = bury(f, tree, occluders) ? 1 : 0; });
+        return std::find(changed.begin(), changed.end(), 1) != changed.end();
+    }
+
+    bool bury(std::uint32_t f, const BoxTree& tree, std::span<const Occluder> occluders) {
+        CutFace& face = cut_[f];
+        const auto sees_backs = [&](const Piece& piece, const Vec3& side) {
+            return sees_backs_alone(f, area_centroid(piece.corners), side, tree, occluders);
+        };
+        std::vector<std::pair<bool, bool>> left;
+        bool any_changed = false;
+        for (const Piece& piece : face.pieces) {
+            bool front = piece.front && !sees_backs(piece, normal(f));
+            const bool back = piece.back && !sees_backs(piece, -normal(f));
+            if (front && is_faced(f, piece) && sees_backs(piece, -normal(f))) {
+                front = false; // face to face with the body behind
+            }
+            left.emplace_back(front, back);
+            any_changed = any_changed || front != piece.front || back != piece.back;
+        }
+        if (!any_changed) {
+            return false;
+        }
+        for (std::size_t k = 0; k < left.size(); ++k) {
+            std::tie(face.pieces[k].front, face.pieces[k].back) = left[k];
+        }
+        face.buried = true;
+        return true;
+    }
+
+    /// Whether a one-sided face lies over a piece of a one-sided face in its plane that looks the other way.
+    [[nodiscard]] bool is_faced(std::uint32_t f, const Piece& piece) const {
+        const auto& coplanar = cut_[f].contacts.coplanar;
+        return !scene_.surfaces[f].two_sided &&
+               std::any_of(coplanar.begin(), coplanar.end(), [&](std::uint32_t other) {
+                   return !scene_.surfaces[other].two_sided && glm::dot(normal(other), normal(f)) < 0.0 &&
+                          contains(face(other), normal(other), area_centroid(piece.corners), tolerance_);
+               });
+    }
+
+    /// Faces that share a corner with one that is buried in part may be buried whole.
+    void look_at_neighbours() {
+        std::vector<std::uint8_t> is_buried(welded_.vertex_count, 0);
+        for (std::uint32_t f = 0; f < cut_.size(); ++f) {
+            for (std::size_t k = 0; cut_[f].buried && k < face(f).size(); ++k) {
+                is_buried[welded_.corners[f][k]] = 1;
+            }
+        }
+        for (std::uint32_t f = 0; f < cut_.size(); ++f) {
+            for (std::size_t k = 0; cut_[f].pieces.empty() && k < face(f).size(); ++k) {
+                if (is_buried[welded_.corners[f][k]] != 0) {
+                    cut_[f] = in_cells(f);
+                }
+            }
+        }
+    }
+
+    std::optional<Imprint> assemble() {
+        Imprint result;
+        result.scene = scene_;
+        result.scene.surfaces.clear();
+        bool changed = false;
+        for (std::uint32_t f = 0; f < cut_.size(); ++f) {
+            CutFace& face = cut_[f];
+            const bool two_sided = scene_.surfaces[f].two_sided;
+            const bool complete =
+                !face.split && std::all_of(face.pieces.begin(), face.pieces.end(), [&](const Piece& piece) {
+                    return piece.front && piece.back == two_sided;
+                });
+            if (complete) {
+                Surface& whole = result.scene.surfaces.emplace_back(scene_.surfaces[f]);
+                whole.patches = mesh_.grid(f);
+            } else {
+                changed = true;
+                add_rest(f, result);
+            }
+            result.face_of.resize(result.scene.surfaces.size(), f);
+        }
+        return changed ? std::optional(std::move(result)) : std::nullopt;
+    }
+
+    /// Adds what is left of a face, and what was found.
+    void add_rest(std::uint32_t f, Imprint& result) const {
+        const CutFace& face = cut_[f];
+        const bool two_sided = scene_.surfaces[f].two_sided;
+        Cells cells; // those that are whole, of a quadrilateral
+        std::vector<const Piece*> pieces;
+        for (const Piece& piece : face.pieces) {
+            const double area = glm::length(area_vector(piece.corners));
+            result.covered += (piece.front ? 0.0 : area) + (two_sided && !piece.back ? area : 0.0);
+            const std::uint32_t width = mesh_.grid(f).u;
+            if (piece.whole && piece.front && piece.back == two_sided &&
+                scene_.surfaces[f].vertex_count == 4) {
+                cells[{piece.cell / width, piece.cell % width}] = piece.cell;
+            } else if (piece.is_left()) {
+                pieces.push_back(&piece);
+            }
+        }
+        const bool gone = cells.empty() && pieces.empty();
+        if (face.covered_by != no_face) {
+            result.findings.push_back(
+                {gone ? Imprint::What::duplicate : Imprint::What::overlapped, f, face.covered_by});
+        } else {
+            result.findings.push_back(
+                {gone ? Imprint::What::buried : Imprint::What::cut, f, face.contacts.other});
+        }
+        while (!cells.empty()) {
+            result.scene.surfaces.push_back(rectangle(f, take_rectangle(cells)));
+        }
+        for (const Piece* const piece : pieces) {
+            add_surfaces(scene_.surfaces[f], *piece, result.scene.surfaces);
+        }
+    }
+
+    /// A surface of whole cells.
+    [[nodiscard]] Surface rectangle(std::uint32_t f, const Rectangle& cells) const {
+        const std::uint32_t width = mesh_.grid(f).u;
+        const auto corner = [&](std::uint32_t row, std::uint32_t column, std::size_t which) {
+            return mesh_.part_corners(f, {0, 0, row * width + column}).points[which];
+        };
+        const std::uint32_t last_row = cells.row + cells.rows - 1;
+        const std::uint32_t last_column = cells.column + cells.columns - 1;
+        Surface surface = scene_.surfaces[f];
+        surface.vertices = {corner(cells.row, cells.column, 0), corner(cells.row, last_column, 1),
+                            corner(last_row, last_column, 2), corner(last_row, cells.column, 3)};
+        surface.patches = Grid{cells.columns, cells.rows};
+        return surface;
+    }
+
+    /// Surfaces of one patch that make up a piece.
+    void add_surfaces(const Surface& whole, const Piece& piece, std::vector<Surface>& surfaces) const {
+        Polygon corners = without_straight_corners(piece.corners, tolerance_);
+        if (!piece.front) {
+            std::reverse(corners.begin(), corners.end());
+        }
+        Surface surface = whole;
+        surface.two_sided = piece.front && piece.back;
+        surface.patches = Grid{1, 1};
+        for (std::size_t k = 1; k + 1 < corners.size();) {
+            const bool four = k + 2 < corners.size();
+            surface.vertices = {corners[0], corners[k], corners[k + 1], four ? corners[k + 2] : Vec3(0.0)};
+            surface.vertex_count = four ? 4 : 3;
+            if (is_wide(surface.polygon(), tolerance_)) {
+                surfaces.push_back(surface);
+            }
+            k += four ? 2 : 1;
+        }
+    }
+
+    /// Whether whatever is seen from beside a point of face `f`, on the side that `side` points to, are backs
+    /// of one-sided faces.
+    [[nodiscard]] bool sees_backs_alone(std::uint32_t f, const Vec3& point, const Vec3& side,
+                                        const BoxTree& tree, std::span<const Occluder> occluders) const {
+        const Vec3 eye = point + 4.0 * tolerance_ * side;
+        const std::vector<Vec3> rays = hemisphere(side);
+        return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) {
+            double nearest = std::numeric_limits<double>::infinity();
+            bool back = false;
+            tree.along(eye, ray, [&](std::uint32_t index) {
+                const Occluder& other = occluders[index];
+                const Vec3& other_normal = normal(other.face);
+                const double towards = glm::dot(other_normal, ray);
+                const double distance = glm::dot(other.corners[0] - eye, other_normal) / towards;
+                if (other.face != f && distance > 0.0 && distance < nearest &&
+                    contains(other.corners, other_normal, eye + distance * ray, tolerance_)) {
+                    nearest = distance;
+                    back = towards > 0.0 ? !other.back : !other.front;
+                }
+            });
+            return back;
+        });
+    }
+
+    const Scene& scene_;
+    PatchMesh mesh_;
+    double tolerance_;
+    BoxTree tree_;
+    std::vector<double> areas_;
+    WeldedFaces welded_;
+    std::vector<CutFace> cut_; ///< of every face; without pieces: it is not looked at
+};
+
+} // namespace
+
+std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivision) {
+    const Joined joined = join_back_to_back(scene);
+    std::optional<Imprint> result = Imprinter(joined.scene, subdivision).run();
+    if (!result && joined.findings.empty()) {
+        return std::nullopt;
+    }
+    if (!result) {
+        result.emplace();
+        result->scene = joined.scene;
+        const PatchMesh mesh(joined.scene, subdivision);
+        for (std::uint32_t s = 0; s < joined.scene.surfaces.size(); ++s) {
+            result->scene.surfaces[s].patches = mesh.grid(s);
+            result->face_of.push_back(s);
+        }
+    }
+    for (std::uint32_t& face : result->face_of) {
+        face = joined.face_of[face];
+    }
+    for (Imprint::Finding& finding : result->findings) {
+        finding.face = joined.face_of[finding.face];
+        finding.other = finding.other == no_face ? no_face : joined.face_of[finding.other];
+    }
+    result->findings.insert(result->findings.end(), joined.findings.begin(), joined.findings.end());
+    std::stable_sort(result->findings.begin(), result->findings.end(),
+                     [](const auto& one, const auto& other) { return one.face < other.face; });
+    return result;
+}
+
+} // namespace hemi

@@ -1,0 +1,221 @@
+#include "hemi/scene/imprint.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace hemi {
+
+namespace {
+
+Surface face(const std::vector<Vec3>& corners, Grid grid = {1, 1}, bool two_sided = false) {
+    Surface surface;
+    surface.vertex_count = static_cast<std::uint32_t>(corners.size());
+    std::copy(corners.begin(), corners.end(), surface.vertices.begin());
+    surface.patches = grid;
+    surface.two_sided = two_sided;
+    return surface;
+}
+
+Scene scene_of(std::vector<Surface> surfaces) {
+    Scene scene;
+    scene.materials.push_back({"", {0.5}, {0.0}});
+    scene.groups = {"all"};
+    scene.surfaces = std::move(surfaces);
+    return scene;
+}
+
+/// A horizontal rectangle that looks up.
+Surface plate(double x0, double y0, double x1, double y1, double z, Grid grid = {1, 1}) {
+    return face({{x0, y0, z}, {x1, y0, z}, {x1, y1, z}, {x0, y1, z}}, grid);
+}
+
+/// The walls and the top of a box on z = 0, outwards.
+std::vector<Surface> block(double x0, double y0, double x1, double y1, double height, double base = 0.0) {
+    return {plate(x0, y0, x1, y1, height),
+            face({{x0, y0, base}, {x1, y0, base}, {x1, y0, height}, {x0, y0, height}}),
+            face({{x1, y0, base}, {x1, y1, base}, {x1, y1, height}, {x1, y0, height}}),
+            face({{x1, y1, base}, {x0, y1, base}, {x0, y1, height}, {x1, y1, height}}),
+            face({{x0, y1, base}, {x0, y0, base}, {x0, y0, height}, {x0, y1, height}})};
+}
+
+/// Area of what is left of each face of the scene as it was.
+std::vector<double> areas_of_faces(const Imprint& cut, std::size_t faces) {
+    std::vector<double> areas(faces, 0.0);
+    const PatchMesh mesh(cut.scene);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        areas[cut.face_of[mesh.surface_of()[i]]] += mesh.areas()[i];
+    }
+    return areas;
+}
+
+} // namespace
+
+TEST_CASE("Imprint: faces that do not touch, or touch along their edges, stay as they are", "[imprint]") {
+    std::vector<Surface> cube = block(0.0, 0.0, 1.0, 1.0, 1.0);
+    cube.push_back(plate(0.0, 0.0, 1.0, 1.0, 0.0, {4, 4}));
+    cube.push_back(plate(1.0, 0.0, 2.0, 1.0, 0.0)); // a neighbour in the same plane
+    cube.push_back(plate(0.25, 0.25, 0.75, 0.75, 2.0));
+    CHECK_FALSE(imprint(scene_of(cube)));
+}
+
+TEST_CASE("Imprint: the foot of a block is cut out of the floor, at any scale and place", "[imprint]") {
+    const double scale = GENERATE(1.0, 1e-6, 1e6);
+    const Vec3 place = GENERATE(Vec3(0.0), Vec3(1e5, -3e4, 7e4));
+    std::vector<Surface> surfaces = block(1.3, 2.2, 2.7, 3.4, 1.0);
+    surfaces.push_back(plate(0.0, 0.0, 5.0, 5.0, 0.0, {5, 5}));
+    for (Surface& surface : surfaces) {
+        for (Vec3& vertex : surface.vertices) {
+            vertex = scale * (vertex + place);
+        }
+    }
+    const auto cut = imprint(scene_of(surfaces));
+    REQUIRE(cut);
+    REQUIRE(cut->findings.size() == 1);
+    CHECK(cut->findings[0].what == Imprint::What::cut);
+    CHECK(cut->findings[0].face == 5);
+    const double foot = 1.4 * 1.2;
+    CHECK(cut->covered == Approx(foot * scale * scale).epsilon(1e-7));
+    const auto areas = areas_of_faces(*cut, surfaces.size());
+    CHECK(areas[5] == Approx((25.0 - foot) * scale * scale).epsilon(1e-7));
+    CHECK(areas[0] == Approx(foot * scale * scale).epsilon(1e-7)); // the block's top, whole
+    // No patch has its centre under the block.
+    const PatchMesh mesh(cut->scene);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const Vec3 at = mesh.centres()[i] / scale - place;
+        const bool under = at.x > 1.3 && at.x < 2.7 && at.y > 2.2 && at.y < 3.4 && at.z < 1e-6;
+        CHECK_FALSE(under);
+    }
+}
+
+TEST_CASE("Imprint: a block that passes through a floor is cut where it does, and its foot is not seen",
+          "[imprint]") {
+    std::vector<Surface> surfaces = block(1.3, 2.2, 2.7, 3.4, 1.0, -0.5);
+    surfaces.push_back(plate(0.0, 0.0, 5.0, 5.0, 0.0, {5, 5}));
+    const auto cut = imprint(scene_of(surfaces));
+    REQUIRE(cut);
+    const auto areas = areas_of_faces(*cut, surfaces.size());
+    CHECK(areas[5] == Approx(25.0 - 1.4 * 1.2));
+    CHECK(areas[1] == Approx(1.4 * 1.5)); // cut in two, both are there
+}
+
+TEST_CASE("Imprint: patches are cut along a sheet that stands on them, and nothing is left out",
+          "[imprint]") {
+    std::vector<Surface> surfaces{plate(0.0, 0.0, 4.0, 4.0, 0.0, {4, 4})};
+    surfaces.push_back(
+        face({{1.5, 0.0, 0.0}, {1.5, 4.0, 0.0}, {1.5, 4.0, 1.0}, {1.5, 0.0, 1.0}}, {1, 1}, true));
+    const auto cut = imprint(scene_of(surfaces));
+    REQUIRE(cut);
+    CHECK(cut->covered == 0.0);
+    CHECK(areas_of_faces(*cut, 2)[0] == Approx(16.0));
+    const PatchMesh mesh(cut->scene);
+    CHECK(mesh.size() == 16 + 4 + 2);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        bool left = false;
+        bool right = false;
+        for (const Vec3& corner : mesh.corners(i).polygon()) {
+            left = left || corner.x < 1.5 - 1e-9;
+            right = right || corner.x > 1.5 + 1e-9;
+        }
+        CHECK_FALSE((left && right));
+    }
+}
+
+TEST_CASE("Imprint: of faces over each other in one plane the smaller is on top, of equal ones the later",
+          "[imprint]") {
+    SECTION("a rug in the floor") {
+        const std::vector<Surface> surfaces{plate(1.2, 1.2, 2.9, 3.1, 0.0),
+                                            plate(0.0, 0.0, 4.0, 4.0, 0.0, {4, 4})};
+        const auto cut = imprint(scene_of(surfaces));
+        REQUIRE(cut);
+        const auto areas = areas_of_faces(*cut, 2);
+        CHECK(areas[0] == Approx(1.7 * 1.9));
+        CHECK(areas[1] == Approx(16.0 - 1.7 * 1.9));
+        REQUIRE(cut->findings.size() == 1);
+        CHECK(cut->findings[0].what == Imprint::What::overlapped);
+        CHECK(cut->findings[0].other == 0);
+    }
+    SECTION("the same face twice") {
+        const bool two_sided = GENERATE(false, true);
+        std::vector<Surface> surfaces{plate(0.0, 0.0, 1.0, 1.0, 0.0), plate(0.0, 0.0, 1.0, 1.0, 0.0)};
+        surfaces[0].two_sided = surfaces[1].two_sided = two_sided;
+        const auto cut = imprint(scene_of(surfaces));
+        REQUIRE(cut);
+        CHECK(cut->scene.surfaces.size() == 1);
+        CHECK(cut->face_of == std::vector<std::uint32_t>{1});
+        REQUIRE(cut->findings.size() == 1);
+        CHECK(cut->findings[0].what == Imprint::What::duplicate);
+        CHECK(cut->findings[0].face == 0);
+    }
+    SECTION("back to back: one two-sided face") {
+        std::vector<Surface> surfaces{plate(0.0, 0.0, 1.0, 1.0, 0.0), plate(0.0, 0.0, 1.0, 1.0, 0.0)};
+        std::swap(surfaces[1].vertices[1], surfaces[1].vertices[3]);
+        const auto cut = imprint(scene_of(surfaces));
+        REQUIRE(cut);
+        REQUIRE(cut->scene.surfaces.size() == 1);
+        CHECK(cut->scene.surfaces[0].two_sided);
+        surfaces[1].group = 1; // another name: both stay
+        Scene named = scene_of(surfaces);
+        named.groups = {"one", "other"};
+        CHECK_FALSE(imprint(named));
+    }
+}
+
+TEST_CASE("Imprint: a sheet that lies on a face has one side left", "[imprint]") {
+    std::vector<Surface> surfaces{plate(0.0, 0.0, 4.0, 4.0, 0.0, {4, 4}), plate(1.0, 1.0, 2.0, 2.0, 0.0)};
+    surfaces[1].two_sided = true;
+    const auto cut = imprint(scene_of(surfaces));
+    REQUIRE(cut);
+    CHECK(areas_of_faces(*cut, 2)[0] == Approx(15.0));
+    CHECK(areas_of_faces(*cut, 2)[1] == Approx(1.0)); // else 2
+    CHECK_FALSE(cut->scene.surfaces.back().two_sided);
+}
+
+TEST_CASE("Imprint: bodies on each other touch without a gap, and what is between them is left out",
+          "[imprint]") {
+    std::vector<Surface> surfaces = block(0.0, 0.0, 2.0, 2.0, 1.0);
+    const std::vector<Surface> upper = block(0.5, 0.5, 1.5, 1.5, 2.0, 1.0);
+    surfaces.insert(surfaces.end(), upper.begin(), upper.end());
+    Surface bottom = plate(0.5, 0.5, 1.5, 1.5, 1.0); // of the upper one, looks down
+    std::swap(bottom.vertices[1], bottom.vertices[3]);
+    surfaces.push_back(bottom);
+    Surface ground = plate(0.0, 0.0, 2.0, 2.0, 0.0); // the lower one's bottom
+    std::swap(ground.vertices[1], ground.vertices[3]);
+    surfaces.push_back(ground);
+    const auto cut = imprint(scene_of(surfaces));
+    REQUIRE(cut);
+    const auto areas = areas_of_faces(*cut, surfaces.size());
+    CHECK(areas[0] == Approx(3.0)); // the lower one's top
+    CHECK(areas[10] == 0.0);        // the upper one's bottom
+    CHECK(areas[11] == Approx(4.0));
+    CHECK(cut->covered == Approx(2.0));
+}
+
+TEST_CASE("Imprint: what is left does not depend on how fine the patches are", "[imprint]") {
+    std::vector<Surface> surfaces = block(1.3, 2.2, 2.7, 3.4, 1.0);
+    surfaces.push_back(plate(0.0, 0.0, 5.0, 5.0, 0.0));
+    for (const double size : {5.0, 1.7, 0.3}) {
+        Subdivision subdivision;
+        subdivision.patch_size = size;
+        const auto cut = imprint(scene_of(surfaces), subdivision);
+        REQUIRE(cut);
+        const PatchMesh mesh(cut->scene);
+        double floor = 0.0;
+        double longest = 0.0;
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            floor += cut->face_of[mesh.surface_of()[i]] == 5 ? mesh.areas()[i] : 0.0;
+            const auto polygon = mesh.corners(i);
+            for (std::uint32_t k = 0; k < polygon.count; ++k) {
+                longest = std::max(longest,
+                                   glm::distance(polygon.points[k], polygon.points[(k + 1) % polygon.count]));
+            }
+        }
+        CHECK(floor == Approx(25.0 - 1.4 * 1.2));
+        CHECK(longest <= size * std::sqrt(2.0) * (1.0 + 1e-9));
+    }
+}
+
+} // namespace hemi
