@@ -116,7 +116,8 @@ TEST_CASE("Imprint: patches are cut along a sheet that stands on them, and nothi
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         bool left = false;
         bool right = false;
-        for (const Vec3& corner : mesh.corners(i).polygon()) {
+        const PatchCorners corners = mesh.corners(i);
+        for (const Vec3& corner : corners.polygon()) {
             left = left || corner.x < 1.5 - 1e-9;
             right = right || corner.x > 1.5 + 1e-9;
         }
