@@ -6,6 +6,7 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/scene/imprint.hpp"
 
 #include <fmt/format.h>
 
@@ -97,23 +98,20 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     }
     PatchMesh mesh = make_mesh(scene, options);
     Subdivision subdivision = options.subdivision;
-    std::optional<Imprint> cut = options.imprint ? imprint(scene, subdivision) : std::nullopt;
     std::optional<Scene> as_read;
-    if (cut) {
+    if (auto cut = options.imprint ? imprint(scene, subdivision) : std::nullopt) {
         as_read = std::exchange(scene, std::move(cut->scene));
         mesh = PatchMesh(scene);
         subdivision = {};
         warn_of_overlaps(*cut, *as_read, terminal);
-    } else {
-        cut.emplace();
     }
     std::vector<std::uint32_t> group_of(mesh.size());
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         group_of[i] = mesh.group(i);
     }
     stop_if_interrupted();
-    return {std::move(scene),         std::move(mesh), std::move(subdivision), std::move(as_read),
-            std::move(cut->findings), cut->covered,    std::move(group_of),    watch.seconds()};
+    return {std::move(scene),   std::move(mesh),     std::move(subdivision),
+            std::move(as_read), std::move(group_of), watch.seconds()};
 }
 
 void LoadedScene::adopt(PatchMesh other) {

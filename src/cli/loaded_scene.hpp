@@ -3,7 +3,6 @@
 #include "cli/arguments/arguments.hpp"
 #include "cli/report/text.hpp"
 #include "cli/terminal.hpp"
-#include "hemi/scene/imprint.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
@@ -19,11 +18,8 @@ namespace hemi::cli {
 struct LoadedScene {
     Scene scene;
     PatchMesh mesh;
-    Subdivision subdivision; ///< with the scene it makes the mesh
-    /// Where faces were cut, else empty: the scene as it was read, and what was done.
-    std::optional<Scene> as_read;
-    std::vector<Imprint::Finding> imprinted;
-    double covered = 0.0;                ///< area left out, scene units squared
+    Subdivision subdivision;             ///< with the scene it makes the mesh
+    std::optional<Scene> as_read;        ///< where its faces were cut
     std::vector<std::uint32_t> group_of; ///< group of every patch
     double seconds = 0.0;
 
@@ -33,8 +29,8 @@ struct LoadedScene {
     [[nodiscard]] PatchNames names() const { return {mesh.groups(), group_of, mesh.centres()}; }
 };
 
-/// Reads the scene, cuts its faces where they touch and into patches; `--enclosure` and `--environment`
-/// replace the scene's own.
+/// Reads the scene and cuts it into patches, with `--imprint` after its faces were cut where they touch;
+/// `--enclosure` and `--environment` replace the scene's own.
 /// @throws InputError for the file; InvalidArgument for options that do not fit it.
 [[nodiscard]] LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal);
 

@@ -1,22 +1,10 @@
 #include "hemi/scene/contact.hpp"
 
+#include "scene/convex_polygon.hpp"
+
 #include <algorithm>
 
 namespace hemi {
-
-namespace {
-
-bool inside(std::span<const Vec3> polygon, const Vec3& normal, const Vec3& point, double slack) {
-    for (std::size_t c = 0; c < polygon.size(); ++c) {
-        const Vec3 edge = polygon[(c + 1) % polygon.size()] - polygon[c];
-        if (glm::dot(glm::cross(edge, point - polygon[c]), normal) < -slack * glm::length(edge)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-} // namespace
 
 std::vector<std::uint32_t> patches_in_contact(const PatchMesh& mesh, std::span<const std::uint32_t> patches) {
     std::vector<std::uint32_t> found;
@@ -28,7 +16,7 @@ std::vector<std::uint32_t> patches_in_contact(const PatchMesh& mesh, std::span<c
             const auto polygon = mesh.surfaces()[s].polygon();
             if (s != mesh.surface_of()[patch] && glm::dot(mesh.surface_normal(s), normal) < -1.0 + 1e-6 &&
                 std::abs(glm::dot(centre - polygon[0], normal)) <= slack &&
-                inside(polygon, mesh.surface_normal(s), centre, slack)) {
+                contains(polygon, mesh.surface_normal(s), centre, slack)) {
                 found.push_back(patch);
                 break;
             }

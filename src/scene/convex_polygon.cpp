@@ -54,6 +54,16 @@ double perimeter(std::span<const Vec3> polygon) {
 
 } // namespace
 
+Bounds bounds_of(std::span<const Vec3> polygon, double margin) {
+    Bounds bounds;
+    for (const Vec3& corner : polygon) {
+        bounds.add(corner);
+    }
+    bounds.lower -= margin;
+    bounds.upper += margin;
+    return bounds;
+}
+
 bool contains(std::span<const Vec3> polygon, const Vec3& normal, const Vec3& point, double slack) {
     for (std::size_t k = 0; k < polygon.size(); ++k) {
         if (left_of(normal, polygon[k], polygon[(k + 1) % polygon.size()], point) < -slack) {

@@ -17,6 +17,9 @@ struct Segment {
     Vec3 to;
 };
 
+/// Of its corners, and `margin` more on every side.
+[[nodiscard]] Bounds bounds_of(std::span<const Vec3> polygon, double margin = 0.0);
+
 /// Whether a point of a polygon's plane lies in it or within `slack` of it.
 [[nodiscard]] bool contains(std::span<const Vec3> polygon, const Vec3& normal, const Vec3& point,
                             double slack);

@@ -3,6 +3,7 @@
 #include "core/box_tree.hpp"
 #include "core/parallel_for.hpp"
 #include "core/welder.hpp"
+#include "hemi/core/error.hpp"
 #include "scene/convex_polygon.hpp"
 #include "scene/rectangles.hpp"
 
@@ -12,7 +13,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -142,37 +142,38 @@ public:
     Imprinter(const Scene& scene, const Subdivision& subdivision)
         : scene_(scene), mesh_(scene, subdivision),
           tolerance_(std::max(contact_share * mesh_.bounds().diagonal(), mesh_.rounding())),
-          tree_(boxes(scene)), areas_(scene.surfaces.size()), welded_(weld(scene, tolerance_)) {
+          tree_(boxes(scene)), areas_(scene.surfaces.size()) {
         for (std::uint32_t f = 0; f < areas_.size(); ++f) {
             areas_[f] = glm::length(area_vector(face(f)));
         }
     }
 
     std::optional<Imprint> run() {
-        const std::size_t count = scene_.surfaces.size();
-        cut_.resize(count);
+        cut_.resize(scene_.surfaces.size());
         for_each_face([&](std::uint32_t f) {
             Contacts contacts = find_contacts(f);
             if (!contacts.cuts.empty() || !contacts.coplanar.empty()) {
                 cut_[f] = cut(f, std::move(contacts));
             }
         });
+        if (std::all_of(cut_.begin(), cut_.end(), [](const CutFace& face) { return face.pieces.empty(); })) {
+            return std::nullopt;
+        }
         for_each_face([&](std::uint32_t f) { cover_by_coplanar(f); });
         // What is covered hides what else is: where bodies pass through one another, each hides parts of the
         // other from the inside of both.
+        const WeldedFaces welded = weld(scene_, tolerance_);
         for (int round = 0; round < max_rounds && bury(); ++round) {
-            look_at_neighbours();
+            look_at_neighbours(welded);
         }
         return assemble();
     }
 
 private:
     static std::vector<Bounds> boxes(const Scene& scene) {
-        std::vector<Bounds> result(scene.surfaces.size());
-        for (std::size_t s = 0; s < result.size(); ++s) {
-            for (const Vec3& vertex : scene.surfaces[s].polygon()) {
-                result[s].add(vertex);
-            }
+        std::vector<Bounds> result;
+        for (const Surface& surface : scene.surfaces) {
+            result.push_back(bounds_of(surface.polygon()));
         }
         return result;
     }
@@ -190,12 +191,7 @@ private:
     }
 
     [[nodiscard]] Contacts find_contacts(std::uint32_t f) const {
-        Bounds around;
-        for (const Vec3& vertex : face(f)) {
-            around.add(vertex);
-        }
-        around.lower -= tolerance_;
-        around.upper += tolerance_;
+        const Bounds around = bounds_of(face(f), tolerance_);
         std::vector<std::uint32_t> others;
         tree_.overlapping(around, [&](std::uint32_t other) {
             if (other != f) {
@@ -280,12 +276,7 @@ private:
         const BoxTree cuts(cut_boxes);
         std::vector<Piece> pieces;
         for (Piece& cell : face.pieces) {
-            Bounds box;
-            for (const Vec3& corner : cell.corners) {
-                box.add(corner);
-            }
-            box.lower -= tolerance_;
-            box.upper += tolerance_;
+            const Bounds box = bounds_of(cell.corners, tolerance_);
             std::vector<std::uint32_t> here;
             cuts.overlapping(box, [&](std::uint32_t k) { here.push_back(k); });
             std::sort(here.begin(), here.end());
@@ -360,10 +351,7 @@ private:
         for (std::uint32_t f = 0; f < cut_.size(); ++f) {
             const auto add = [&](std::span<const Vec3> corners, bool front, bool back) {
                 occluders.push_back({corners, f, front, back});
-                Bounds& box = boxes.emplace_back();
-                for (const Vec3& corner : corners) {
-                    box.add(corner);
-                }
+                boxes.push_back(bounds_of(corners));
             };
             if (cut_[f].pieces.empty()) {
                 add(face(f), true, scene_.surfaces[f].two_sided);
@@ -382,15 +370,21 @@ private:
 
     bool bury(std::uint32_t f, const BoxTree& tree, std::span<const Occluder> occluders) {
         CutFace& face = cut_[f];
-        const auto sees_backs = [&](const Piece& piece, const Vec3& side) {
-            return sees_backs_alone(f, area_centroid(piece.corners), side, tree, occluders);
+        if (face.pieces.empty()) {
+            return false;
+        }
+        const std::vector<Vec3> before = hemisphere(normal(f));
+        const std::vector<Vec3> behind = hemisphere(-normal(f));
+        const auto sees_backs = [&](const Piece& piece, const std::vector<Vec3>& rays, double side) {
+            const Vec3 eye = area_centroid(piece.corners) + 4.0 * side * tolerance_ * normal(f);
+            return sees_backs_alone(f, eye, rays, tree, occluders);
         };
         std::vector<std::pair<bool, bool>> left;
         bool any_changed = false;
         for (const Piece& piece : face.pieces) {
-            bool front = piece.front && !sees_backs(piece, normal(f));
-            const bool back = piece.back && !sees_backs(piece, -normal(f));
-            if (front && is_faced(f, piece) && sees_backs(piece, -normal(f))) {
+            bool front = piece.front && !sees_backs(piece, before, 1.0);
+            const bool back = piece.back && !sees_backs(piece, behind, -1.0);
+            if (front && is_faced(f, piece) && sees_backs(piece, behind, -1.0)) {
                 front = false; // face to face with the body behind
             }
             left.emplace_back(front, back);
@@ -417,16 +411,16 @@ private:
     }
 
     /// Faces that share a corner with one that is buried in part may be buried whole.
-    void look_at_neighbours() {
-        std::vector<std::uint8_t> is_buried(welded_.vertex_count, 0);
+    void look_at_neighbours(const WeldedFaces& welded) {
+        std::vector<std::uint8_t> is_buried(welded.vertex_count, 0);
         for (std::uint32_t f = 0; f < cut_.size(); ++f) {
             for (std::size_t k = 0; cut_[f].buried && k < face(f).size(); ++k) {
-                is_buried[welded_.corners[f][k]] = 1;
+                is_buried[welded.corners[f][k]] = 1;
             }
         }
         for (std::uint32_t f = 0; f < cut_.size(); ++f) {
             for (std::size_t k = 0; cut_[f].pieces.empty() && k < face(f).size(); ++k) {
-                if (is_buried[welded_.corners[f][k]] != 0) {
+                if (is_buried[welded.corners[f][k]] != 0) {
                     cut_[f] = in_cells(f);
                 }
             }
@@ -525,12 +519,9 @@ private:
         }
     }
 
-    /// Whether whatever is seen from beside a point of face `f`, on the side that `side` points to, are backs
-    /// of one-sided faces.
-    [[nodiscard]] bool sees_backs_alone(std::uint32_t f, const Vec3& point, const Vec3& side,
+    /// Whether all rays from a point beside face `f` meet backs that do not radiate.
+    [[nodiscard]] bool sees_backs_alone(std::uint32_t f, const Vec3& eye, std::span<const Vec3> rays,
                                         const BoxTree& tree, std::span<const Occluder> occluders) const {
-        const Vec3 eye = point + 4.0 * tolerance_ * side;
-        const std::vector<Vec3> rays = hemisphere(side);
         return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) {
             double nearest = std::numeric_limits<double>::infinity();
             bool back = false;
@@ -554,13 +545,15 @@ private:
     double tolerance_;
     BoxTree tree_;
     std::vector<double> areas_;
-    WeldedFaces welded_;
     std::vector<CutFace> cut_; ///< of every face; without pieces: it is not looked at
 };
 
 } // namespace
 
 std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivision) {
+    if (!subdivision.parts.empty()) {
+        throw InvalidArgument("imprint: patches of different sizes cannot be cut; cut the scene before");
+    }
     const Joined joined = join_back_to_back(scene);
     std::optional<Imprint> result = Imprinter(joined.scene, subdivision).run();
     if (!result && joined.findings.empty()) {

@@ -2,6 +2,7 @@
 
 #include "core/box_tree.hpp"
 #include "core/parallel_for.hpp"
+#include "scene/convex_polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,11 +82,9 @@ std::optional<double> gap_between(std::span<const SamplePoint> points, double si
 } // namespace
 
 std::vector<NearSurface> find_near_surfaces(const PatchMesh& mesh) {
-    std::vector<Bounds> boxes(mesh.surfaces().size());
-    for (std::size_t s = 0; s < boxes.size(); ++s) {
-        for (const Vec3& vertex : mesh.surfaces()[s].polygon()) {
-            boxes[s].add(vertex);
-        }
+    std::vector<Bounds> boxes;
+    for (const Surface& surface : mesh.surfaces()) {
+        boxes.push_back(bounds_of(surface.polygon()));
     }
     const BoxTree tree(boxes);
     const double rounding = mesh.rounding();
@@ -97,12 +96,7 @@ std::vector<NearSurface> find_near_surfaces(const PatchMesh& mesh) {
             const auto points = sample_points(corners);
             const double size = std::sqrt(mesh.areas()[patch]);
             const Vec3 normal = mesh.normal(patch);
-            Bounds around;
-            for (const Vec3& corner : corners.polygon()) {
-                around.add(corner);
-            }
-            around.lower -= near_gap * size;
-            around.upper += near_gap * size;
+            const Bounds around = bounds_of(corners.polygon(), near_gap * size);
             NearSurface& nearest = found[k];
             nearest = {patch, 0, near_gap};
             tree.overlapping(around, [&](std::uint32_t s) {

@@ -253,3 +253,22 @@ TEST_CASE("estimate_factor_error: nothing to say where nothing was compared", "[
         estimate_radiosity_error(rows, rows, short_areas, 1, short_areas, short_areas, short_areas),
         InvalidArgument);
 }
+
+TEST_CASE("error estimate: a wrong row of a small patch does not stand for those of large ones",
+          "[pipeline]") {
+    const std::vector<std::vector<double>> right{
+        {0.0, 0.3, 0.3, 0.3}, {0.3, 0.0, 0.3, 0.3}, {0.3, 0.3, 0.0, 0.3}, {0.3, 0.3, 0.3, 0.0}};
+    auto wrong = right;
+    wrong[3][0] = 0.4;
+    const std::vector<double> reflectance(4, 0.5);
+    const std::vector<double> exitance{1.0, 0.0, 0.0, 0.0};
+    const std::vector<double> radiosity{1.1, 0.3, 0.3, 0.3};
+    const auto rms = [&](double area) {
+        const std::vector<double> areas{1.0, 1.0, 1.0, area};
+        return estimate_radiosity_error(matrix_of(wrong), matrix_of(right), areas, 1, reflectance, exitance,
+                                        radiosity)
+            .rms;
+    };
+    // The area mean of the squared error goes down with the area.
+    CHECK(rms(1e-4) < 0.03 * rms(1.0));
+}

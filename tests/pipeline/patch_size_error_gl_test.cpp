@@ -260,6 +260,30 @@ TEST_CASE("patch size: none in a furnace, whatever the shape of the patches", "[
     }
 }
 
+TEST_CASE("patch size: what is seen of a patch that a block stands on is as bright as what is beside it",
+          "[pipeline][gl]") {
+    // A furnace: wherever light is seen, it is the same. The block's outline runs through patches.
+    Scene scene;
+    scene.materials.push_back({"grey", {0.5}, {1.0}});
+    add_room(scene, Vec3(0.0), Vec3(1.0), 4);
+    const std::array<Vec3, 4> foot{Vec3(0.33, 0.33, 0.0), Vec3(0.67, 0.33, 0.0), Vec3(0.67, 0.67, 0.0),
+                                   Vec3(0.33, 0.67, 0.0)};
+    const Vec3 up(0.0, 0.0, 0.4);
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Vec3& from = foot[k];
+        const Vec3& to = foot[(k + 1) % 4];
+        add_polygon(scene, "block", {from, to, to + up, from + up}, {4, 4});
+    }
+    add_polygon(scene, "block", {foot[0] + up, foot[1] + up, foot[2] + up, foot[3] + up}, {4, 4});
+    constexpr double all_of_them = 100.0; // in the sample
+    const Solved coarse = solved(scene, Preset::standard);
+    const auto error =
+        estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution,
+                                  settings_of(Preset::standard), no_observer(), Gather::off, all_of_them);
+    REQUIRE(error);
+    CHECK(error->field.rms < 0.008);
+}
+
 TEST_CASE("patch size: nothing where nothing reflects, refused for another mesh", "[pipeline][gl]") {
     Scene scene = lit_room(2, 0.5, 0.3);
     const Solved coarse = solved(scene, Preset::fast);

@@ -1,3 +1,4 @@
+#include "hemi/core/error.hpp"
 #include "hemi/scene/imprint.hpp"
 
 #include <catch2/catch.hpp>
@@ -217,6 +218,12 @@ TEST_CASE("Imprint: what is left does not depend on how fine the patches are", "
         CHECK(floor == Approx(25.0 - 1.4 * 1.2));
         CHECK(longest <= size * std::sqrt(2.0) * (1.0 + 1e-9));
     }
+}
+
+TEST_CASE("Imprint: patches of different sizes are refused", "[imprint]") {
+    Subdivision subdivision;
+    subdivision.parts = {{{1, 1, 0}, {1, 1, 1}, {1, 1, 2}, {1, 1, 3}}};
+    CHECK_THROWS_AS(imprint(scene_of({plate(0.0, 0.0, 1.0, 1.0, 0.0)}), subdivision), InvalidArgument);
 }
 
 } // namespace hemi

@@ -45,9 +45,9 @@ struct Imprint {
 /// they were. Gaps up to 1e-7 of the scene's diagonal are none.
 /// Time: about N log N for N faces. Memory: about 300 bytes a face.
 /// @param scene        as read
-/// @param subdivision  as for PatchMesh; without parts
+/// @param subdivision  as for PatchMesh, without parts
 /// @return nothing where there is nothing to cut: the scene is what it should be
-/// @throws InvalidArgument, InputError as PatchMesh
+/// @throws InvalidArgument for parts, and as PatchMesh; InputError as PatchMesh
 [[nodiscard]] std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivision = {});
 
 } // namespace hemi
