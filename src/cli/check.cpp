@@ -2,6 +2,7 @@
 #include "cli/loaded_scene.hpp"
 #include "cli/output_paths.hpp"
 #include "cli/report/diagnosis_report.hpp"
+#include "cli/report/scene_report.hpp"
 #include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
@@ -51,11 +52,14 @@ ExitStatus run(const CheckArguments& arguments, const Terminal& terminal) {
     const Stopwatch watch;
     prepare_form_factors(factors, arguments.rows.factors.repair);
     const double repair_seconds = watch.seconds();
-    const PatchNames names = loaded ? loaded->names() : PatchNames{factors.groups, factors.group_of, {}};
+    const PatchNames names =
+        loaded ? loaded->names() : PatchNames{factors.groups, factors.group_of, {}, factors.parts.patch_of};
     const double limit = arguments.rows.max_row_error;
     const Diagnosis diagnosis = diagnose(factors, loaded ? &loaded->mesh : nullptr, limit);
     if (arguments.common.json || !terminal.quiet()) {
-        show(diagnosis_report(diagnosis, factors, names, limit, repair_seconds), arguments.common.json);
+        const Report mended = loaded ? imprint_report(*loaded) : Report{"", {{"imprint", nullptr}}};
+        show(diagnosis_report(diagnosis, factors, names, limit, repair_seconds, mended),
+             arguments.common.json);
     }
     if (diagnosis.enclosure == EnclosureVerdict::nearly_closed) {
         terminal.warn(

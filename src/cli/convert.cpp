@@ -157,6 +157,7 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
     if (from_hff && format.extension != ".hff") {
         prepare_form_factors(file, arguments.repair);
         repaired = file.repair->repair;
+        file = merge_parts(std::move(file));
     }
     Diagnostics diagnostics;
     io::write_factors(arguments.output, file, {}, diagnostics);

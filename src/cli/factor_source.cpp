@@ -69,6 +69,7 @@ FormFactors find_rows(const SolveArguments& arguments, const LoadedScene& loaded
     } else {
         factors = compute_raw_form_factors(loaded.scene, loaded.mesh, patches, arguments.rows.factors,
                                            observer, checkpoint);
+        factors.parts = loaded.parts();
         store_rows(arguments, factors, terminal);
     }
     if (checkpoint != nullptr) { // also that of a run which was killed when the file was complete

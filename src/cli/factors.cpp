@@ -47,8 +47,9 @@ void check_point_options(const FactorsArguments& arguments, bool is_scene) {
                                           arguments.scene.path.string()));
     }
     static const std::vector<std::string> allowed{"--from-point", "--patch-size",      "--patches-per-face",
-                                                  "--two-sided",  "--skip-degenerate", "--json",
-                                                  "--quiet",      "--verbose",         "--color"};
+                                                  "--two-sided",  "--skip-degenerate", "--no-imprint",
+                                                  "--json",       "--quiet",           "--verbose",
+                                                  "--color"};
     for (const std::string& option : arguments.common.given) {
         if (std::find(allowed.begin(), allowed.end(), option) == allowed.end()) {
             throw InvalidArgument(
@@ -83,7 +84,7 @@ void show_groups(const FactorsArguments& arguments, const FormFactors& factors, 
     }
     if (arguments.common.json) {
         Report report{"", group_factors_json(factors.groups, groups)};
-        report.json.update({{"renderer", factors.provenance.renderer}, {"patches", factors.matrix.size()}});
+        report.json.update({{"renderer", factors.provenance.renderer}, {"patches", factors.patches()}});
         report.add(row_sum_report(row_sums(factors.matrix)));
         report.add(repair_report(*factors.repair, seconds["repair"]));
         report.add(error_report(factors.error));
@@ -108,7 +109,7 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     if (arguments.from_point) {
         check_point_options(arguments, is_scene);
         const LoadedScene loaded = load_scene(arguments.scene, terminal);
-        show(point_report(loaded.mesh, *arguments.from_point, loaded.names()), arguments.common.json);
+        show(point_report(loaded, *arguments.from_point), arguments.common.json);
         return ExitStatus::ok;
     }
     return is_scene ? factors_of_scene(arguments, outputs, terminal) : factors_of_file(arguments, terminal);

@@ -35,12 +35,17 @@ void check_options(const FactorsArguments& arguments) {
     }
 }
 
-void check_row(std::uint32_t row, const FormFactorMatrix& matrix, const std::filesystem::path& path) {
-    if (row >= matrix.size()) {
-        throw InvalidArgument(fmt::format("--row {}: the file has {}, counted from 0", row,
-                                          plural(matrix.size(), "row", "rows")));
+void check_row(std::uint32_t row, const FormFactors& factors, const std::filesystem::path& path) {
+    const std::uint32_t rows = factors.patches();
+    if (row >= rows) {
+        throw InvalidArgument(
+            fmt::format("--row {}: the file has {}, counted from 0", row, plural(rows, "row", "rows")));
     }
-    if (!matrix.known(row)) {
+    bool known = factors.parts.any() || factors.matrix.known(row);
+    for (std::uint32_t part = 0; part < factors.parts.patch_of.size(); ++part) {
+        known = known && (factors.parts.patch_of[part] != row || factors.matrix.known(part));
+    }
+    if (!known) {
         throw InputError(fmt::format("{}: row {} was not computed", path.string(), row));
     }
 }
@@ -55,16 +60,17 @@ ExitStatus factors_of_file(const FactorsArguments& arguments, const Terminal& te
     FormFactors factors = io::read_hff(path);
     seconds["load"] = load_watch.seconds();
     if (arguments.row) {
-        check_row(*arguments.row, factors.matrix, path);
+        check_row(*arguments.row, factors, path);
     }
     const Stopwatch repair_watch;
     prepare_form_factors(factors, arguments.rows.factors.repair);
     seconds["repair"] = repair_watch.seconds();
-    const PatchNames names{factors.groups, factors.group_of, {}};
     if (arguments.row) {
-        show(row_report(factors, *arguments.row, names), arguments.common.json);
+        const FormFactors merged = merge_parts(std::move(factors));
+        show(row_report(merged, *arguments.row, {merged.groups, merged.group_of, {}}), arguments.common.json);
         return ExitStatus::ok;
     }
+    const PatchNames names{factors.groups, factors.group_of, {}, factors.parts.patch_of};
     const double max_row_error = arguments.rows.max_row_error;
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
     show_groups(arguments, factors, seconds);

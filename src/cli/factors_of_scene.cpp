@@ -32,18 +32,28 @@ ExitStatus one_row(const FactorsArguments& arguments, const Terminal& terminal) 
         throw InvalidArgument(
             "--repair needs all rows, but --row computes one; store them first with -o FILE.hff");
     }
-    if (row >= loaded.mesh.size()) {
+    if (row >= loaded.patches().size()) {
         throw InvalidArgument(fmt::format("--row {}: the scene has {}, counted from 0", row,
-                                          plural(loaded.mesh.size(), "patch", "patches")));
+                                          plural(loaded.patches().size(), "patch", "patches")));
     }
     settings.estimate_error = false;
     TerminalObserver observer(terminal);
-    const FormFactors factors =
-        compute_raw_form_factors(loaded.scene, loaded.mesh, std::span(&row, 1), settings, observer);
-    if (arguments.patches) {
-        io::write_patches_csv(*arguments.patches, loaded.mesh);
+    std::vector<std::uint32_t> parts{row};
+    if (loaded.as_read) {
+        parts.clear();
+        const std::vector<std::uint32_t>& patch_of = loaded.as_read->parts.patch_of;
+        for (std::uint32_t part = 0; part < patch_of.size(); ++part) {
+            if (patch_of[part] == row) {
+                parts.push_back(part);
+            }
+        }
     }
-    show(row_report(factors, row, loaded.names()), arguments.common.json);
+    FormFactors factors = compute_raw_form_factors(loaded.scene, loaded.mesh, parts, settings, observer);
+    factors.parts = loaded.parts();
+    if (arguments.patches) {
+        loaded.write_patches(*arguments.patches);
+    }
+    show(row_report(merge_parts(std::move(factors)), row, loaded.patch_names()), arguments.common.json);
     return ExitStatus::ok;
 }
 
@@ -56,6 +66,7 @@ FormFactors compute(const FactorsArguments& arguments, const LoadedScene& loaded
             factors_to_target(loaded.scene, loaded.mesh, settings, *arguments.rows.error_target, observer);
         seconds["search"] = found.search_seconds;
         seconds["factors"] = found.factor_seconds;
+        found.raw.parts = loaded.parts();
         return std::move(found.raw);
     }
     const Stopwatch watch;
@@ -63,6 +74,7 @@ FormFactors compute(const FactorsArguments& arguments, const LoadedScene& loaded
                                                    settings, observer, checkpoint);
     seconds["estimate"] = factors.work.reference_seconds;
     seconds["factors"] = watch.seconds() - factors.work.reference_seconds;
+    factors.parts = loaded.parts();
     return factors;
 }
 
@@ -78,16 +90,16 @@ void write_prepared(const std::filesystem::path& path, const FormFactors& factor
     if (extension_of(path) == ".vtp") {
         io::write_vtp(path, loaded.mesh, io::factor_arrays(factors));
     } else {
-        const std::vector<double> emissivity = emissivities(loaded.mesh, loaded.scene.materials);
-        io::write_factors(path, factors, {emissivity}, diagnostics);
+        const std::vector<double> emissivity = emissivities(loaded.patches(), loaded.scene.materials);
+        io::write_factors(path, merge_parts(factors), {emissivity}, diagnostics);
     }
 }
 
 /// The summary of all rows of a scene.
-void show_summary(const FactorsArguments& arguments, const FormFactors& factors, const PatchMesh& mesh,
+void show_summary(const FactorsArguments& arguments, const FormFactors& factors, const LoadedScene& loaded,
                   const Report& rows, const Seconds& seconds, const Outputs& outputs,
                   const Terminal& terminal) {
-    Report report = scene_size_report(mesh);
+    Report report = scene_size_report(loaded);
     report.add(rows);
     report.add(seconds.report());
     if (arguments.output && !is_standard_output(*arguments.output)) {
@@ -98,8 +110,8 @@ void show_summary(const FactorsArguments& arguments, const FormFactors& factors,
         report.add("written", arguments.output->string() + which);
     }
     report.select("hemi/factors/1",
-                  {"renderer", "patches", "groups", "entries", "memory", "row_sum", "environment_max",
-                   "blocked_max", "repair", "chosen_for", "error_estimate", "seconds"});
+                  {"renderer", "patches", "parts", "groups", "entries", "memory", "row_sum",
+                   "environment_max", "blocked_max", "repair", "chosen_for", "error_estimate", "seconds"});
     outputs.show(report, arguments.common.json, terminal);
 }
 
@@ -110,7 +122,7 @@ ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, c
     seconds["load"] = loaded.seconds;
     FormFactors factors = compute(arguments, loaded, terminal, checkpoint, seconds);
     if (arguments.patches) {
-        io::write_patches_csv(*arguments.patches, loaded.mesh);
+        loaded.write_patches(*arguments.patches);
     }
     Diagnostics diagnostics;
     const bool raw = writes_rows(arguments) && holds_raw_rows(*arguments.output);
@@ -134,7 +146,7 @@ ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, c
         show_groups(arguments, factors, seconds);
     } else {
         const Report rows = prepared_rows_report(factors, sums, enclosure, seconds["repair"]);
-        show_summary(arguments, factors, loaded.mesh, rows, seconds, outputs, terminal);
+        show_summary(arguments, factors, loaded, rows, seconds, outputs, terminal);
     }
     report_buried(sums, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);

@@ -19,11 +19,14 @@ namespace {
 Report scene_info(const InfoArguments& arguments, const Terminal& terminal) {
     const LoadedScene loaded = load_scene(arguments.scene, terminal);
     const FactorCost cost = measure_cost(loaded.mesh, arguments.rows.factors);
-    Report report = contents_report(loaded.scene, loaded.mesh, cost_report(cost, loaded.mesh));
+    Report more = imprint_report(loaded);
+    more.add(cost_report(cost, loaded.mesh));
+    Report report =
+        contents_report(loaded.as_read ? loaded.as_read->scene : loaded.scene, loaded.patches(), more);
     report.json["kind"] = "scene";
     report.select("hemi/info/1",
                   {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels", "bounds",
-                   "enclosure", "environment", "camera", "groups", "materials", "estimate"});
+                   "enclosure", "environment", "camera", "imprint", "groups", "materials", "estimate"});
     return report;
 }
 
@@ -45,9 +48,9 @@ Report file_info(const std::filesystem::path& path) {
         Report report = stored_factors_report(io::read_hff(path));
         report.json["kind"] = "factors";
         report.select("hemi/info/1",
-                      {"kind", "patches", "rows", "entries", "memory", "preset", "method", "resolution",
-                       "eye_points", "shadow_rays", "seed", "renderer", "enclosure", "geometry_hash",
-                       "row_sum", "chosen_for", "error_estimate", "groups"});
+                      {"kind", "patches", "parts", "rows", "entries", "memory", "preset", "method",
+                       "resolution", "eye_points", "shadow_rays", "seed", "renderer", "enclosure",
+                       "geometry_hash", "row_sum", "chosen_for", "error_estimate", "groups"});
         return report;
     }
     if (io::factor_content(path)) {

@@ -6,7 +6,6 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
-#include "hemi/scene/imprint.hpp"
 
 #include <fmt/format.h>
 
@@ -83,6 +82,20 @@ void warn_of_overlaps(const Imprint& cut, const Scene& as_read, const Terminal& 
          "faces are cut, where others lie on them in their planes");
 }
 
+io::PatchPlaces places_left(const PatchMesh& as_read, const PatchMesh& mesh, const PatchParts& parts) {
+    std::vector<double> coordinates;
+    for (const Vec3& centre : mesh.centres()) {
+        coordinates.insert(coordinates.end(), {centre.x, centre.y, centre.z});
+    }
+    const std::vector<double> means = means_of_patches(parts, mesh.areas(), coordinates, 3);
+    io::PatchPlaces left{areas_of_patches(parts, mesh.areas()), {}};
+    for (std::size_t i = 0; i < left.areas.size(); ++i) {
+        left.centres.push_back(left.areas[i] > 0.0 ? Vec3(means[3 * i], means[3 * i + 1], means[3 * i + 2])
+                                                   : as_read.centres()[i]);
+    }
+    return left;
+}
+
 } // namespace
 
 LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
@@ -98,12 +111,18 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     }
     PatchMesh mesh = make_mesh(scene, options);
     Subdivision subdivision = options.subdivision;
-    std::optional<Scene> as_read;
+    std::optional<SceneAsRead> as_read;
     if (auto cut = options.imprint ? imprint(scene, subdivision) : std::nullopt) {
-        as_read = std::exchange(scene, std::move(cut->scene));
-        mesh = PatchMesh(scene);
+        warn_of_overlaps(*cut, scene, terminal);
+        PatchMesh parts(cut->scene);
+        io::PatchPlaces left = places_left(mesh, parts, cut->parts);
+        as_read = {std::exchange(scene, std::move(cut->scene)),
+                   std::exchange(mesh, std::move(parts)),
+                   std::move(cut->parts),
+                   std::move(left),
+                   std::move(cut->findings),
+                   cut->covered};
         subdivision = {};
-        warn_of_overlaps(*cut, *as_read, terminal);
     }
     std::vector<std::uint32_t> group_of(mesh.size());
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
@@ -116,11 +135,21 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
 
 void LoadedScene::adopt(PatchMesh other) {
     mesh = std::move(other);
+    as_read.reset();
     adopt_mesh(scene, subdivision, mesh);
     group_of.clear();
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         group_of.push_back(mesh.group(i));
     }
+}
+
+std::vector<double> LoadedScene::means(std::span<const double> values, std::size_t channels) const {
+    return as_read ? means_of_patches(as_read->parts, mesh.areas(), values, channels)
+                   : std::vector<double>(values.begin(), values.end());
+}
+
+void LoadedScene::write_patches(const std::filesystem::path& path) const {
+    io::write_patches_csv(path, patches(), as_read ? as_read->left : io::PatchPlaces());
 }
 
 void refuse_chosen_settings(const CommonOptions& common, const RowOptions& rows) {

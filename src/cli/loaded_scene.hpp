@@ -3,6 +3,8 @@
 #include "cli/arguments/arguments.hpp"
 #include "cli/report/text.hpp"
 #include "cli/terminal.hpp"
+#include "hemi/io/result_file.hpp"
+#include "hemi/scene/imprint.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
@@ -15,21 +17,48 @@
 /// The scene that a command line names.
 namespace hemi::cli {
 
-struct LoadedScene {
+/// A scene before its faces were cut where they touch. Its patches are what results are about.
+struct SceneAsRead {
     Scene scene;
     PatchMesh mesh;
-    Subdivision subdivision;             ///< with the scene it makes the mesh
-    std::optional<Scene> as_read;        ///< where its faces were cut
-    std::vector<std::uint32_t> group_of; ///< group of every patch
-    double seconds = 0.0;
-
-    /// Takes another mesh of the scene.
-    void adopt(PatchMesh other);
-
-    [[nodiscard]] PatchNames names() const { return {mesh.groups(), group_of, mesh.centres()}; }
+    PatchParts parts;                       ///< those of the patches that are computed with
+    io::PatchPlaces left;                   ///< areas and centres of what is left of the patches
+    std::vector<Imprint::Finding> findings; ///< what was done
+    double covered = 0.0;                   ///< area that is left out
 };
 
-/// Reads the scene and cuts it into patches, with `--imprint` after its faces were cut where they touch;
+struct LoadedScene {
+    Scene scene;
+    PatchMesh mesh;                      ///< what is computed with
+    Subdivision subdivision;             ///< with the scene it makes the mesh
+    std::optional<SceneAsRead> as_read;  ///< where its faces were cut
+    std::vector<std::uint32_t> group_of; ///< group of every patch of the mesh
+    double seconds = 0.0;
+
+    /// Takes another mesh of the scene, whose patches are what results are about.
+    void adopt(PatchMesh other);
+
+    /// Patches that results are about: those of the scene as it was read.
+    [[nodiscard]] const PatchMesh& patches() const { return as_read ? as_read->mesh : mesh; }
+    /// What patches of the mesh are parts of.
+    [[nodiscard]] PatchParts parts() const { return as_read ? as_read->parts : PatchParts(); }
+    /// Of patches of the mesh.
+    [[nodiscard]] PatchNames names() const {
+        return {mesh.groups(), group_of, mesh.centres(),
+                as_read ? as_read->parts.patch_of : std::span<const std::uint32_t>()};
+    }
+    /// Of the patches that results are about.
+    [[nodiscard]] PatchNames patch_names() const {
+        return as_read ? PatchNames{mesh.groups(), as_read->parts.group_of, as_read->left.centres} : names();
+    }
+    /// Values of the mesh's patches, as means over those that results are about.
+    /// @param channels  of the values
+    [[nodiscard]] std::vector<double> means(std::span<const double> values, std::size_t channels) const;
+    /// --patches
+    void write_patches(const std::filesystem::path& path) const;
+};
+
+/// Reads the scene and cuts it into patches, after its faces were cut where they touch;
 /// `--enclosure` and `--environment` replace the scene's own.
 /// @throws InputError for the file; InvalidArgument for options that do not fit it.
 [[nodiscard]] LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal);

@@ -123,7 +123,7 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
     goal.seconds = arguments.budget;
     goal.gather = arguments.picture.flat && !arguments.result ? Gather::off : arguments.gather;
     const bool own_size = arguments.scene.subdivision != Subdivision{}; // asked for on the command line
-    const Scene& as_read = loaded.as_read ? *loaded.as_read : loaded.scene;
+    const Scene& as_read = loaded.as_read ? loaded.as_read->scene : loaded.scene;
     Refinement found =
         solve_refined(loaded.scene, own_size ? loaded.mesh : coarse_mesh(as_read, arguments.scene.imprint),
                       arguments.rows.factors, arguments.solver, goal, arguments.with_irradiance(), observer);
@@ -157,8 +157,13 @@ void write_solution(const SolveArguments& arguments, const LoadedScene& loaded, 
         io::write_hres(*arguments.result, {loaded.scene, loaded.subdivision, solution});
     }
     if (wanted(arguments.radiosity)) {
-        io::write_radiosity_csv(*arguments.radiosity, loaded.mesh, loaded.scene.channels, solution.exitance,
-                                solution.irradiance, solution.radiosity, radiosity_errors(solution));
+        const auto means = [&](std::span<const double> values) {
+            return values.empty() ? std::vector<double>() : loaded.means(values, solution.channels);
+        };
+        io::write_radiosity_csv(*arguments.radiosity, loaded.patches(), loaded.scene.channels,
+                                means(solution.exitance), means(solution.irradiance),
+                                means(solution.radiosity), means(radiosity_errors(solution)),
+                                loaded.as_read ? loaded.as_read->left : io::PatchPlaces());
     }
 }
 
@@ -227,7 +232,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
     report_buried(sums, terminal);
     if (arguments.patches) {
-        io::write_patches_csv(*arguments.patches, loaded.mesh);
+        loaded.write_patches(*arguments.patches);
     }
     // Stored before what may be cancelled, and again with it.
     write_solution(arguments, loaded, solution, true);

@@ -2,6 +2,7 @@
 
 #include "hemi/scene/patch_mesh.hpp"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,7 +32,7 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> patches_at(std::uint32_t v) const {
         return {incident_.data() + first_incident_[v], first_incident_[v + 1] - first_incident_[v]};
     }
-    /// A vertex in the middle of an edge of a larger patch of the same surface.
+    /// A vertex in the middle of an edge of a larger patch, in whose plane the smaller ones lie.
     struct Hanging {
         std::uint32_t vertex;
         std::uint32_t patch; ///< the larger one
@@ -45,11 +46,18 @@ public:
     /// Whether light runs smoothly from one patch to the other where they meet: same material, same group,
     /// normals within the crease angle.
     [[nodiscard]] bool continues(std::uint32_t a, std::uint32_t b) const;
+    /// The same of two patches at vertex `v`, where something may stand between them: a sheet on a floor has
+    /// light on one of its sides and shadow on the other.
+    [[nodiscard]] bool continues_at(std::uint32_t v, std::uint32_t a, std::uint32_t b) const;
 
 private:
     void weld(const PatchMesh& mesh);
-    void connect(const PatchMesh& mesh);
+    void connect();
 
+    void divide(const PatchMesh& mesh);
+    void find_sectors(const PatchMesh& mesh, std::uint32_t v);
+    void keep_true_hanging(const PatchMesh& mesh);
+    [[nodiscard]] std::array<Vec3, 2> rims(std::uint32_t v, std::uint32_t patch) const;
     void add_hanging(std::uint32_t vertex, std::uint32_t patch, std::uint32_t from, std::uint32_t to);
 
     struct Appearance {
@@ -63,6 +71,8 @@ private:
     std::vector<Appearance> looks_;
     std::vector<std::size_t> first_incident_;
     std::vector<std::uint32_t> incident_;
+    /// Of every entry of incident_, which side of what stands there its patch is on; empty: nothing stands.
+    std::vector<std::uint8_t> sectors_;
     std::vector<Hanging> hanging_;
     double tolerance_ = 0.0;
 };

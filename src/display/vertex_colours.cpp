@@ -61,7 +61,8 @@ private:
             const std::size_t to = slot(hanging.patch, corner_at(hanging.to));
             for (const std::uint32_t patch : surfaces_.patches_at(hanging.vertex)) {
                 const auto ring = surfaces_.corners(patch);
-                for (std::uint32_t k = 0; k < ring.size() && surfaces_.continues(hanging.patch, patch); ++k) {
+                for (std::uint32_t k = 0;
+                     k < ring.size() && surfaces_.continues_at(hanging.vertex, hanging.patch, patch); ++k) {
                     if (ring[k] != hanging.vertex) {
                         continue;
                     }
@@ -97,8 +98,10 @@ private:
     bool mean_at(std::uint32_t patch, std::uint32_t k, bool with_covered, std::vector<double>& sum) {
         std::fill(sum.begin(), sum.end(), 0.0);
         double weight = 0.0;
-        for (const std::uint32_t other : surfaces_.patches_at(surfaces_.corners(patch)[k])) {
-            if ((!with_covered && is_covered(blocked_, other)) || !surfaces_.continues(patch, other)) {
+        const std::uint32_t vertex = surfaces_.corners(patch)[k];
+        for (const std::uint32_t other : surfaces_.patches_at(vertex)) {
+            if ((!with_covered && is_covered(blocked_, other)) ||
+                !surfaces_.continues_at(vertex, patch, other)) {
                 continue;
             }
             const double area = mesh_.areas()[other];
@@ -154,7 +157,7 @@ private:
               std::vector<double>& sums, std::vector<std::uint32_t>& counts,
               std::vector<std::size_t>& touched) const {
         for (const std::uint32_t other : surfaces_.patches_at(vertex)) {
-            if (!surfaces_.continues(patch, other)) {
+            if (!surfaces_.continues_at(vertex, patch, other)) {
                 continue;
             }
             const auto ring = surfaces_.corners(other);

@@ -14,9 +14,10 @@ void check_areas(const FormFactorMatrix& factors, std::span<const double> areas)
             fmt::format("{} areas for {} rows of form factors", areas.size(), factors.size()));
     }
     for (std::size_t i = 0; i < areas.size(); ++i) {
-        if (!(areas[i] > 0.0) || !std::isfinite(areas[i])) {
-            throw InvalidArgument(
-                fmt::format("patch {}: area {}; it must be finite and above 0", i, areas[i]));
+        const bool is_gone = areas[i] == 0.0 && factors.row(static_cast<std::uint32_t>(i)).columns.empty();
+        if ((!(areas[i] > 0.0) && !is_gone) || !std::isfinite(areas[i])) {
+            throw InvalidArgument(fmt::format(
+                "patch {}: area {}; it must be finite and above 0, or 0 of an empty row", i, areas[i]));
         }
     }
 }

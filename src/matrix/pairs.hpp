@@ -11,7 +11,7 @@
 /// Rows of F as unordered pairs of patches: x_ij = A_i F(i, j) = A_j F(j, i) is one number.
 namespace hemi {
 
-/// @throws InvalidArgument unless there is one area, above 0, for every row.
+/// @throws InvalidArgument unless there is one area for every row, above 0, or 0 of an empty one.
 void check_areas(const FormFactorMatrix& factors, std::span<const double> areas);
 
 [[nodiscard]] inline const RowBlock& block_of(std::span<const RowBlock> blocks, std::uint32_t i) {

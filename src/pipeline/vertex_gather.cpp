@@ -105,7 +105,7 @@ struct VertexGather::State {
     [[nodiscard]] std::vector<std::uint32_t> patches_around(std::uint32_t patch, std::uint32_t vertex) const {
         std::vector<std::uint32_t> meeting;
         for (const std::uint32_t other : surfaces.patches_at(vertex)) {
-            if (!is_covered(blocked, other) && surfaces.continues(patch, other)) {
+            if (!is_covered(blocked, other) && surfaces.continues_at(vertex, patch, other)) {
                 meeting.push_back(other);
             }
         }

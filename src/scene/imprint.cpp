@@ -13,6 +13,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -133,6 +134,35 @@ Joined join_back_to_back(const Scene& scene) {
         there.push_back(static_cast<std::uint32_t>(result.scene.surfaces.size()));
         result.scene.surfaces.push_back(surface);
         result.face_of.push_back(f);
+    }
+    return result;
+}
+
+/// Of every patch of a scene whose faces were joined, the one that it was before.
+std::vector<std::uint32_t> patches_before(const Joined& joined, const PatchMesh& mesh,
+                                          const PatchMesh& as_read) {
+    std::vector<std::uint32_t> back_of(joined.face_of.size(), no_face); // the face that became the back
+    for (const Imprint::Finding& finding : joined.findings) {
+        const auto kept = std::lower_bound(joined.face_of.begin(), joined.face_of.end(), finding.other);
+        back_of[static_cast<std::size_t>(kept - joined.face_of.begin())] = finding.face;
+    }
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        const std::uint32_t s = mesh.surface_of()[patch];
+        if (!mesh.is_back(patch) || back_of[s] == no_face) {
+            result.push_back(as_read.first_patch(joined.face_of[s]) + patch - mesh.first_patch(s));
+            continue;
+        }
+        // Its corners may begin elsewhere.
+        std::uint32_t nearest = as_read.first_patch(back_of[s]);
+        for (std::uint32_t i = nearest; i < as_read.first_patch(back_of[s] + 1); ++i) {
+            const Vec3& centre = mesh.centres()[patch];
+            nearest = glm::distance(as_read.centres()[i], centre) <
+                              glm::distance(as_read.centres()[nearest], centre)
+                          ? i
+                          : nearest;
+        }
+        result.push_back(nearest);
     }
     return result;
 }
@@ -442,6 +472,9 @@ private:
             if (complete) {
                 Surface& whole = result.scene.surfaces.emplace_back(scene_.surfaces[f]);
                 whole.patches = mesh_.grid(f);
+                for (std::uint32_t patch = mesh_.first_patch(f); patch < mesh_.first_patch(f + 1); ++patch) {
+                    result.parts.patch_of.push_back(patch);
+                }
             } else {
                 changed = true;
                 add_rest(f, result);
@@ -477,10 +510,27 @@ private:
                 {gone ? Imprint::What::buried : Imprint::What::cut, f, face.contacts.other});
         }
         while (!cells.empty()) {
-            result.scene.surfaces.push_back(rectangle(f, take_rectangle(cells)));
+            const Rectangle rest = take_rectangle(cells);
+            result.scene.surfaces.push_back(rectangle(f, rest));
+            add_parts(f, rest.cells, true, two_sided, result);
         }
         for (const Piece* const piece : pieces) {
+            const std::size_t before = result.scene.surfaces.size();
             add_surfaces(scene_.surfaces[f], *piece, result.scene.surfaces);
+            for (std::size_t k = before; k < result.scene.surfaces.size(); ++k) {
+                add_parts(f, std::span(&piece->cell, 1), piece->front, piece->back, result);
+            }
+        }
+    }
+
+    /// Says which patches those of a new surface are parts of: cells of face `f`, of its sides that are left.
+    void add_parts(std::uint32_t f, std::span<const std::uint32_t> cells, bool front, bool back,
+                   Imprint& result) const {
+        for (const std::uint32_t side : {0u, 1u}) {
+            const std::uint32_t first = mesh_.first_patch(f) + side * mesh_.patches_per_side(f);
+            for (std::size_t k = 0; (side == 0 ? front : back) && k < cells.size(); ++k) {
+                result.parts.patch_of.push_back(first + cells[k]);
+            }
         }
     }
 
@@ -559,14 +609,24 @@ std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivisio
     if (!result && joined.findings.empty()) {
         return std::nullopt;
     }
+    const PatchMesh mesh(joined.scene, subdivision);
     if (!result) {
         result.emplace();
         result->scene = joined.scene;
-        const PatchMesh mesh(joined.scene, subdivision);
         for (std::uint32_t s = 0; s < joined.scene.surfaces.size(); ++s) {
             result->scene.surfaces[s].patches = mesh.grid(s);
             result->face_of.push_back(s);
         }
+        result->parts.patch_of.resize(mesh.size());
+        std::iota(result->parts.patch_of.begin(), result->parts.patch_of.end(), 0u);
+    }
+    const PatchMesh as_read(scene, subdivision);
+    const std::vector<std::uint32_t> before = patches_before(joined, mesh, as_read);
+    for (std::uint32_t& patch : result->parts.patch_of) {
+        patch = before[patch];
+    }
+    for (std::uint32_t i = 0; i < as_read.size(); ++i) {
+        result->parts.group_of.push_back(as_read.group(i));
     }
     for (std::uint32_t& face : result->face_of) {
         face = joined.face_of[face];

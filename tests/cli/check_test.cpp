@@ -96,14 +96,14 @@ TEST_CASE("check: covered patches are told from turned surfaces", "[cli]") {
     add_box(scene, "white");
     const std::string box = directory.write("box.json", scene);
     // One texel beside a silhouette may meet the back behind it.
-    const Outcome covered = run_hemi(quick({"check", box, "--max-row-error", "1e-3"}));
+    const Outcome covered = run_hemi(quick({"check", box, "--no-imprint", "--max-row-error", "1e-3"}));
     INFO(covered.out);
     CHECK(covered.status == 0); // covered patches are no error
     CHECK(covered.out_has("under or inside other geometry"));
-    const Json json = run_hemi(quick({"check", box, "--json"})).json();
+    const Json json = run_hemi(quick({"check", box, "--no-imprint", "--json"})).json();
     CHECK(json["covered"]["count"] > 0);
     CHECK(json["turned"].empty());
-    CHECK(run_hemi(quick({"factors", box})).err_has("buried"));
+    CHECK(run_hemi(quick({"factors", box, "--no-imprint"})).err_has("buried"));
 
     Json turned = cube(4);
     Json& polygon = turned["surfaces"][1]["polygon"];

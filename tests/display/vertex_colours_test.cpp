@@ -119,6 +119,53 @@ TEST_CASE("CornerValues: smoothing ends at a crease, another material and anothe
     CHECK(folded(0.0, 0, "other sheet") == 1.0);
 }
 
+TEST_CASE("CornerValues: light on one side of what stands on a floor does not run to the other",
+          "[display]") {
+    // A sheet from y = 0 to 2, in pieces of its own, on a floor that is lit beyond it.
+    const bool two_sheets = GENERATE(false, true);
+    SceneBuilder builder;
+    builder.floor("floor", 0.0, 0.0, 2.0, 3.0, {2, 3});
+    builder.add("sheet", {{1, 0, 0}, {1, 2, 0}, {1, 2, 1}, {1, 0, 1}}, {5, 2}).two_sided = !two_sheets;
+    if (two_sheets) {
+        builder.add("back", {{1, 2, 0}, {1, 0, 0}, {1, 0, 1}, {1, 2, 1}}, {3, 1});
+    }
+    const PatchMesh mesh = builder.mesh();
+    const auto values =
+        corner_values(mesh, 1, patch_values(mesh, [](const Vec3& p) { return p.x > 1.0 ? 8.0 : 2.0; }), {});
+    for (const double y : {0.0, 1.0}) {
+        CHECK(corner_at(mesh, values, 0, {1, y, 0}) == 2.0);
+        CHECK(corner_at(mesh, values, 1, {1, y, 0}) == 8.0);
+    }
+    CHECK(corner_at(mesh, values, 2, {1, 2, 0}) == 5.0); // light goes round its end
+    CHECK(corner_at(mesh, values, 5, {1, 2, 0}) == 5.0);
+    CHECK(corner_at(mesh, values, 4, {1, 3, 0}) == 5.0);
+}
+
+TEST_CASE("CornerValues: what hangs below a floor does not divide it", "[display]") {
+    SceneBuilder builder;
+    builder.floor("floor", 0.0, 0.0, 2.0, 2.0, {2, 2});
+    builder.add("sheet", {{1, 0, 0}, {1, 2, 0}, {1, 2, -1}, {1, 0, -1}}).two_sided = true;
+    const PatchMesh mesh = builder.mesh();
+    const auto values =
+        corner_values(mesh, 1, patch_values(mesh, [](const Vec3& p) { return p.x > 1.0 ? 8.0 : 2.0; }), {});
+    CHECK(corner_at(mesh, values, 0, {1, 1, 0}) == 5.0);
+}
+
+TEST_CASE("CornerValues: a vertex on the edge of a larger patch shows what that shows there", "[display]") {
+    SceneBuilder builder; // a patch of 2 x 2 beside two of 1 x 1, of a surface each, as cut faces have them
+    builder.floor("floor", 0.0, 0.0, 2.0, 2.0);
+    builder.floor("floor", 2.0, 0.0, 3.0, 1.0);
+    builder.floor("floor", 2.0, 1.0, 3.0, 2.0);
+    const PatchMesh mesh = builder.mesh();
+    const auto values = corner_values(mesh, 1, std::vector<double>{1.0, 3.0, 9.0}, {});
+    const double low = corner_at(mesh, values, 0, {2, 0, 0});
+    const double high = corner_at(mesh, values, 0, {2, 2, 0});
+    CHECK(low == Approx((4.0 * 1.0 + 3.0) / 5.0));
+    CHECK(high == Approx((4.0 * 1.0 + 9.0) / 5.0));
+    CHECK(corner_at(mesh, values, 1, {2, 1, 0}) == Approx(0.5 * (low + high)));
+    CHECK(corner_at(mesh, values, 2, {2, 1, 0}) == Approx(0.5 * (low + high)));
+}
+
 TEST_CASE("CornerValues: the two sides of a sheet do not mix", "[display]") {
     SceneBuilder builder;
     builder.floor("sheet", 0.0, 0.0, 1.0, 1.0, {2, 2}).two_sided = true;
@@ -130,13 +177,16 @@ TEST_CASE("CornerValues: the two sides of a sheet do not mix", "[display]") {
     CHECK(*std::min_element(values.begin() + 16, values.end()) == 9.0F);
 }
 
-TEST_CASE("CornerValues: a patch that is touched in the middle of its edge joins in", "[display]") {
+TEST_CASE("CornerValues: a patch that is touched in the middle of its edge joins in: no step along it",
+          "[display]") {
     SceneBuilder builder;
     builder.floor("floor", 0.0, 0.0, 2.0, 1.0);         // one long patch
     builder.floor("floor", 0.0, 1.0, 2.0, 2.0, {2, 1}); // two that meet at (1, 1), in the middle of its edge
     const PatchMesh mesh = builder.mesh();
     const std::vector<float> values = corner_values(mesh, 1, std::vector<double>{8.0, 1.0, 3.0}, {});
-    const double expected = (2.0 * 8.0 + 1.0 + 3.0) / 4.0;
+    // Halfway between what the long patch shows at its corners.
+    const double expected = 0.5 * ((2.0 * 8.0 + 1.0) / 3.0 + (2.0 * 8.0 + 3.0) / 3.0);
+    CHECK(corner_at(mesh, values, 0, {0, 1, 0}) == Approx((2.0 * 8.0 + 1.0) / 3.0));
     CHECK(corner_at(mesh, values, 1, {1, 1, 0}) == Approx(expected));
     CHECK(corner_at(mesh, values, 2, {1, 1, 0}) == Approx(expected));
     // Where nothing is touched, nothing changes.
@@ -153,9 +203,9 @@ TEST_CASE("CornerValues: T-junctions are found on slanted edges far from the ori
     builder.add("g", {origin + v, origin + u + v, origin + u + 2.0 * v, origin + 2.0 * v}, {3, 1});
     const PatchMesh mesh = builder.mesh();
     const std::vector<float> values = corner_values(mesh, 1, std::vector<double>{6.0, 0.0, 0.0, 0.0}, {});
-    // Areas 3 : 1 : 1 at the two points where the small patches meet.
-    CHECK(corner(values, 1, 1) == Approx(6.0 * 3.0 / 5.0).epsilon(1e-6));
-    CHECK(corner(values, 2, 1) == Approx(6.0 * 3.0 / 5.0).epsilon(1e-6));
+    // Areas 3 : 1 at the ends of the large patch's edge, on which the small ones meet in two points.
+    CHECK(corner(values, 1, 1) == Approx(6.0 * 3.0 / 4.0).epsilon(1e-6));
+    CHECK(corner(values, 2, 1) == Approx(6.0 * 3.0 / 4.0).epsilon(1e-6));
 }
 
 TEST_CASE("CornerValues: covered patches never enter", "[display]") {

@@ -57,6 +57,7 @@ void require_equal(const FormFactors& a, const FormFactors& b) {
     REQUIRE(a.groups == b.groups);
     REQUIRE(a.group_of == b.group_of);
     REQUIRE(a.touching == b.touching);
+    REQUIRE(a.parts == b.parts);
     REQUIRE(a.geometry_hash == b.geometry_hash);
     REQUIRE(a.provenance.preset == b.provenance.preset);
     REQUIRE(a.provenance.exchange_rule == b.provenance.exchange_rule);
@@ -112,6 +113,26 @@ TEST_CASE("HFF: the reference and the estimate that it gave are kept", "[io]") {
     file = judged_sample(70);
     file.reference = judged_sample(71).reference;
     REQUIRE_THROWS_AS(io::write_hff(folder / "b.hff", file), InvalidArgument);
+}
+
+TEST_CASE("HFF: which patches rows are parts of is kept, and must fit", "[io]") {
+    const Folder folder;
+    FormFactors file = sample(4);
+    file.parts = {{0, 0, 5, 2}, {0, 1, 2, 0, 0, 1}};
+    io::write_hff(folder / "a.hff", file);
+    require_equal(file, io::read_hff(folder / "a.hff"));
+    const std::string bytes = io::read_file(folder / "a.hff");
+    const auto refusal = [&](std::size_t offset, std::uint32_t value) {
+        const auto path = folder.write("bad.hff", with_payload(bytes, 4, offset, raw(value)));
+        return message_of<InputError>([&] { (void)io::read_hff(path); });
+    };
+    require_parts(refusal(8, 6), {"chunk PART: patch 6; there are 6"});
+    require_parts(refusal(16, 3), {"chunk PART: group 3; there are 3"});
+    for (const PatchParts& bad : {PatchParts{{0, 0, 6, 2}, {0, 1, 2, 0, 0, 1}}, PatchParts{{0, 0, 1}, {0, 1}},
+                                  PatchParts{{0, 0, 0, 0}, {3}}}) {
+        file.parts = bad;
+        REQUIRE_THROWS_AS(io::write_hff(folder / "b.hff", file), InvalidArgument);
+    }
 }
 
 TEST_CASE("HFF: equal content gives equal bytes", "[io]") {

@@ -261,6 +261,17 @@ TEST_CASE("Patch tables: one line a patch, names in quotes where needed, numbers
     REQUIRE(folder.files() == 2);
 }
 
+TEST_CASE("Patch tables: of patches of which a part is left, its area and centre", "[io]") {
+    const Folder folder;
+    const PatchMesh mesh(sample().scene);
+    io::PatchPlaces left{std::vector<double>(mesh.size(), 0.125),
+                         std::vector<Vec3>(mesh.size(), Vec3(1.0, 2.0, 4.0))};
+    io::write_patches_csv(folder / "p.csv", mesh, left);
+    REQUIRE(io::read_file(folder / "p.csv").find("\n0,floor,0.125,1,2,4,") != std::string::npos);
+    left.areas.pop_back();
+    REQUIRE_THROWS_AS(io::write_patches_csv(folder / "p.csv", mesh, left), InvalidArgument);
+}
+
 TEST_CASE("HRES: patches of different sizes are stored, and refused where they do not fill a surface",
           "[io]") {
     const Folder folder;

@@ -43,6 +43,27 @@ std::vector<Surface> block(double x0, double y0, double x1, double y1, double he
             face({{x0, y1, base}, {x0, y0, base}, {x0, y0, height}, {x0, y1, height}})};
 }
 
+/// Checks that every part lies within the patch that it is said to be part of, and looks the same way.
+void check_parts(const Scene& scene, const Imprint& cut) {
+    const PatchMesh whole(scene);
+    const PatchMesh mesh(cut.scene);
+    REQUIRE(cut.parts.patch_of.size() == mesh.size());
+    REQUIRE(cut.parts.patches() == whole.size());
+    const double size = whole.bounds().diagonal();
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const std::uint32_t patch = cut.parts.patch_of[i];
+        INFO("part " << i << " of patch " << patch);
+        CHECK(cut.parts.group_of[patch] == mesh.group(i));
+        CHECK(glm::dot(whole.normal(patch), mesh.normal(i)) > 0.999);
+        const PatchCorners corners = whole.corners(patch);
+        for (std::uint32_t k = 0; k < corners.count; ++k) {
+            const Vec3 edge = corners.points[(k + 1) % corners.count] - corners.points[k];
+            const Vec3 inwards = glm::cross(whole.normal(patch), edge) / glm::length(edge);
+            CHECK(glm::dot(mesh.centres()[i] - corners.points[k], inwards) > -1e-7 * size);
+        }
+    }
+}
+
 /// Area of what is left of each face of the scene as it was.
 std::vector<double> areas_of_faces(const Imprint& cut, std::size_t faces) {
     std::vector<double> areas(faces, 0.0);
@@ -90,6 +111,30 @@ TEST_CASE("Imprint: the foot of a block is cut out of the floor, at any scale an
         const bool under = at.x > 1.3 && at.x < 2.7 && at.y > 2.2 && at.y < 3.4 && at.z < 1e-6;
         CHECK_FALSE(under);
     }
+}
+
+TEST_CASE("Imprint: parts know the patches that they are parts of", "[imprint]") {
+    std::vector<Surface> surfaces = block(1.3, 2.2, 2.7, 3.4, 1.0, -0.5);
+    surfaces.push_back(plate(0.0, 0.0, 5.0, 5.0, 0.0, {5, 4}));
+    // A two-sided sheet across it, and a triangle with the block's corner in it.
+    surfaces.push_back(
+        face({{2.0, 2.8, 0.5}, {4.2, 2.8, 0.5}, {4.2, 3.9, 1.5}, {2.0, 3.9, 1.5}}, {3, 2}, true));
+    surfaces.push_back(face({{0.0, 0.0, 0.6}, {4.0, 0.0, 0.6}, {0.0, 4.0, 0.6}}, {4, 4}));
+    // Back to back: the second one begins elsewhere.
+    surfaces.push_back(face({{0.0, 0.0, 2.0}, {3.0, 0.0, 2.0}, {3.0, 1.0, 2.0}, {0.0, 1.0, 2.0}}, {3, 2}));
+    surfaces.push_back(face({{3.0, 0.0, 2.0}, {0.0, 0.0, 2.0}, {0.0, 1.0, 2.0}, {3.0, 1.0, 2.0}}, {3, 2}));
+    const Scene scene = scene_of(surfaces);
+    const auto cut = imprint(scene);
+    REQUIRE(cut);
+    check_parts(scene, *cut);
+    // Where nothing else is cut.
+    const Scene baffle = scene_of({surfaces[8], surfaces[9]});
+    const auto joined = imprint(baffle);
+    REQUIRE(joined);
+    check_parts(baffle, *joined);
+    std::vector<std::uint32_t> patches = joined->parts.patch_of;
+    std::sort(patches.begin(), patches.end());
+    CHECK(patches == std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
 }
 
 TEST_CASE("Imprint: a block that passes through a floor is cut where it does, and its foot is not seen",

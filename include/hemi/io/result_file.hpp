@@ -28,8 +28,20 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result);
 /// @throws InputError for anything that is not a sound `.hres`.
 [[nodiscard]] ResultFile read_hres(const std::filesystem::path& path);
 
+/// Where patches are of which a part is left, in place of what their mesh says: one value for every patch, or
+/// none at all.
+struct PatchPlaces {
+    std::vector<double> areas; ///< scene units squared; 0 where nothing is left
+    std::vector<Vec3> centres; ///< area centroids
+};
+
 /// One line a patch: index,group,area,cx,cy,cz,nx,ny,nz (index from 0; shortest digits that read back equal).
-void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh);
+/// @param path  of the file
+/// @param mesh  N patches
+/// @param left  what is left of them
+/// @throws InvalidArgument for other than N places; IoError
+void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh,
+                       const PatchPlaces& left = {});
 /// The same columns, then exitance_C, irradiance_C, radiosity_C for every channel name C, and error_C where
 /// errors of the radiosity are given.
 /// @param path      of the file
@@ -37,9 +49,11 @@ void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh)
 /// @param channels  their names
 /// @param exitance,irradiance,radiosity,errors  N·channels each, channel c of patch i at [i·channels + c];
 ///   errors may be empty
+/// @param left      what is left of the patches
+/// @throws InvalidArgument for spans that do not fit; IoError
 void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
                          std::span<const std::string> channels, std::span<const double> exitance,
                          std::span<const double> irradiance, std::span<const double> radiosity,
-                         std::span<const double> errors = {});
+                         std::span<const double> errors = {}, const PatchPlaces& left = {});
 
 } // namespace hemi::io

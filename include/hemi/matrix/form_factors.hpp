@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/enclosure.hpp"
+#include "hemi/core/patch_parts.hpp"
 #include "hemi/matrix/error_estimate.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 #include "hemi/matrix/provenance.hpp"
@@ -35,6 +36,8 @@ struct FormFactors {
     /// Ascending: patches that see nothing and lie face to face against another surface, see
     /// find_touching_faces().
     std::vector<std::uint32_t> touching;
+    /// Where rows are those of parts: which patches these are parts of. See merge_parts().
+    PatchParts parts;
     std::uint64_t geometry_hash = 0;            ///< PatchMesh::geometry_hash of what the rows belong to
     Enclosure enclosure = Enclosure::automatic; ///< as the scene said
     Provenance provenance;                      ///< what made the rows
@@ -44,6 +47,17 @@ struct FormFactors {
     std::optional<FactorErrorEstimate> error; ///< estimated, of the rows as they are here
     std::optional<RepairReport> repair;       ///< what was done to the rows; none: they are raw
     RowWork work;                             ///< what it took
+
+    /// Number of patches that the rows are about: of those that they are parts of, or N.
+    [[nodiscard]] std::uint32_t patches() const { return parts.any() ? parts.patches() : matrix.size(); }
 };
+
+/// Form factors of the patches that rows are parts of: sums over the parts where light arrives, means by area
+/// where it leaves. Areas are those of the parts; a patch without any has area 0 and an empty row, all of
+/// which meets backs. A row is known where those of all of its parts are.
+/// @param factors  N rows of parts
+/// @return rows of the patches, without visibility, reference and touching; `factors` where no parts are
+/// @throws InvalidArgument if the parts do not fit the rows
+[[nodiscard]] FormFactors merge_parts(FormFactors factors);
 
 } // namespace hemi

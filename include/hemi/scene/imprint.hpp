@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/core/patch_parts.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 
@@ -29,8 +30,11 @@ struct Imprint {
 
     Scene scene;                        ///< every surface has its own subdivision
     std::vector<std::uint32_t> face_of; ///< of its surfaces, those of the scene as it was; ascending
-    std::vector<Finding> findings;      ///< a face at most once, ascending
-    double covered = 0.0;               ///< area that is left out, scene units squared
+    /// Which patches of the scene as it was those of this one are parts of: of PatchMesh(scene, subdivision)
+    /// as imprint() got them, and PatchMesh(this->scene).
+    PatchParts parts;
+    std::vector<Finding> findings; ///< a face at most once, ascending
+    double covered = 0.0;          ///< area that is left out, scene units squared
 };
 
 /// Cuts the faces of a scene where they touch, so that no patch lies on both sides of another face or is

@@ -74,7 +74,8 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
     options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
     options.flag("--allow-outside", scene.allow_outside,
                  "open files outside the scene's folder that the scene names");
-    options.flag("--imprint", scene.imprint, "cut faces where others touch them; leave out what is covered");
+    options.flag("--no-imprint", scene.imprint, "leave faces as they are where others touch or cover them",
+                 false);
     app.add_option("--two-sided", scene.two_sided,
                    "faces of GROUP radiate on both sides (not for .json); repeatable")
         ->allow_extra_args(false)

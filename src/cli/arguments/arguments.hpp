@@ -43,7 +43,7 @@ struct SceneOptions {
     std::vector<std::string> two_sided;
     bool skip_degenerate = false;
     bool allow_outside = false;
-    bool imprint = false; ///< cut faces where they touch
+    bool imprint = true; ///< cut faces where they touch
 };
 
 struct RowOptions {

@@ -151,9 +151,9 @@ Report pairs_report(const Reciprocity& pairs, const PatchNames& names) {
 } // namespace
 
 Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, const PatchNames& names,
-                        double max_row_error, double repair_seconds) {
+                        double max_row_error, double repair_seconds, const Report& mended) {
     const RowSums& sums = diagnosis.sums;
-    Report report;
+    Report report = mended;
     report.json["renderer"] = factors.provenance.renderer;
     report.add("rows",
                fmt::format("{} of {} computed", count_text(sums.known), count_text(names.group_of.size())),
@@ -191,11 +191,11 @@ Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, 
                 {"failures", diagnosis.failures},
                 {"ok", diagnosis.failures.empty()}});
     report.select("hemi/check/1",
-                  {"renderer",    "patches",       "rows",           "row_sum",   "environment_max",
-                   "blocked_max", "balance_error", "largest_factor", "above_one", "reciprocity",
-                   "repair",      "enclosure",     "declared",       "leaking",   "leaks",
-                   "covered",     "blocked",       "straddled",      "near",      "turned",
-                   "unseen",      "max_row_error", "failures",       "ok"});
+                  {"renderer",        "imprint",     "patches",       "rows",           "row_sum",
+                   "environment_max", "blocked_max", "balance_error", "largest_factor", "above_one",
+                   "reciprocity",     "repair",      "enclosure",     "declared",       "leaking",
+                   "leaks",           "covered",     "blocked",       "straddled",      "near",
+                   "turned",          "unseen",      "max_row_error", "failures",       "ok"});
     return report;
 }
 

@@ -103,7 +103,11 @@ Report stored_factors_report(const FormFactors& file) {
     const std::string hash = fmt::format("{:016x}", file.geometry_hash);
     const RowSums sums = row_sums(file.matrix);
     Report report;
-    report.add("patches", count_text(file.matrix.size()), {{"patches", file.matrix.size()}});
+    report.add(
+        "patches",
+        count_text(file.patches()) +
+            (file.parts.any() ? fmt::format(", in {}", plural(file.matrix.size(), "part", "parts")) : ""),
+        {{"patches", file.patches()}, {"parts", file.matrix.size()}});
     report.add("rows", fmt::format("{} computed", count_text(sums.known)), {{"rows", sums.known}});
     report.add(entries_report(file.matrix));
     report.add(provenance_report(file.provenance));

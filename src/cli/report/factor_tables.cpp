@@ -67,14 +67,19 @@ Report row_report(const FormFactors& factors, std::uint32_t index, const PatchNa
     return report;
 }
 
-Report point_report(const PatchMesh& mesh, const std::array<double, 6>& at, const PatchNames& names) {
+Report point_report(const LoadedScene& loaded, const std::array<double, 6>& at) {
     const Vec3 point(at[0], at[1], at[2]);
     const Vec3 normal(at[3], at[4], at[5]);
     const double length = glm::length(normal);
     if (!(length > 0.0) || !std::isfinite(length)) {
         throw InvalidArgument("--from-point: the normal must have a length");
     }
-    const std::vector<double> factors = point_factors(mesh, point, normal / length, true);
+    const std::vector<double> to_parts = point_factors(loaded.mesh, point, normal / length, true);
+    const PatchNames parts = loaded.names();
+    std::vector<double> factors(loaded.patches().size(), 0.0);
+    for (std::uint32_t part = 0; part < to_parts.size(); ++part) {
+        factors[parts.number(part)] += to_parts[part];
+    }
     FactorList list;
     for (std::uint32_t patch = 0; patch < factors.size(); ++patch) {
         if (factors[patch] > 0.0) {
@@ -90,7 +95,7 @@ Report point_report(const PatchMesh& mesh, const std::array<double, 6>& at, cons
                    {"point", {point.x, point.y, point.z}},
                    {"normal", {normal.x / length, normal.y / length, normal.z / length}}}};
     report.add({fmt::format("sum {:.9f}\n\n", sum), {{"sum", sum}}});
-    report.add(list.report(names, false));
+    report.add(list.report(loaded.patch_names(), false));
     report.select("hemi/factors-from-point/1", {"patches", "point", "normal", "entries", "sum"});
     return report;
 }

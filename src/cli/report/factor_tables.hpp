@@ -1,9 +1,9 @@
 #pragma once
 
+#include "cli/loaded_scene.hpp"
 #include "cli/report/report.hpp"
 #include "hemi/matrix/balance.hpp"
 #include "hemi/matrix/form_factors.hpp"
-#include "hemi/scene/patch_mesh.hpp"
 
 #include <array>
 #include <cstdint>
@@ -18,8 +18,7 @@ namespace hemi::cli {
 
 /// What leaves a surface element at a point, patch by patch, largest factors first.
 /// @param at  position and normal
-[[nodiscard]] Report point_report(const PatchMesh& mesh, const std::array<double, 6>& at,
-                                  const PatchNames& names);
+[[nodiscard]] Report point_report(const LoadedScene& loaded, const std::array<double, 6>& at);
 
 /// Factors between groups: a matrix while it fits a screen, else a line for every pair that see each other.
 /// Not a Report, as there may be millions of pairs: only the form that is wanted is made.

@@ -74,13 +74,76 @@ Report materials_report(const Scene& scene) {
 
 } // namespace
 
-Report scene_size_report(const PatchMesh& mesh) {
+Report scene_size_report(const LoadedScene& loaded) {
+    const PatchMesh& mesh = loaded.patches();
     Report report;
     report.add("scene",
-               fmt::format("{}, {}, {}", plural(mesh.size(), "patch", "patches"),
+               fmt::format("{}, {}, {}{}", plural(mesh.size(), "patch", "patches"),
                            plural(mesh.surfaces().size(), "surface", "surfaces"),
-                           plural(mesh.groups().size(), "group", "groups")),
-               {{"patches", mesh.size()}, {"groups", mesh.groups()}});
+                           plural(mesh.groups().size(), "group", "groups"),
+                           loaded.as_read ? fmt::format("; in {} where faces touch",
+                                                        plural(loaded.mesh.size(), "part", "parts"))
+                                          : std::string()),
+               {{"patches", mesh.size()}, {"parts", loaded.mesh.size()}, {"groups", mesh.groups()}});
+    return report;
+}
+
+Report imprint_report(const LoadedScene& loaded) {
+    Report report;
+    report.json["imprint"] = nullptr;
+    if (!loaded.as_read) {
+        return report;
+    }
+    const SceneAsRead& as_read = *loaded.as_read;
+    struct Kind {
+        Imprint::What what;
+        const char* word;  ///< in JSON
+        const char* one;   ///< what was done to one face
+        const char* many;  ///< to several
+        const char* other; ///< between a face and the one that does it
+    };
+    static constexpr Kind kinds[] = {
+        {Imprint::What::duplicate, "duplicate", "is left out: others cover it in its plane",
+         "are left out: others cover them in their planes", "by"},
+        {Imprint::What::overlapped, "overlapped", "is cut where others lie on it in its plane",
+         "are cut where others lie on them in their planes", "by"},
+        {Imprint::What::cut, "cut", "is cut where others stand on it or pass through it",
+         "are cut where others stand on them or pass through them", "by"},
+        {Imprint::What::buried, "buried", "is left out: it lies inside another body",
+         "are left out: they lie inside other bodies", "by"},
+        {Imprint::What::joined, "joined", "becomes the back of one in the same place",
+         "become the backs of others in the same places", "of"}};
+    const auto name = [&](std::uint32_t face) {
+        return fmt::format("face {} of {}", face, as_read.scene.groups[as_read.scene.surfaces[face].group]);
+    };
+    const auto is_known = [&](std::uint32_t face) { return face < as_read.scene.surfaces.size(); };
+    report.add("faces touch",
+               fmt::format("{} in {}; area {} is covered", plural(as_read.mesh.size(), "patch", "patches"),
+                           plural(loaded.mesh.size(), "part", "parts"), number_text(as_read.covered)));
+    Json list = Json::array();
+    for (const Kind& kind : kinds) {
+        std::string examples;
+        std::size_t count = 0;
+        for (const Imprint::Finding& finding : as_read.findings) {
+            if (finding.what != kind.what) {
+                continue;
+            }
+            if (++count <= 3) {
+                examples += fmt::format("{}{}", count == 1 ? ": " : ", ", name(finding.face));
+                examples +=
+                    is_known(finding.other) ? fmt::format(" {} {}", kind.other, name(finding.other)) : "";
+            }
+            list.push_back({{"what", kind.word},
+                            {"face", finding.face},
+                            {"other", is_known(finding.other) ? Json(finding.other) : Json(nullptr)}});
+        }
+        if (count > 0) {
+            report.add("",
+                       fmt::format("{} {}{}{}", plural(count, "face", "faces"),
+                                   count == 1 ? kind.one : kind.many, examples, count > 3 ? ", ..." : ""));
+        }
+    }
+    report.json["imprint"] = {{"parts", loaded.mesh.size()}, {"covered", as_read.covered}, {"faces", list}};
     return report;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/loaded_scene.hpp"
 #include "cli/report/report.hpp"
 #include "hemi/pipeline/cost.hpp"
 #include "hemi/scene/patch_mesh.hpp"
@@ -8,7 +9,9 @@
 namespace hemi::cli {
 
 /// One line on its size.
-[[nodiscard]] Report scene_size_report(const PatchMesh& mesh);
+[[nodiscard]] Report scene_size_report(const LoadedScene& loaded);
+/// What was done to faces that touch; nothing where they do not.
+[[nodiscard]] Report imprint_report(const LoadedScene& loaded);
 /// Contents of a scene. `more` is added before the tables of groups and materials, the end of the text.
 [[nodiscard]] Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& more);
 /// Memory and time that its form factors will need.

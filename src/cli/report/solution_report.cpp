@@ -203,7 +203,7 @@ Report stored_solution_report(const Solution& solution, const PatchMesh& mesh) {
 Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
                     const Solution& solution, const Seconds& seconds) {
     const RepairReport& repair = *factors.repair;
-    Report report = scene_size_report(loaded.mesh);
+    Report report = scene_size_report(loaded);
     report.add(rows);
     report.add(repair_report(repair, seconds["repair"]));
     report.add(solution_report(solution, loaded.mesh));
@@ -211,7 +211,7 @@ Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const
     report.json.update(group_means_json(loaded, factors.matrix, solution));
     report.json["reciprocity"] =
         factors.matrix.all_known() ? reciprocity_json(repair.reciprocity_after) : Json(nullptr);
-    report.select("hemi/solve/1", {"renderer", "patches", "channels", "groups", "areas", "radiosity",
+    report.select("hemi/solve/1", {"renderer", "patches", "parts", "channels", "groups", "areas", "radiosity",
                                    "exitance", "environment", "blocked", "solver", "row_sum", "reciprocity",
                                    "repair", "chosen_for", "error", "error_estimate", "seconds"});
     return report;

@@ -71,15 +71,15 @@ void print_json(const Json& object) {
 
 std::string PatchNames::describe(std::uint32_t patch) const {
     if (centres.empty()) {
-        return fmt::format("patch {} ({})", patch, group(patch));
+        return fmt::format("patch {} ({})", number(patch), group(patch));
     }
     const Vec3& centre = centres[patch];
-    return fmt::format("patch {} ({}, at {} {} {})", patch, group(patch), number_text(centre.x),
+    return fmt::format("patch {} ({}, at {} {} {})", number(patch), group(patch), number_text(centre.x),
                        number_text(centre.y), number_text(centre.z));
 }
 
 Json PatchNames::json(std::uint32_t patch) const {
-    Json object{{"index", patch}, {"group", group(patch)}, {"centre", nullptr}};
+    Json object{{"index", number(patch)}, {"group", group(patch)}, {"centre", nullptr}};
     if (!centres.empty()) {
         const Vec3& centre = centres[patch];
         object["centre"] = {centre.x, centre.y, centre.z};

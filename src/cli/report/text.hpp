@@ -42,7 +42,13 @@ void print_json(const Json& object);
 struct PatchNames {
     std::span<const std::string> groups;
     std::span<const std::uint32_t> group_of;
-    std::span<const Vec3> centres; ///< empty: not known
+    std::span<const Vec3> centres;                ///< empty: not known
+    std::span<const std::uint32_t> patch_of = {}; ///< of parts: the patches that they are parts of
+
+    /// The number that a patch has for people.
+    [[nodiscard]] std::uint32_t number(std::uint32_t patch) const {
+        return patch_of.empty() ? patch : patch_of[patch];
+    }
 
     [[nodiscard]] const std::string& group(std::uint32_t patch) const { return groups[group_of[patch]]; }
     /// "patch 12 (floor, at 0.1 0.2 0)"

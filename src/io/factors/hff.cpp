@@ -52,6 +52,9 @@ Json header(const FormFactors& file) {
               {"enclosure", to_word(file.enclosure)},
               {"reference_blocks", known_blocks(file.reference)},
               {"chosen_for", file.provenance.chosen_for}};
+    if (file.parts.any()) {
+        head["patches"] = file.parts.patches();
+    }
     if (file.error) {
         const FactorErrorEstimate& error = *file.error;
         head["error"] = {{"sampled", error.sampled},
@@ -72,6 +75,16 @@ void check(const FormFactors& file) {
     if (std::any_of(file.group_of.begin(), file.group_of.end(),
                     [&](std::uint32_t group) { return group >= file.groups.size(); })) {
         throw InvalidArgument("a patch belongs to a group that has no name");
+    }
+    const PatchParts& parts = file.parts;
+    const auto is_beyond = [](std::span<const std::uint32_t> indices, std::size_t count) {
+        return std::any_of(indices.begin(), indices.end(), [&](std::uint32_t k) { return k >= count; });
+    };
+    if (parts.any() && (parts.patch_of.size() != size || is_beyond(parts.patch_of, parts.patches()) ||
+                        is_beyond(parts.group_of, file.groups.size()))) {
+        throw InvalidArgument(fmt::format("{} parts of {} patches for {} rows; must be one for each, and "
+                                          "every patch must have a group",
+                                          parts.patch_of.size(), parts.patches(), size));
     }
     const bool has_reference = !known_blocks(file.reference).empty();
     if ((has_reference && file.reference.size() != size) || (file.error && file.error->rows.size() != size)) {
@@ -123,8 +136,13 @@ FactorErrorEstimate read_error(const JsonNode& node) {
 }
 
 /// Everything but the rows. The matrix is made only after the file proved long enough for that many.
-/// @return first rows of the blocks of the reference
-std::vector<std::uint32_t> read_header(ChunkReader& reader, FormFactors& file) {
+/// What the rows need beside what is in the file's own description.
+struct Layout {
+    std::vector<std::uint32_t> reference_blocks; ///< their first rows
+    std::optional<std::uint32_t> patches;        ///< that rows are parts of
+};
+
+Layout read_header(ChunkReader& reader, FormFactors& file) {
     const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
     const JsonNode head(document, reader.file());
     if (integer32(head.member("block_rows")) != FormFactorMatrix::block_rows) {
@@ -156,7 +174,11 @@ std::vector<std::uint32_t> read_header(ChunkReader& reader, FormFactors& file) {
     if (head.has("error")) {
         file.error = read_error(head.member("error"));
     }
-    std::vector<std::uint32_t> reference_blocks;
+    Layout layout;
+    if (head.has("patches")) {
+        layout.patches = integer32(head.member("patches"));
+    }
+    std::vector<std::uint32_t>& reference_blocks = layout.reference_blocks;
     const JsonNode blocks = head.member("reference_blocks");
     for (std::size_t k = 0; k < blocks.size(); ++k) {
         reference_blocks.push_back(integer32(blocks.element(k)));
@@ -177,7 +199,7 @@ std::vector<std::uint32_t> read_header(ChunkReader& reader, FormFactors& file) {
     }
     file.matrix = FormFactorMatrix(size);
     file.reference = FormFactorMatrix(reference_blocks.empty() ? 0 : size);
-    return reference_blocks;
+    return layout;
 }
 
 void read_groups(ChunkReader& reader, FormFactors& file) {
@@ -189,6 +211,23 @@ void read_groups(ChunkReader& reader, FormFactors& file) {
             groups.fail(fmt::format("group {}; there are {}", group, file.groups.size()));
         }
     }
+}
+
+/// @param patches  that rows are parts of
+void read_parts(ChunkReader& reader, std::uint32_t patches, FormFactors& file) {
+    Payload parts = reader.chunk("PART");
+    const auto take = [&](std::size_t count, std::size_t below, const char* what) {
+        std::vector<std::uint32_t> indices = parts.take_array<std::uint32_t>(count);
+        for (const std::uint32_t index : indices) {
+            if (index >= below) {
+                parts.fail(fmt::format("{} {}; there are {}", what, index, below));
+            }
+        }
+        return indices;
+    };
+    file.parts.patch_of = take(file.matrix.size(), patches, "patch");
+    file.parts.group_of = take(patches, file.groups.size(), "group");
+    parts.expect_end();
 }
 
 void read_touching(ChunkReader& reader, FormFactors& file) {
@@ -239,6 +278,9 @@ void write_hff(const std::filesystem::path& path, const FormFactors& file) {
     writer.chunk("GRUP", {bytes_of(file.group_of)});
     const auto touching = static_cast<std::uint32_t>(file.touching.size());
     writer.chunk("CONT", {bytes_of(touching), bytes_of(file.touching)});
+    if (file.parts.any()) {
+        writer.chunk("PART", {bytes_of(file.parts.patch_of), bytes_of(file.parts.group_of)});
+    }
     for (const RowBlock& block : file.matrix.blocks()) {
         write_row_block(writer.sink(), "ROWS", block);
     }
@@ -255,14 +297,17 @@ void write_hff(const std::filesystem::path& path, const FormFactors& file) {
 FormFactors read_hff(const std::filesystem::path& path) {
     ChunkReader reader(path, hff_format);
     FormFactors file;
-    const auto reference_blocks = read_header(reader, file);
+    const Layout layout = read_header(reader, file);
     read_groups(reader, file);
     read_touching(reader, file);
+    if (layout.patches) {
+        read_parts(reader, *layout.patches, file);
+    }
     for (std::uint32_t row = 0; row < file.matrix.size();) {
         read_block(reader, "ROWS", file.matrix, row);
         row += std::min(FormFactorMatrix::block_rows, file.matrix.size() - row);
     }
-    for (const std::uint32_t first_row : reference_blocks) {
+    for (const std::uint32_t first_row : layout.reference_blocks) {
         read_block(reader, "REFR", file.reference, first_row);
     }
     if (file.error) {

@@ -9,7 +9,16 @@ namespace {
 /// The columns of every patch table; group names are made ready once.
 class PatchColumns {
 public:
-    explicit PatchColumns(const PatchMesh& mesh) : mesh_(mesh) {
+    PatchColumns(const PatchMesh& mesh, const PatchPlaces& left)
+        : mesh_(mesh), areas_(mesh.areas()), centres_(mesh.centres()) {
+        if (!left.areas.empty()) {
+            if (left.areas.size() != mesh.size() || left.centres.size() != mesh.size()) {
+                throw InvalidArgument(fmt::format("{} areas and {} centres for {} patches", left.areas.size(),
+                                                  left.centres.size(), mesh.size()));
+            }
+            areas_ = left.areas;
+            centres_ = left.centres;
+        }
         for (const std::string& name : mesh.groups()) {
             groups_.push_back(csv_field(name));
         }
@@ -18,14 +27,16 @@ public:
     static constexpr const char* header = "index,group,area,cx,cy,cz,nx,ny,nz";
 
     void print(TextOutput& output, std::uint32_t patch) const {
-        const Vec3& c = mesh_.centres()[patch];
+        const Vec3& c = centres_[patch];
         const Vec3 n = mesh_.normal(patch) + Vec3(0.0); // no -0
         output.print(FMT_COMPILE("{},{},{},{},{},{},{},{},{}"), patch, groups_[mesh_.group(patch)],
-                     mesh_.areas()[patch], c.x, c.y, c.z, n.x, n.y, n.z);
+                     areas_[patch], c.x, c.y, c.z, n.x, n.y, n.z);
     }
 
 private:
     const PatchMesh& mesh_;
+    std::span<const double> areas_;
+    std::span<const Vec3> centres_;
     std::vector<std::string> groups_;
 };
 
@@ -42,8 +53,8 @@ std::string csv_field(const std::string& text) {
     return result + '"';
 }
 
-void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh) {
-    const PatchColumns columns(mesh);
+void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh, const PatchPlaces& left) {
+    const PatchColumns columns(mesh, left);
     TextOutput output(path);
     output.print(FMT_COMPILE("{}\n"), PatchColumns::header);
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
@@ -56,7 +67,7 @@ void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh)
 void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
                          std::span<const std::string> channels, std::span<const double> exitance,
                          std::span<const double> irradiance, std::span<const double> radiosity,
-                         std::span<const double> errors) {
+                         std::span<const double> errors, const PatchPlaces& left) {
     const std::size_t values = std::size_t{mesh.size()} * channels.size();
     if (exitance.size() != values || irradiance.size() != values || radiosity.size() != values) {
         throw InvalidArgument(fmt::format(
@@ -76,7 +87,7 @@ void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mes
     if (!errors.empty()) {
         quantities.push_back({"error", errors});
     }
-    const PatchColumns columns(mesh);
+    const PatchColumns columns(mesh, left);
     TextOutput output(path);
     output.print(FMT_COMPILE("{}"), PatchColumns::header);
     for (const Quantity& quantity : quantities) {

@@ -1,0 +1,168 @@
+#include "cli/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+using namespace hemi::cli_test;
+
+namespace {
+
+/// A cube with a floor of 3 x 3 patches and a block on it, whose foot covers the middle one whole and others
+/// in part.
+Json cube_with_block() {
+    Json scene = cube(3);
+    const auto add = [&scene](const char* polygon) {
+        scene["surfaces"].push_back(
+            {{"name", "block"}, {"material", "white"}, {"polygon", Json::parse(polygon)}});
+    };
+    add("[[0.3,0.3,0.25],[0.75,0.3,0.25],[0.75,0.7,0.25],[0.3,0.7,0.25]]");
+    add("[[0.3,0.3,0],[0.75,0.3,0],[0.75,0.3,0.25],[0.3,0.3,0.25]]");
+    add("[[0.75,0.3,0],[0.75,0.7,0],[0.75,0.7,0.25],[0.75,0.3,0.25]]");
+    add("[[0.75,0.7,0],[0.3,0.7,0],[0.3,0.7,0.25],[0.75,0.7,0.25]]");
+    add("[[0.3,0.7,0],[0.3,0.3,0],[0.3,0.3,0.25],[0.3,0.7,0.25]]");
+    return scene;
+}
+
+constexpr std::size_t patches = 6 * 9 + 5;
+constexpr double foot = 0.45 * 0.4;
+
+Words on_cpu(Words words) {
+    words.insert(words.end(), {"--device", "cpu", "--jobs", "1"});
+    return words;
+}
+
+/// Columns of a table of patches by their names; groups are left out.
+std::map<std::string, std::vector<double>> table(const std::string& text) {
+    std::istringstream lines(text);
+    std::string line;
+    std::getline(lines, line);
+    std::vector<std::string> names;
+    std::istringstream header(line);
+    for (std::string name; std::getline(header, name, ',');) {
+        names.push_back(name);
+    }
+    std::map<std::string, std::vector<double>> columns;
+    while (std::getline(lines, line)) {
+        std::istringstream fields(line);
+        std::size_t k = 0;
+        for (std::string field; std::getline(fields, field, ','); ++k) {
+            if (names[k] != "group") {
+                columns[names[k]].push_back(std::stod(field));
+            }
+        }
+    }
+    return columns;
+}
+
+double sum_of_products(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        sum += a[k] * b[k];
+    }
+    return sum;
+}
+
+} // namespace
+
+TEST_CASE("imprint: factors are those of the scene's patches, with the area that is left of them", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("block.json", cube_with_block());
+    const std::string hff = directory.path("f.hff");
+    const Outcome run =
+        run_hemi(on_cpu({"factors", scene, "-o", hff, "--patches", directory.path("p.csv"), "--json"}));
+    REQUIRE(run.status == 0);
+    CHECK(run.json()["patches"] == patches);
+    CHECK(run.json()["parts"] > patches);
+    const auto columns = table(directory.read("p.csv"));
+    const std::vector<double>& areas = columns.at("area");
+    REQUIRE(areas.size() == patches);
+    CHECK(areas[4] == 0.0); // the middle of the floor
+    double floor = 0.0;
+    for (std::size_t i = 0; i < 9; ++i) {
+        floor += areas[i];
+    }
+    CHECK(floor == Approx(1.0 - foot));
+    // Left of the block: a strip, and what is left of a corner is none.
+    CHECK(columns.at("cx")[3] == Approx(0.15));
+    CHECK(columns.at("cy")[3] == Approx(0.5));
+    CHECK(areas[3] == Approx(0.3 / 3.0));
+
+    // The same from the scene, from the file, and as a row.
+    REQUIRE(run_hemi({"convert", hff, directory.path("a.csv")}).status == 0);
+    REQUIRE(run_hemi(on_cpu({"factors", scene, "-o", directory.path("b.csv")})).status == 0);
+    CHECK(directory.read("a.csv") == directory.read("b.csv"));
+    const Json row = run_hemi({"factors", hff, "--row", "3", "--json"}).json();
+    CHECK(row["patches"] == patches);
+    CHECK(row["sum"].get<double>() == Approx(1.0).margin(1e-6));
+    const Json raw = run_hemi(on_cpu({"factors", scene, "--row", "3", "--json"})).json();
+    CHECK(raw["sum"].get<double>() == Approx(1.0).margin(1e-3));
+    CHECK(raw["entries"].size() == row["entries"].size());
+    const Json covered = run_hemi({"factors", hff, "--row", "4", "--json"}).json();
+    CHECK(covered["blocked"] == 1.0);
+    CHECK(covered["entries"].empty());
+    CHECK(run_hemi({"factors", hff, "--row", std::to_string(patches)}).status == 2);
+
+    // From a point above the floor, parts of a patch count as one.
+    const Json seen = run_hemi({"factors", scene, "--from-point", "0.1,0.1,0.5,0,0,-1", "--json"}).json();
+    CHECK(seen["patches"] == patches);
+    std::vector<int> listed;
+    for (const Json& entry : seen["entries"]) {
+        listed.push_back(entry["patch"].get<int>());
+    }
+    std::sort(listed.begin(), listed.end());
+    CHECK(std::adjacent_find(listed.begin(), listed.end()) == listed.end());
+    CHECK(seen["sum"].get<double>() == Approx(1.0).margin(1e-3));
+}
+
+TEST_CASE("imprint: light is told by the scene's patches, and none of it is lost", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("block.json", cube_with_block());
+    const Outcome run = run_hemi(on_cpu({"solve", scene, "--radiosity", directory.path("r.csv"), "--factors",
+                                         directory.path("f.hff"), "--tolerance", "1e-10", "--json"}));
+    REQUIRE(run.status == 0);
+    CHECK(run.json()["patches"] == patches);
+    auto columns = table(directory.read("r.csv"));
+    REQUIRE(columns.at("area").size() == patches);
+    // All but the lamp reflect half: what is absorbed is half of the irradiation, and all of the lamp's own.
+    std::vector<double>& irradiance = columns.at("irradiance_grey");
+    for (std::size_t i = 0; i < patches; ++i) {
+        const bool lamp = columns.at("exitance_grey")[i] > 0.0;
+        irradiance[i] *= lamp ? 1.0 : 0.5;
+    }
+    CHECK(sum_of_products(columns.at("area"), irradiance) == Approx(1.0).epsilon(1e-6));
+    // Rows of the file are used again.
+    const Outcome again =
+        run_hemi({"solve", scene, "--factors", directory.path("f.hff"), "--tolerance", "1e-10", "--json"});
+    REQUIRE(again.status == 0);
+    CHECK(again.json()["radiosity"] == run.json()["radiosity"]);
+    // They are not those of the faces as they are.
+    const Outcome uncut = run_hemi({"solve", scene, "--factors", directory.path("f.hff"), "--no-imprint"});
+    CHECK(uncut.status == 3);
+}
+
+TEST_CASE("imprint: info and check say what was cut", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("block.json", cube_with_block());
+    const Outcome info = run_hemi(on_cpu({"info", scene, "--json"}));
+    REQUIRE(info.status == 0);
+    CHECK(info.json()["patches"] == patches);
+    CHECK(info.json()["surfaces"] == 11);
+    const Json imprint = info.json()["imprint"];
+    CHECK(imprint["covered"].get<double>() == Approx(foot));
+    REQUIRE(imprint["faces"].size() == 1);
+    CHECK(imprint["faces"][0]["what"] == "cut");
+    CHECK(imprint["faces"][0]["face"] == 0);
+    const Outcome check = run_hemi(on_cpu({"check", scene}));
+    CHECK(check.status == 0);
+    CHECK(check.out_has("1 face is cut where others stand on it or pass through it: face 0 of floor"));
+    CHECK(check.out_has("buried        none"));
+
+    const Outcome uncut = run_hemi(on_cpu({"check", scene, "--no-imprint"}));
+    CHECK_FALSE(uncut.out_has("faces touch"));
+    CHECK(uncut.out_has("buried        1 patch"));
+    CHECK(run_hemi(on_cpu({"check", scene, "--no-imprint", "--json"})).json()["imprint"].is_null());
+}
