@@ -15,17 +15,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace hemi {
 
 namespace {
 
-// Shares of the budget: for the reference at most, for one size of uniform patches, for one refinement, and
-// for all solutions together.
-constexpr double reference_share = 0.4;
-constexpr double size_share = 0.25;
+// Shares of the budget: for the reference at most, for one solution on uniform patches (the second for the
+// exact preset), for one refinement, for all solutions together, and for what else is measured.
+constexpr double reference_share = 0.35;
+constexpr double solution_share = 0.25;
+constexpr double exact_solution_share = 0.1;
 constexpr double refinement_share = 0.15;
-constexpr double solutions_share = 0.5;
+constexpr double solutions_share = 0.45;
+constexpr double others_share = 0.15;
 
 constexpr std::uint32_t least_patches = 100; // of coarser meshes: fewer are of no use to anybody
 constexpr int most_coarser = 3;
@@ -33,13 +36,19 @@ constexpr int most_finer = 2;
 // A mesh of another size is worth a try where it has so many times the patches.
 constexpr double least_growth = 1.5;
 
-// How the time of a solution grows with the number of patches: the rows' between N and N², the pairs' as N².
-constexpr double growth = 1.7;
+// How the time of a solution grows with the number of patches, N to this power: rows take between N and N²,
+// pairs N²; presets give the fewer patches more sample points.
+constexpr double least_growth_of_time = 1.0;
+constexpr double most_growth_of_time = 1.8;
+constexpr double usual_growth_of_time = 1.5;
 constexpr double reference_over_standard = 1.4;
+constexpr double reference_point_over_vertex = 1.2;
 constexpr double bytes_a_pair = 4.0;
 constexpr double bytes_an_entry = 9.0;
 
+// On the scene's own patches; of these the first ones on others, where they tell enough.
 constexpr std::array<Preset, 3> presets{Preset::fast, Preset::standard, Preset::exact};
+constexpr std::size_t presets_on_other_patches = 2;
 constexpr std::array<double, 4> error_targets{0.04, 0.02, 0.01, 0.005};
 
 /// Of a preset's time to that of the standard one, about: only where it was not measured yet.
@@ -111,17 +120,33 @@ double Answers::predicted(Preset preset, double patches) const {
     if (own == timed_.end() && timed_.empty()) {
         return 0.0;
     }
-    const auto& [known, timed] = own != timed_.end() ? *own : *timed_.begin();
-    return timed.seconds * relative_cost(preset) / relative_cost(known) *
-           std::pow(patches / timed.patches, growth);
+    const auto& [known, times] = own != timed_.end() ? *own : *timed_.begin();
+    const Timed& last = times.back();
+    double growth = usual_growth_of_time;
+    if (times.size() > 1) {
+        const Timed& before = times[times.size() - 2];
+        growth = std::clamp(std::log(last.seconds / before.seconds) /
+                                std::log(static_cast<double>(last.patches) / before.patches),
+                            least_growth_of_time, most_growth_of_time);
+    }
+    return last.seconds * relative_cost(preset) / relative_cost(known) *
+           std::pow(patches / last.patches, growth);
 }
 
 double Answers::reference_seconds(double patches) const {
-    return reference_over_standard * predicted(Preset::standard, patches);
+    return reference_over_standard * predicted(Preset::standard, patches) +
+           reference_point_over_vertex * seconds_a_vertex_ * reference_points();
 }
 
 double Answers::reference_seconds() const {
     return solved_.empty() ? 0.0 : reference_seconds(reference_mesh().size());
+}
+
+std::uint32_t Answers::reference_points() const {
+    constexpr double points_a_second = 40.0; // of the budget
+    constexpr double least_points = 512.0;
+    constexpr double most_points = 4096.0;
+    return static_cast<std::uint32_t>(std::clamp(points_a_second * budget_, least_points, most_points));
 }
 
 bool Answers::fits_memory(double patches) const {
@@ -150,21 +175,22 @@ std::vector<std::pair<double, PatchMesh>> Answers::coarser_meshes() const {
     return meshes;
 }
 
-std::vector<Preset> Answers::affordable(const PatchMesh& mesh) {
+std::vector<Preset> Answers::affordable(const PatchMesh& mesh, bool own) {
     const double patches = mesh.size();
     if (timed_.empty()) { // rows alone, which is most of it
         FactorSettings settings = subject_.base;
         settings.preset = Preset::standard;
-        timed_[Preset::standard] = {mesh.size(), measure_cost(mesh, settings).seconds};
+        timed_[Preset::standard] = {{mesh.size(), measure_cost(mesh, settings).seconds}};
     }
     std::vector<Preset> result;
     if (!can_judge(patches)) {
         return result;
     }
     double seconds = watch_.seconds();
-    for (const Preset preset : presets) {
+    for (const Preset preset : std::span(presets).first(own ? presets.size() : presets_on_other_patches)) {
         const double more = predicted(preset, patches);
-        if (more <= size_share * budget_ && seconds + more <= solutions_share * budget_) {
+        const double share = preset == Preset::exact ? exact_solution_share : solution_share;
+        if (more <= share * budget_ && seconds + more <= solutions_share * budget_) {
             result.push_back(preset);
             seconds += more;
         }
@@ -192,7 +218,7 @@ void Answers::solve_uniform(const TryOwn& try_own) {
         finest_patches_ = patches;
     };
     for (const auto& [size, mesh] : coarser_meshes()) {
-        const auto chosen = affordable(mesh);
+        const auto chosen = affordable(mesh, false);
         if (chosen.empty()) {
             omit(size_label(size), "a finer reference would take too long");
             return;
@@ -200,7 +226,7 @@ void Answers::solve_uniform(const TryOwn& try_own) {
         solve_size(size, mesh, chosen);
         note_finest(size, mesh.size());
     }
-    const auto chosen = affordable(subject_.mesh);
+    const auto chosen = affordable(subject_.mesh, true);
     if (chosen.empty()) {
         omit("solutions on the scene's own patches", "a finer reference would take too long");
         return;
@@ -212,7 +238,7 @@ void Answers::solve_uniform(const TryOwn& try_own) {
     for (int k = 0; k < most_finer; ++k) {
         size *= 0.5;
         const PatchMesh mesh = cut_mesh(subject_.scene, {size, {}, {}}, subject_.with_imprint);
-        const auto finer = affordable(mesh);
+        const auto finer = affordable(mesh, false);
         if (finer.empty()) {
             return;
         }
@@ -223,7 +249,8 @@ void Answers::solve_uniform(const TryOwn& try_own) {
 
 void Answers::add_own(const Candidate& candidate, const FormFactors& factors, double seconds,
                       double row_error) {
-    if (judges_own_) {
+    // Shadow rays alone change much less than the size of the patches does.
+    if (judges_own_ && !candidate.settings.shadow_rays) {
         add(candidate, {}, subject_.mesh, factors, seconds, row_error);
     }
 }
@@ -238,7 +265,11 @@ void Answers::add(const Candidate& candidate, std::optional<double> patch_size, 
         omit(candidate.label(), error.what());
         return;
     }
+    const Stopwatch gather_watch;
     gather_at_vertices(subject_.scene, mesh, candidate.settings, Gather::automatic, solution, observer_);
+    if (!solution.vertex_radiosity.empty()) {
+        seconds_a_vertex_ = gather_watch.seconds() / mesh.size();
+    }
     Trade::Answer answer;
     answer.candidate = candidate;
     answer.patch_size = patch_size;
@@ -250,7 +281,11 @@ void Answers::add(const Candidate& candidate, std::optional<double> patch_size, 
     const FactorSettings& settings = candidate.settings;
     if (settings.method == Method::hemicube && !settings.eye_points && !settings.resolution &&
         !settings.shadow_rays) {
-        timed_[settings.preset] = {mesh.size(), answer.seconds};
+        auto& times = timed_[settings.preset];
+        if (!times.empty() && times.back().patches == mesh.size()) { // what was only a guess
+            times.pop_back();
+        }
+        times.push_back({mesh.size(), answer.seconds});
         entries_a_pair_ = static_cast<double>(factors.matrix.entries()) / mesh.size() / mesh.size();
     }
     solved_.push_back({std::move(answer), mesh, std::move(solution)});
@@ -337,17 +372,12 @@ void Answers::judge(Trade& trade) {
         trade.unanswered = "there was no time for a reference: give more with --budget";
         return;
     }
-    constexpr double points_a_second = 70.0; // of the budget
-    constexpr double least_points = 1024.0;
-    constexpr double most_points = 4096.0;
-    const auto points =
-        static_cast<std::uint32_t>(std::clamp(points_a_second * budget_, least_points, most_points));
     const Solved* finest = &solved_.front();
     for (const Solved& solved : solved_) {
         finest = !solved.answer.error_target && solved.mesh.size() > finest->mesh.size() ? &solved : finest;
     }
     trade.answer_reference = find_radiosity_reference(subject_.scene, reference_mesh(), finest->mesh,
-                                                      subject_.base, points, observer_);
+                                                      subject_.base, reference_points(), observer_);
     for (Solved& solved : solved_) {
         solved.answer.error = judge_radiosity(solved.mesh, solved.solution, *trade.answer_reference);
         trade.answers.push_back(std::move(solved.answer));

@@ -59,10 +59,11 @@ private:
 
     [[nodiscard]] double predicted(Preset preset, double patches) const;
     [[nodiscard]] double reference_seconds(double patches) const;
+    [[nodiscard]] std::uint32_t reference_points() const;
     [[nodiscard]] bool fits_memory(double patches) const;
     [[nodiscard]] bool can_judge(double patches) const;
     [[nodiscard]] std::vector<std::pair<double, PatchMesh>> coarser_meshes() const;
-    [[nodiscard]] std::vector<Preset> affordable(const PatchMesh& mesh);
+    [[nodiscard]] std::vector<Preset> affordable(const PatchMesh& mesh, bool own);
     void solve_size(double patch_size, const PatchMesh& mesh, const std::vector<Preset>& presets);
     void add(const Candidate& candidate, std::optional<double> patch_size, const PatchMesh& mesh,
              const FormFactors& factors, double seconds, double row_error);
@@ -75,10 +76,11 @@ private:
     Stopwatch watch_;
     double own_patch_size_ = 0.0;
     bool judges_own_ = false;
-    double finest_size_ = 0.0;         ///< smallest uniform patch size that was solved on
-    std::uint32_t finest_patches_ = 0; ///< of that mesh
-    double entries_a_pair_ = 1.0;      ///< of the last matrix
-    std::map<Preset, Timed> timed_;    ///< the last of every preset
+    double finest_size_ = 0.0;                   ///< smallest uniform patch size that was solved on
+    std::uint32_t finest_patches_ = 0;           ///< of that mesh
+    double entries_a_pair_ = 1.0;                ///< of the last matrix
+    std::map<Preset, std::vector<Timed>> timed_; ///< of every preset, coarse patches first
+    double seconds_a_vertex_ = 0.0;              ///< of the last gather
     std::deque<Solved> solved_;
     std::vector<std::pair<std::string, std::string>> omitted_; ///< label, why
 };

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::uint32_t mesh_resolution = 96;
 constexpr std::uint32_t mesh_shadow_rays = 32;
-constexpr std::uint32_t point_resolution = 256;
+constexpr std::uint32_t point_resolution = 192;
 constexpr std::uint32_t point_shadow_rays = 64;
 
 /// A number in [0, 1) that depends on both.
@@ -165,7 +165,7 @@ RadiosityReference find_radiosity_reference(const Scene& scene, const PatchMesh&
     const Stopwatch watch;
     FactorSettings other = settings;
     other.method = Method::hemicube;
-    other.preset = Preset::standard;
+    other.preset = Preset::fast;
     other.eye_points.reset();
     other.resolution = mesh_resolution;
     other.shadow_rays = mesh_shadow_rays;

@@ -18,9 +18,9 @@ constexpr double max_sample_share = 0.5; // of what time is left, for all rows a
 
 // Errors below what float factors can show are compared as this.
 constexpr double min_error = 1e-9;
-// Errors below these are of no use to anybody: only time counts there.
-constexpr double useful_error = 1e-6;
-constexpr double useful_answer_error = 1e-3;
+// Less than these is of no use to anybody.
+constexpr Offer useful_factors{0.0, 1e-6};
+constexpr Offer useful_answer{1.0, 1e-3};
 
 // What makes a difference to the best entry.
 constexpr double much_faster = 0.7;
@@ -208,10 +208,12 @@ std::vector<bool> pareto_front(std::span<const Offer> offers) {
     return front;
 }
 
-Recommendation recommend(std::span<const Offer> offers, double useful) {
+Recommendation recommend(std::span<const Offer> offers, const Offer& useful) {
     const std::vector<bool> front = pareto_front(offers);
     Recommendation result;
-    const auto price = [&](std::size_t k) { return offers[k].seconds * std::max(offers[k].error, useful); };
+    const auto price = [&](std::size_t k) {
+        return std::max(offers[k].seconds, useful.seconds) * std::max(offers[k].error, useful.error);
+    };
     for (std::size_t k = 0; k < offers.size(); ++k) {
         if (front[k] && (!result.best || price(k) < price(*result.best))) {
             result.best = k;
@@ -225,11 +227,11 @@ Recommendation recommend(std::span<const Offer> offers, double useful) {
         if (!front[k]) {
             continue;
         }
-        if (offers[k].seconds < much_faster * best.seconds &&
+        if (offers[k].seconds < much_faster * best.seconds && best.seconds > useful.seconds &&
             (!result.faster || offers[k].seconds > offers[*result.faster].seconds)) {
             result.faster = k;
         }
-        if (offers[k].error < much_better * best.error && best.error > useful &&
+        if (offers[k].error < much_better * best.error && best.error > useful.error &&
             (!result.more_accurate || offers[k].seconds < offers[*result.more_accurate].seconds)) {
             result.more_accurate = k;
         }
@@ -242,7 +244,7 @@ double Trade::Entry::error() const {
 }
 
 double Trade::Answer::vertices() const {
-    return std::max(error.vertices.rms, useful_error);
+    return std::max(error.vertices.rms, useful_factors.error);
 }
 
 std::vector<const Trade::Entry*> Trade::by_time() const {
@@ -272,7 +274,7 @@ Recommendation Trade::recommended_answers() const {
     for (const Answer* const answer : answers_by_time()) {
         offers.push_back({answer->seconds, answer->vertices()});
     }
-    return recommend(offers, useful_answer_error);
+    return recommend(offers, useful_answer);
 }
 
 Recommendation Trade::recommended_entries() const {
@@ -280,7 +282,7 @@ Recommendation Trade::recommended_entries() const {
     for (const Entry* const entry : by_time()) {
         offers.push_back({entry->seconds(), entry->error()});
     }
-    return recommend(offers, useful_error);
+    return recommend(offers, useful_factors);
 }
 
 Trade measure_trade(const Scene& scene, const PatchMesh& mesh, const Subdivision& subdivision,

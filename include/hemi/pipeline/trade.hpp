@@ -31,8 +31,8 @@ struct Recommendation {
     std::optional<std::size_t> more_accurate; ///< the quickest of the front that is much better
 };
 /// Recommends three of the offers on the front.
-/// @param useful_error  smaller errors are of no more use
-[[nodiscard]] Recommendation recommend(std::span<const Offer> offers, double useful_error);
+/// @param useful  what is below its time or its error counts as these: nobody gains by less
+[[nodiscard]] Recommendation recommend(std::span<const Offer> offers, const Offer& useful);
 
 /// Speed against accuracy, measured on one scene: of form factors on the scene's own patches, and of whole
 /// solutions on patches of several sizes.

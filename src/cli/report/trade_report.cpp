@@ -42,6 +42,19 @@ std::string patches_of(const Trade::Answer& answer) {
                                : "the scene's own patches";
 }
 
+/// Whether a preset is used as it is.
+bool is_plain_preset(const FactorSettings& settings) {
+    return settings.method == Method::hemicube && !settings.eye_points && !settings.resolution &&
+           !settings.shadow_rays;
+}
+
+/// "fast", "plain 1x32", "hemisphere".
+std::string method_of(const Trade::Answer& answer) {
+    const Candidate& candidate = answer.candidate;
+    return is_plain_preset(candidate.settings) ? std::string(to_word(candidate.settings.preset))
+                                               : candidate.label();
+}
+
 std::string offer_text(const Trade::Answer& answer) {
     return fmt::format("{} by {}: {} in {} ({})", patches_of(answer), answer.candidate.description(),
                        percent(answer.vertices()), seconds_text(answer.seconds), options_of(answer));
@@ -157,8 +170,8 @@ Report answers_report(const Trade& trade) {
                 2);
     Json list = Json::array();
     for (const Trade::Answer* const answer : trade.answers_by_time()) {
-        table.add({answer->front ? "*" : "", patches_of(*answer), count_text(answer->patches),
-                   answer->candidate.description(), fmt::format("{:.3g}", answer->seconds),
+        table.add({answer->front ? "*" : "", patches_of(*answer), method_of(*answer),
+                   count_text(answer->patches), fmt::format("{:.3g}", answer->seconds),
                    memory_text(answer->memory), percent(answer->vertices()), percent(answer->error.field.rms),
                    fmt::format("{:.1e}", answer->row_error)});
         list.push_back(answer_json(*answer));
@@ -293,7 +306,7 @@ PlotPanel factors_panel(const Trade& trade) {
 
 /// Lines join the sizes of one preset; single settings on the scene's own patches are points without names.
 PlotPanel answers_panel(const Trade& trade) {
-    PlotPanel panel{"The answer: error of the picture's light, patch size included",
+    PlotPanel panel{"The answer: error of the light in the picture, by patch size",
                     "seconds for the whole solution",
                     "rms error of the reflected light",
                     true,
@@ -301,8 +314,6 @@ PlotPanel answers_panel(const Trade& trade) {
     std::vector<PlotPoint> others;
     for (const Trade::Answer& answer : trade.answers) {
         const FactorSettings& settings = answer.candidate.settings;
-        const bool is_preset = settings.method == Method::hemicube && !settings.eye_points &&
-                               !settings.resolution && !settings.shadow_rays;
         PlotPoint point{"other form factors, the scene's own patches",
                         "",
                         std::max(answer.seconds, least_seconds),
@@ -312,9 +323,9 @@ PlotPanel answers_panel(const Trade& trade) {
         if (answer.error_target) {
             point.family = fmt::format("refined, preset {}", to_word(settings.preset));
             point.label = fmt::format("to {:g} %", 100.0 * *answer.error_target);
-        } else if (is_preset) {
+        } else if (is_plain_preset(settings)) {
             point.family = fmt::format("preset {}", to_word(settings.preset));
-            point.label = answer.patch_size ? fmt::format("{:g}", *answer.patch_size) : "own";
+            point.label = answer.patch_size ? fmt::format("size {:g}", *answer.patch_size) : "own size";
         } else {
             point.label = answer.front ? answer.candidate.label() : "";
             others.push_back(std::move(point));
