@@ -41,7 +41,7 @@ constexpr double least_growth = 1.5;
 constexpr double least_growth_of_time = 1.0;
 constexpr double most_growth_of_time = 1.8;
 constexpr double usual_growth_of_time = 1.5;
-constexpr double reference_over_standard = 1.4;
+constexpr double reference_over_standard = 0.8;
 constexpr double reference_point_over_vertex = 1.2;
 constexpr double bytes_a_pair = 4.0;
 constexpr double bytes_an_entry = 9.0;
@@ -380,6 +380,9 @@ void Answers::judge(Trade& trade) {
                                                       subject_.base, reference_points(), observer_);
     for (Solved& solved : solved_) {
         solved.answer.error = judge_radiosity(solved.mesh, solved.solution, *trade.answer_reference);
+        observer_.detail(fmt::format("{} patches: {:.2g} +- {:.2g} %", solved.answer.patches,
+                                     100.0 * solved.answer.error.vertices.rms,
+                                     100.0 * solved.answer.error.vertices.doubt));
         trade.answers.push_back(std::move(solved.answer));
     }
 }

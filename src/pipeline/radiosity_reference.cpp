@@ -9,6 +9,7 @@
 #include "hemi/display/vertex_colours.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/radiosity.hpp"
+#include "pipeline/corner_interpolation.hpp"
 #include "pipeline/gathered_radiosity.hpp"
 #include "pipeline/patch_locator.hpp"
 #include "pipeline/visible_radiosity.hpp"
@@ -55,30 +56,61 @@ Vec3 point_of(const PatchCorners& corners, double x, double y) {
 /// Points with the patches that they lie on.
 struct Points {
     std::vector<SurfacePoint> points;
+    std::vector<double> areas; ///< that they stand for
     std::vector<std::uint32_t> hosts;
 };
 
-/// One in every share of the area that reflects, wherever that lies.
-Points spread_points(const Scene& scene, const PatchMesh& mesh, std::span<const double> blocked,
-                     std::uint32_t count) {
-    std::vector<std::uint32_t> patches;
+/// Rms of what is reflected, for every channel.
+std::vector<double> reflected_units(const PatchMesh& mesh, const std::vector<std::uint32_t>& patches,
+                                    const Solution& solution) {
+    std::vector<double> units(solution.channels, 0.0);
     double area = 0.0;
-    for (const std::uint32_t i : reflecting_patches(scene, mesh)) {
-        if (blocked[i] <= buried_above) {
-            patches.push_back(i);
-            area += mesh.areas()[i];
+    for (const std::uint32_t i : patches) {
+        area += mesh.areas()[i];
+        for (std::uint32_t c = 0; c < solution.channels; ++c) {
+            const std::size_t at = std::size_t{i} * solution.channels + c;
+            units[c] += mesh.areas()[i] * std::pow(solution.radiosity[at] - solution.exitance[at], 2.0);
         }
+    }
+    for (double& unit : units) {
+        unit = area > 0.0 ? std::sqrt(unit / area) : 0.0;
+    }
+    return units;
+}
+
+/// One in every share of the area, where shares are smaller the faster the light changes there.
+Points spread_points(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
+                     std::uint32_t count) {
+    // Where the light is even something may change still: as if it did by this share of what is reflected.
+    constexpr double least_change = 0.05;
+    std::vector<std::uint32_t> patches;
+    for (const std::uint32_t i : reflecting_patches(scene, mesh)) {
+        if (solution.back_face_share[i] <= buried_above) {
+            patches.push_back(i);
+        }
+    }
+    const std::vector<double> units = reflected_units(mesh, patches, solution);
+    const CornerInterpolation corners(
+        mesh, corner_values(mesh, solution.channels, solution.radiosity, solution.back_face_share),
+        solution.channels);
+    std::vector<double> densities; // of points, but for a factor
+    double total = 0.0;
+    for (const std::uint32_t i : patches) {
+        densities.push_back(std::sqrt(corners.spread(i, solution, units) + least_change * least_change));
+        total += mesh.areas()[i] * densities.back();
     }
     Points result;
     double before = 0.0;
-    const double share = area / count;
-    for (const std::uint32_t i : patches) {
-        const PatchCorners corners = mesh.corners(i);
-        before += mesh.areas()[i];
+    const double share = total / count;
+    for (std::size_t p = 0; p < patches.size(); ++p) {
+        const std::uint32_t i = patches[p];
+        const PatchCorners polygon = mesh.corners(i);
+        before += mesh.areas()[i] * densities[p];
         while ((static_cast<double>(result.points.size()) + 0.5) * share < before) {
             const std::size_t k = result.points.size();
             result.points.push_back(
-                {point_of(corners, hashed(k, 1), hashed(k, 2)), mesh.normal(i), mesh.surface_of()[i]});
+                {point_of(polygon, hashed(k, 1), hashed(k, 2)), mesh.normal(i), mesh.surface_of()[i]});
+            result.areas.push_back(share / densities[p]);
             result.hosts.push_back(i);
         }
     }
@@ -112,12 +144,13 @@ std::vector<double> averaged(const PatchMesh& mesh, const PatchMesh& coarser, st
     return result;
 }
 
-/// Errors at points that all stand for the same area, one channel.
+/// Errors at points, one channel.
 class PointErrors {
 public:
-    void add(double error, double reflected) {
-        squares_.push_back(error * error);
-        reflected_ += reflected * reflected;
+    /// @param area  that the point stands for
+    void add(double area, double error, double reflected) {
+        errors_.push_back({std::abs(error), area});
+        reflected_ += area * reflected * reflected;
     }
     /// @return nothing where nothing is reflected
     [[nodiscard]] std::optional<FieldError> summary() {
@@ -125,24 +158,31 @@ public:
             return std::nullopt;
         }
         double sum = 0.0;
-        double fourth = 0.0;
-        for (const double square : squares_) {
-            sum += square;
-            fourth += square * square;
+        double squares = 0.0;
+        double area = 0.0;
+        for (const auto& [error, of] : errors_) {
+            sum += of * error * error;
+            squares += std::pow(of * error * error, 2.0);
+            area += of;
         }
-        std::sort(squares_.begin(), squares_.end());
-        const auto count = static_cast<double>(squares_.size());
-        const auto at = static_cast<std::size_t>(0.95 * (count - 1.0));
-        const double variance = std::max(0.0, fourth - sum * sum / count);
+        const double variance = std::max(0.0, squares - sum * sum / static_cast<double>(errors_.size()));
         FieldError result;
         result.rms = std::sqrt(sum / reflected_);
-        result.percentile95 = std::sqrt(squares_[at] * count / reflected_);
         result.doubt = std::sqrt((sum + std::sqrt(variance)) / reflected_) - result.rms;
+        std::sort(errors_.begin(), errors_.end());
+        double below = 0.0;
+        for (const auto& [error, of] : errors_) {
+            result.percentile95 = error * std::sqrt(area / reflected_);
+            below += of;
+            if (below >= 0.95 * area) {
+                break;
+            }
+        }
         return result;
     }
 
 private:
-    std::vector<double> squares_;
+    std::vector<std::pair<double, double>> errors_; ///< with areas
     double reflected_ = 0.0;
 };
 
@@ -197,7 +237,7 @@ RadiosityReference find_radiosity_reference(const Scene& scene, const PatchMesh&
     const double ratio = std::min(mean_area(mesh) / mean_area(coarser), 0.75);
     const double own = ratio / (1.0 - ratio);
 
-    const Points spread = spread_points(scene, mesh, solution.back_face_share, count);
+    const Points spread = spread_points(scene, mesh, solution, count);
     RowPlan plan = plan_rows(other, mesh.size());
     plan.hemicube.resolution = point_resolution;
     std::vector<double> weights(mesh.size());
@@ -228,12 +268,14 @@ RadiosityReference find_radiosity_reference(const Scene& scene, const PatchMesh&
             continue;
         }
         reference.points.push_back(spread.points[k]);
+        reference.areas.push_back(spread.areas[k]);
         for (std::uint32_t c = 0; c < channels; ++c) {
             const std::size_t at = std::size_t{k} * channels + c;
             reference.radiosity.push_back(light[at]);
             reference.reflected.push_back(light[at] -
                                           values.exitance[std::size_t{spread.hosts[k]} * channels + c]);
-            own_errors[c].add(own * (coarse_light[at] - light[at]), reference.reflected.back());
+            own_errors[c].add(spread.areas[k], own * (coarse_light[at] - light[at]),
+                              reference.reflected.back());
         }
     }
     FieldError worst;
@@ -282,8 +324,8 @@ RadiosityError judge_radiosity(const PatchMesh& mesh, const Solution& solution,
             }
             const std::size_t at = k * channels + c;
             const double right = reference.radiosity[at];
-            vertices[c].add(shown - right, reference.reflected[at]);
-            field[c].add(solution.radiosity[std::size_t{*patch} * channels + c] - right,
+            vertices[c].add(reference.areas[k], shown - right, reference.reflected[at]);
+            field[c].add(reference.areas[k], solution.radiosity[std::size_t{*patch} * channels + c] - right,
                          reference.reflected[at]);
         }
     }

@@ -13,23 +13,26 @@ namespace hemi {
 
 /// The radiosity of a scene at points of its surfaces, which solutions on coarser meshes are judged by.
 struct RadiosityReference {
-    std::vector<SurfacePoint> points; ///< evenly over the area that reflects and that nothing covers
-    std::uint32_t channels = 0;       ///< of the scene
-    std::vector<double> radiosity;    ///< of channel c at point k at [k·channels + c]
-    std::vector<double> reflected;    ///< the same of what is reflected there, B - E
-    std::uint32_t patches = 0;        ///< of the mesh that the light was solved on
-    double own_error = 0.0;           ///< about its own, rms relative to what is reflected, the worst channel
-    double seconds = 0.0;             ///< that it took
+    std::vector<SurfacePoint>
+        points;                    ///< on what reflects and is not covered, more where the light changes fast
+    std::vector<double> areas;     ///< that every point stands for
+    std::uint32_t channels = 0;    ///< of the scene
+    std::vector<double> radiosity; ///< of channel c at point k at [k·channels + c]
+    std::vector<double> reflected; ///< the same of what is reflected there, B - E
+    std::uint32_t patches = 0;     ///< of the mesh that the light was solved on
+    double own_error = 0.0;        ///< about its own, rms relative to what is reflected, the worst channel
+    double seconds = 0.0;          ///< that it took
 };
 
 /// Solves the light on a fine mesh and gathers it at points by a row of factors for each, so that the
 /// radiosity there converges twice as fast as that of the patches (the iterated solution), and no point
 /// depends on the shape of the patch around it.
 ///
-/// Rows are by hemicubes with half as many texels again as those of `default` and twice its shadow rays,
-/// those of the points with four times its texels a direction; their rotations and points are others. The
-/// reference's own error is estimated from what the gathered light changes by when the radiosity is averaged
-/// over the coarser patches, which goes like the square of the patches' size.
+/// Rows are those of `fast` with half as many texels again along an edge, and with shadow rays; those of the
+/// points, by which most light comes, have three times the texels of `default` along an edge and four times
+/// its shadow rays. Rotations and rays are others than those of the settings. The reference's own error is
+/// estimated from what the gathered light changes by when the radiosity is averaged over the coarser patches,
+/// which goes like the square of the patches' size.
 /// @param scene     materials, environment, enclosure
 /// @param mesh      finer than those that are to be judged
 /// @param coarser   the finest of these, or one of about its size
