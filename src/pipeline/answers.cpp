@@ -380,9 +380,10 @@ void Answers::judge(Trade& trade) {
                                                       subject_.base, reference_points(), observer_);
     for (Solved& solved : solved_) {
         solved.answer.error = judge_radiosity(solved.mesh, solved.solution, *trade.answer_reference);
-        observer_.detail(fmt::format("{} patches: {:.2g} +- {:.2g} %", solved.answer.patches,
-                                     100.0 * solved.answer.error.vertices.rms,
-                                     100.0 * solved.answer.error.vertices.doubt));
+        const FieldError& vertices = solved.answer.error.vertices;
+        observer_.detail(fmt::format(
+            "{} by {}: {:.2g} %, standard error {:.2g} %", plural(solved.answer.patches, "patch", "patches"),
+            solved.answer.candidate.label(), 100.0 * vertices.rms, 100.0 * vertices.doubt));
         trade.answers.push_back(std::move(solved.answer));
     }
 }
