@@ -56,6 +56,13 @@ double relative_cost(Preset preset) {
     return preset == Preset::exact ? 3.0 : preset == Preset::standard ? 1.0 : 0.6;
 }
 
+/// Below this number of patches the time hardly depends on it: presets take more sample points for fewer, and
+/// there are threads to start.
+double at_least_few(double patches) {
+    constexpr double few = 400.0;
+    return std::max(patches, few);
+}
+
 /// To two digits, as a person would write it.
 double rounded(double value) {
     const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
@@ -125,12 +132,14 @@ double Answers::predicted(Preset preset, double patches) const {
     double growth = usual_growth_of_time;
     if (times.size() > 1) {
         const Timed& before = times[times.size() - 2];
-        growth = std::clamp(std::log(last.seconds / before.seconds) /
-                                std::log(static_cast<double>(last.patches) / before.patches),
-                            least_growth_of_time, most_growth_of_time);
+        const double ratio = at_least_few(last.patches) / at_least_few(before.patches);
+        if (ratio > least_growth) {
+            growth = std::clamp(std::log(last.seconds / before.seconds) / std::log(ratio),
+                                least_growth_of_time, most_growth_of_time);
+        }
     }
     return last.seconds * relative_cost(preset) / relative_cost(known) *
-           std::pow(patches / last.patches, growth);
+           std::pow(at_least_few(patches) / at_least_few(last.patches), growth);
 }
 
 double Answers::reference_seconds(double patches) const {
@@ -268,7 +277,7 @@ void Answers::add(const Candidate& candidate, std::optional<double> patch_size, 
     const Stopwatch gather_watch;
     gather_at_vertices(subject_.scene, mesh, candidate.settings, Gather::automatic, solution, observer_);
     if (!solution.vertex_radiosity.empty()) {
-        seconds_a_vertex_ = gather_watch.seconds() / mesh.size();
+        seconds_a_vertex_ = gather_watch.seconds() / at_least_few(mesh.size());
     }
     Trade::Answer answer;
     answer.candidate = candidate;
@@ -300,7 +309,11 @@ void Answers::refine() {
     candidate.settings.estimate_error = true;
     const PatchMesh coarse = coarse_mesh(subject_.scene, subject_.with_imprint);
     double last = 0.0;
+    double reached = 1.0;
     for (const double target : error_targets) {
+        if (reached <= target) { // the same patches would do
+            continue;
+        }
         const double limit =
             std::min(refinement_share * budget_, budget_ - reference_seconds() - watch_.seconds());
         const std::string label = fmt::format("patches refined to {:g} %", 100.0 * target);
@@ -320,6 +333,7 @@ void Answers::refine() {
             omit(label, found.stopped);
             return;
         }
+        reached = found.steps.back().error;
         Trade::Answer answer;
         answer.candidate = candidate;
         answer.error_target = target;

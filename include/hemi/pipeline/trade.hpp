@@ -21,6 +21,7 @@ struct Offer {
 };
 
 /// Offers that nothing beats: no other is as fast and as good, and faster or better.
+/// @param offers  in any order
 /// @return for every offer whether it is one of them
 [[nodiscard]] std::vector<bool> pareto_front(std::span<const Offer> offers);
 
@@ -31,6 +32,7 @@ struct Recommendation {
     std::optional<std::size_t> more_accurate; ///< the quickest of the front that is much better
 };
 /// Recommends three of the offers on the front.
+/// @param offers  in any order
 /// @param useful  what is below its time or its error counts as these: nobody gains by less
 [[nodiscard]] Recommendation recommend(std::span<const Offer> offers, const Offer& useful);
 
