@@ -314,8 +314,8 @@ void Answers::refine() {
         if (reached <= target) { // the same patches would do
             continue;
         }
-        const double limit =
-            std::min(refinement_share * budget_, budget_ - reference_seconds() - watch_.seconds());
+        const double limit = std::min(refinement_share * budget_, (1.0 - others_share) * budget_ -
+                                                                      reference_seconds() - watch_.seconds());
         const std::string label = fmt::format("patches refined to {:g} %", 100.0 * target);
         if (2.0 * last > limit) {
             omit(label, "there was no time for it");
