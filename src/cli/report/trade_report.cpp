@@ -166,8 +166,8 @@ Report answers_report(const Trade& trade) {
         return {fmt::format("\nErrors of form factors only: {}.\n", trade.unanswered),
                 {{"solutions", Json::array()}, {"solution_reference", nullptr}}};
     }
-    Table table({"", "patches", "number", "form factors", "seconds", "memory", "picture", "constants", "row"},
-                2);
+    Table table({"", "patches", "form factors", "number", "seconds", "memory", "picture", "constants", "row"},
+                3);
     Json list = Json::array();
     for (const Trade::Answer* const answer : trade.answers_by_time()) {
         table.add({answer->front ? "*" : "", patches_of(*answer), method_of(*answer),
