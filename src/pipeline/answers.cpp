@@ -40,7 +40,7 @@ constexpr double least_growth = 1.5;
 // pairs N²; presets give the fewer patches more sample points.
 constexpr double least_growth_of_time = 1.0;
 constexpr double most_growth_of_time = 1.8;
-constexpr double usual_growth_of_time = 1.5;
+constexpr double usual_growth_of_time = 1.2;
 constexpr double reference_over_standard = 0.8;
 constexpr double reference_point_over_vertex = 1.2;
 constexpr double bytes_a_pair = 4.0;
@@ -276,14 +276,17 @@ void Answers::add(const Candidate& candidate, std::optional<double> patch_size, 
     }
     const Stopwatch gather_watch;
     gather_at_vertices(subject_.scene, mesh, candidate.settings, Gather::automatic, solution, observer_);
+    seconds += watch.seconds();
     if (!solution.vertex_radiosity.empty()) {
-        seconds_a_vertex_ = gather_watch.seconds() / at_least_few(mesh.size());
+        const double seconds_of_gather = gather_watch.seconds();
+        const VertexGather gathered(mesh, solution.back_face_share, reflecting_patches(subject_.scene, mesh));
+        seconds_a_vertex_ = seconds_of_gather / at_least_few(static_cast<double>(gathered.points().size()));
     }
     Trade::Answer answer;
     answer.candidate = candidate;
     answer.patch_size = patch_size;
     answer.patches = mesh.size();
-    answer.seconds = seconds + watch.seconds();
+    answer.seconds = seconds;
     answer.memory = pair_table_bytes(candidate, mesh.size(), mesh.size()) + factors.matrix.memory_bytes();
     answer.gathered = !solution.vertex_radiosity.empty();
     answer.row_error = row_error;

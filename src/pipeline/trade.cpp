@@ -13,8 +13,9 @@ namespace hemi {
 
 namespace {
 
-constexpr double reference_share = 0.06; // of the budget
-constexpr double max_sample_share = 0.5; // of what time is left, for all rows after a sample
+constexpr double reference_share = 0.06;    // of the budget
+constexpr double least_factors_share = 0.1; // for form factors, whatever solutions took
+constexpr double max_sample_share = 0.5;    // of what time is left, for all rows after a sample
 
 // Errors below what float factors can show are compared as this.
 constexpr double min_error = 1e-9;
@@ -107,7 +108,8 @@ public:
                 }
             });
             answers_.refine();
-            budget_ -= answers_.reference_seconds();
+            budget_ = std::max(budget_ - answers_.reference_seconds(),
+                               watch_.seconds() + least_factors_share * budget_);
         }
         for (Trade::Entry& entry : trade.entries) {
             if (!entry.measurement) {

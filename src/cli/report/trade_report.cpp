@@ -345,7 +345,9 @@ std::string trade_drawing(const Trade& trade, const LoadedScene& loaded) {
     if (!trade.answers.empty()) {
         panels.push_back(answers_panel(trade));
     }
-    panels.push_back(factors_panel(trade));
+    if (!trade.by_time().empty()) {
+        panels.push_back(factors_panel(trade));
+    }
     const std::string size = plural(loaded.mesh.size(), "patch", "patches");
     return trade_plot(loaded.scene.name.empty() ? size : size + ": " + loaded.scene.name, panels);
 }
