@@ -63,9 +63,9 @@ double at_least_few(double patches) {
     return std::max(patches, few);
 }
 
-/// To two digits, as a person would write it.
+/// To three digits, as a person would write it.
 double rounded(double value) {
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
     return std::round(value / unit) * unit;
 }
 
