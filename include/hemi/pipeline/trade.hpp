@@ -91,9 +91,9 @@ struct Trade {
 ///
 /// Whole solutions come first: by the presets on uniform patches, from coarse ones down to the scene's own
 /// size and below, halving sizes as long as the budget allows; and on patches that are refined to several
-/// error targets. All are compared with light gathered from a mesh that is finer than each of them
-/// everywhere, see find_radiosity_reference(). Scenes without light or reflection have no such answers. Form
-/// factors are compared on the scene's own patches with rows of many sample points: each candidate on a
+/// error targets. All are compared with light gathered from a mesh that is finer than each of them and
+/// nowhere coarser, see find_radiosity_reference(). Scenes without light or reflection have no such answers.
+/// Form factors are compared on the scene's own patches with rows of many sample points: each candidate on a
 /// sample first, then on all rows if half of what time is left will do.
 /// @param scene         as read
 /// @param mesh          its patches
