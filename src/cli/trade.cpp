@@ -1,3 +1,4 @@
+#include "hemi/pipeline/trade.hpp"
 #include "cli/commands.hpp"
 #include "cli/loaded_scene.hpp"
 #include "cli/output_paths.hpp"
@@ -7,7 +8,6 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/scene_reader.hpp"
-#include "hemi/pipeline/accuracy.hpp"
 
 #include <fmt/format.h>
 
@@ -34,8 +34,9 @@ ExitStatus run(const TradeArguments& arguments, const Terminal& terminal) {
     }
     TerminalObserver observer(terminal);
     const Trade trade =
-        measure_trade(loaded.scene, loaded.mesh, arguments.rows.factors, arguments.budget, observer);
-    if (arguments.output && trade.best() != nullptr) {
+        measure_trade(loaded.as_read.value_or(loaded.scene), loaded.mesh, arguments.scene.subdivision,
+                      arguments.scene.imprint, arguments.rows.factors, arguments.budget, observer);
+    if (arguments.output && !(trade.by_time().empty() && trade.answers.empty())) {
         io::OutputFile file(*arguments.output);
         file.write(trade_drawing(trade, loaded));
         file.commit();

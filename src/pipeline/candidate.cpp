@@ -196,6 +196,7 @@ Measurement try_on_all(const Scene& scene, const PatchMesh& mesh, const Candidat
     FormFactors factors;
     if (candidate.settings.method != Method::hemicube) { // as the method has them
         factors.matrix = compute_matrix(*make_row_provider(mesh, candidate.settings), patches, go_on);
+        factors.areas.assign(mesh.areas().begin(), mesh.areas().end());
     } else {
         FactorSettings settings = candidate.settings;
         settings.estimate_error = false;

@@ -8,8 +8,8 @@
 #include "hemi/engine/touching_faces.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/radiosity.hpp"
-#include "hemi/scene/imprint.hpp"
 #include "matrix/split_rows.hpp"
+#include "pipeline/cut_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -462,8 +462,7 @@ PatchMesh coarse_mesh(const Scene& scene, bool with_imprint) {
     }
     Subdivision subdivision;
     subdivision.patch_size = std::sqrt(area / first_patches);
-    const std::optional<Imprint> cut = with_imprint ? imprint(scene, subdivision) : std::nullopt;
-    return cut ? PatchMesh(cut->scene) : PatchMesh(scene, subdivision);
+    return cut_mesh(scene, subdivision, with_imprint);
 }
 
 Refinement solve_refined(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,

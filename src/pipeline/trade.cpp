@@ -1,7 +1,9 @@
-#include "hemi/core/stopwatch.hpp"
-#include "hemi/pipeline/accuracy.hpp"
+#include "hemi/pipeline/trade.hpp"
 
+#include "hemi/core/stopwatch.hpp"
 #include "hemi/core/text.hpp"
+#include "hemi/pipeline/radiosity.hpp"
+#include "pipeline/answers.hpp"
 
 #include <fmt/format.h>
 
@@ -11,13 +13,15 @@ namespace hemi {
 
 namespace {
 
-constexpr double reference_share = 0.12; // of the budget
-constexpr double max_sample_share = 0.5; // of what time is left, for all rows after a sample
+constexpr double reference_share = 0.06;    // of the budget
+constexpr double least_factors_share = 0.1; // for form factors, whatever solutions took
+constexpr double max_sample_share = 0.5;    // of what time is left, for all rows after a sample
 
 // Errors below what float factors can show are compared as this.
 constexpr double min_error = 1e-9;
-// Errors below this are of no use to anybody: only time counts there.
-constexpr double useful_error = 1e-6;
+// Less than these is of no use to anybody.
+constexpr Offer useful_factors{0.0, 1e-6};
+constexpr Offer useful_answer{1.0, 1e-3};
 
 // What makes a difference to the best entry.
 constexpr double much_faster = 0.7;
@@ -79,24 +83,11 @@ std::vector<Trade::Entry> all_entries(const FactorSettings& base, std::uint32_t 
     return entries;
 }
 
-/// Whether another entry is as fast and as good, and faster or better.
-bool is_beaten(const Trade::Entry& entry, const std::vector<Trade::Entry>& entries) {
-    return std::any_of(entries.begin(), entries.end(), [&entry](const Trade::Entry& other) {
-        return &other != &entry && other.measurement && other.seconds() <= entry.seconds() &&
-               other.error() <= entry.error() &&
-               (other.seconds() < entry.seconds() || other.error() < entry.error());
-    });
-}
-
-double price(const Trade::Entry& entry) {
-    return entry.seconds() * std::max(entry.error(), useful_error);
-}
-
 class TradeMeasurement {
 public:
-    TradeMeasurement(const Scene& scene, const PatchMesh& mesh, const FactorSettings& base, double budget,
-                     Observer& observer)
-        : scene_(scene), mesh_(mesh), base_(base), budget_(budget), observer_(observer) {}
+    TradeMeasurement(const Answers::Subject& subject, double budget, Observer& observer)
+        : scene_(subject.scene), mesh_(subject.mesh), base_(subject.base), budget_(budget),
+          observer_(observer), answers_(subject, budget, observer) {}
 
     [[nodiscard]] Trade run() {
         Trade trade;
@@ -107,17 +98,39 @@ public:
                                    plural(trade.reference.patches.size(), "row", "rows"),
                                    trade.reference.settings.eye_points, trade.reference.settings.resolution,
                                    seconds_text(trade.reference.seconds)));
-        for (Trade::Entry& entry : trade.entries) {
-            measure(entry, trade.reference);
+        trade.unanswered = answers_.obstacle();
+        if (trade.unanswered.empty()) {
+            answers_.solve_uniform([&](Preset preset) {
+                for (Trade::Entry& entry : trade.entries) {
+                    if (is_preset(entry.candidate, preset)) {
+                        measure_all(entry, trade.reference);
+                    }
+                }
+            });
+            answers_.refine();
+            budget_ = std::max(budget_ - answers_.reference_seconds(),
+                               watch_.seconds() + least_factors_share * budget_);
         }
         for (Trade::Entry& entry : trade.entries) {
-            entry.front = entry.measurement && !is_beaten(entry, trade.entries);
+            if (!entry.measurement) {
+                measure(entry, trade.reference);
+            }
         }
+        if (trade.unanswered.empty()) {
+            answers_.judge(trade);
+        }
+        find_fronts(trade);
         return trade;
     }
 
 private:
     [[nodiscard]] double left() const { return budget_ - watch_.seconds(); }
+
+    static bool is_preset(const Candidate& candidate, Preset preset) {
+        const FactorSettings& settings = candidate.settings;
+        return settings.method == Method::hemicube && settings.preset == preset && !settings.eye_points &&
+               !settings.resolution && !settings.shadow_rays;
+    }
 
     /// On a sample first; then on all rows if half of what time is left will do.
     void measure(Trade::Entry& entry, const Reference& reference) {
@@ -132,11 +145,16 @@ private:
         }
         observer_.detail(candidate.label());
         entry.measurement = try_on_sample(scene_, mesh_, candidate, reference, mesh_.size(), radiosity_);
-        if (entry.measurement->seconds > max_sample_share * left()) {
-            return;
+        if (entry.measurement->seconds <= max_sample_share * left()) {
+            measure_all(entry, reference);
         }
+    }
+
+    void measure_all(Trade::Entry& entry, const Reference& reference) {
+        const Candidate& candidate = entry.candidate;
         FormFactors factors;
         entry.measurement = try_on_all(scene_, mesh_, candidate, reference, radiosity_, &factors);
+        answers_.add_own(candidate, factors, entry.measurement->seconds, entry.measurement->error.row_rms);
         if (radiosity_.empty() && candidate.settings.method == Method::hemicube) {
             factors.reference = reference.rows;
             estimate_error(factors);
@@ -146,19 +164,89 @@ private:
         }
     }
 
+    static void find_fronts(Trade& trade) {
+        std::vector<Offer> offers;
+        std::vector<Trade::Entry*> measured;
+        for (Trade::Entry& entry : trade.entries) {
+            if (entry.measurement) {
+                measured.push_back(&entry);
+                offers.push_back({entry.seconds(), entry.error()});
+            }
+        }
+        std::vector<bool> front = pareto_front(offers);
+        for (std::size_t k = 0; k < measured.size(); ++k) {
+            measured[k]->front = front[k];
+        }
+        offers.clear();
+        for (const Trade::Answer& answer : trade.answers) {
+            offers.push_back({answer.seconds, answer.vertices()});
+        }
+        front = pareto_front(offers);
+        for (std::size_t k = 0; k < trade.answers.size(); ++k) {
+            trade.answers[k].front = front[k];
+        }
+    }
+
     const Scene& scene_;
     const PatchMesh& mesh_;
     const FactorSettings& base_;
     double budget_;
     Observer& observer_;
     Stopwatch watch_;
+    Answers answers_;
     std::vector<double> radiosity_; ///< of the first rows that were all computed
 };
 
 } // namespace
 
+std::vector<bool> pareto_front(std::span<const Offer> offers) {
+    std::vector<bool> front;
+    for (const Offer& offer : offers) {
+        front.push_back(std::none_of(offers.begin(), offers.end(), [&offer](const Offer& other) {
+            return other.seconds <= offer.seconds && other.error <= offer.error &&
+                   (other.seconds < offer.seconds || other.error < offer.error);
+        }));
+    }
+    return front;
+}
+
+Recommendation recommend(std::span<const Offer> offers, const Offer& useful) {
+    const std::vector<bool> front = pareto_front(offers);
+    Recommendation result;
+    const auto price = [&](std::size_t k) {
+        return std::max(offers[k].seconds, useful.seconds) * std::max(offers[k].error, useful.error);
+    };
+    for (std::size_t k = 0; k < offers.size(); ++k) {
+        if (front[k] && (!result.best || price(k) < price(*result.best))) {
+            result.best = k;
+        }
+    }
+    if (!result.best) {
+        return result;
+    }
+    const Offer& best = offers[*result.best];
+    for (std::size_t k = 0; k < offers.size(); ++k) {
+        if (!front[k]) {
+            continue;
+        }
+        if (offers[k].seconds < much_faster * best.seconds && best.seconds > useful.seconds &&
+            (!result.faster || offers[k].seconds > offers[*result.faster].seconds)) {
+            result.faster = k;
+        }
+        if (offers[k].error < much_better * best.error && best.error > useful.error &&
+            (!result.more_accurate || offers[k].seconds < offers[*result.more_accurate].seconds)) {
+            result.more_accurate = k;
+        }
+    }
+    return result;
+}
+
 double Trade::Entry::error() const {
     return std::max(measurement->error.row_rms, min_error);
+}
+
+double Trade::Answer::vertices() const {
+    return std::max(error.vertices.rms, useful_factors.error);
 }
 
 std::vector<const Trade::Entry*> Trade::by_time() const {
@@ -173,43 +261,35 @@ std::vector<const Trade::Entry*> Trade::by_time() const {
     return measured;
 }
 
-const Trade::Entry* Trade::best() const {
-    const Entry* best = nullptr;
-    for (const Entry& entry : entries) {
-        if (entry.front && (best == nullptr || price(entry) < price(*best))) {
-            best = &entry;
-        }
+std::vector<const Trade::Answer*> Trade::answers_by_time() const {
+    std::vector<const Answer*> sorted;
+    for (const Answer& answer : answers) {
+        sorted.push_back(&answer);
     }
-    return best;
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const Answer* a, const Answer* b) { return a->seconds < b->seconds; });
+    return sorted;
 }
 
-const Trade::Entry* Trade::faster() const {
-    const Entry* const chosen = best();
-    const Entry* faster = nullptr;
-    for (const Entry& entry : entries) {
-        if (entry.front && entry.seconds() < much_faster * chosen->seconds() &&
-            (faster == nullptr || entry.seconds() > faster->seconds())) {
-            faster = &entry;
-        }
+Recommendation Trade::recommended_answers() const {
+    std::vector<Offer> offers;
+    for (const Answer* const answer : answers_by_time()) {
+        offers.push_back({answer->seconds, answer->vertices()});
     }
-    return faster;
+    return recommend(offers, useful_answer);
 }
 
-const Trade::Entry* Trade::more_accurate() const {
-    const Entry* const chosen = best();
-    const Entry* better = nullptr;
-    for (const Entry& entry : entries) {
-        if (entry.front && entry.error() < much_better * chosen->error() && chosen->error() > useful_error &&
-            (better == nullptr || entry.seconds() < better->seconds())) {
-            better = &entry;
-        }
+Recommendation Trade::recommended_entries() const {
+    std::vector<Offer> offers;
+    for (const Entry* const entry : by_time()) {
+        offers.push_back({entry->seconds(), entry->error()});
     }
-    return better;
+    return recommend(offers, useful_factors);
 }
 
-Trade measure_trade(const Scene& scene, const PatchMesh& mesh, const FactorSettings& base, double budget,
-                    Observer& observer) {
-    return TradeMeasurement(scene, mesh, base, budget, observer).run();
+Trade measure_trade(const Scene& scene, const PatchMesh& mesh, const Subdivision& subdivision,
+                    bool with_imprint, const FactorSettings& base, double budget, Observer& observer) {
+    return TradeMeasurement({scene, mesh, subdivision, with_imprint, base}, budget, observer).run();
 }
 
 } // namespace hemi

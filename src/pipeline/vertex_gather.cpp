@@ -9,6 +9,7 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/display/vertex_colours.hpp"
+#include "pipeline/gathered_radiosity.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
 #include <fmt/format.h>
@@ -132,26 +133,6 @@ struct VertexGather::State {
         hosts.push_back(largest);
     }
 
-    /// Radiosity at a point, from its row.
-    void light(std::uint32_t index, const RowView& row, const PatchValues& values,
-               std::span<const double> radiosity, std::span<float> light) const {
-        const std::uint32_t channels = values.channels;
-        std::vector<double> sum(channels, 0.0);
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            const double* const source = radiosity.data() + std::size_t{row.columns[k]} * channels;
-            for (std::uint32_t c = 0; c < channels; ++c) {
-                sum[c] += static_cast<double>(row.values[k]) * source[c];
-            }
-        }
-        for (std::uint32_t c = 0; c < channels; ++c) {
-            const std::size_t at = std::size_t{hosts[index]} * channels + c;
-            const double from_environment =
-                values.environment.empty() ? 0.0 : row.environment * values.environment[c];
-            light[c] = static_cast<float>(values.exitance[at] +
-                                          values.reflectance[at] * (sum[c] + from_environment));
-        }
-    }
-
     [[nodiscard]] std::vector<double> visible(const PatchValues& values,
                                               std::span<const double> radiosity) const {
         return visible_radiosity(mesh, surfaces, near, values.channels, radiosity, values.exitance, blocked);
@@ -241,8 +222,8 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
             *engine, state.mesh, state.points, plan.weighted.value_or(VisibilityWeightedSettings{}),
             enclosure, weights,
             [&](std::uint32_t index, const RowView& row) {
-                state.light(index, row, values, seen,
-                            std::span(at_points).subspan(std::size_t{index} * channels, channels));
+                gathered_radiosity(row, values, seen, state.hosts[index],
+                                   std::span(at_points).subspan(std::size_t{index} * channels, channels));
                 buried[index] = row.blocked > buried_above ? 1 : 0;
                 if (!keep) {
                     return;
@@ -288,8 +269,8 @@ std::vector<float> VertexGather::gather(const PatchValues& values, std::span<con
                               {},
                               state.kept.environment[k],
                               state.kept.blocked[k]};
-            state.light(static_cast<std::uint32_t>(k), row, values, seen,
-                        std::span(at_points).subspan(k * channels, channels));
+            gathered_radiosity(row, values, seen, state.hosts[k],
+                               std::span(at_points).subspan(k * channels, channels));
             buried[k] = row.blocked > buried_above ? 1 : 0;
         }
     });

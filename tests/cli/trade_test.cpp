@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <regex>
+#include <set>
+#include <utility>
 
 using namespace hemi::cli_test;
 
@@ -12,6 +15,11 @@ namespace {
 
 Words on_osmesa(Words words) {
     words.insert(words.end(), {"--device", "osmesa", "--jobs", "1"});
+    return words;
+}
+
+Words on_cpu(Words words) {
+    words.insert(words.end(), {"--device", "cpu", "--jobs", "1"});
     return words;
 }
 
@@ -148,7 +156,7 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
     const std::string scene = directory.write("cube.json", box);
     // More than it takes: all is measured, however slow the machine is.
     const Outcome run =
-        run_hemi(on_osmesa({"trade", scene, "--budget", "60s", "--json", "-o", directory.path("plot.svg")}));
+        run_hemi(on_cpu({"trade", scene, "--budget", "60s", "--json", "-o", directory.path("plot.svg")}));
     INFO(run.err);
     REQUIRE(run.status == 0);
     const Json trade = run.json();
@@ -159,7 +167,9 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
     REQUIRE(trade["measurements"].size() > 4);
     CHECK(trade["omitted"].empty());
     REQUIRE(trade["best"].is_string());
-    CHECK(trade["advice"].get<std::string>().starts_with("Recommended: " + trade["best"].get<std::string>()));
+    CHECK(trade["advice"].get<std::string>().find("(" + trade["best"].get<std::string>() + ")") !=
+          std::string::npos);
+    CHECK(trade["advice"].get<std::string>().find(" % in ") != std::string::npos);
     double last = 0.0;
     std::size_t on_front = 0;
     double least = 1e300;
@@ -177,6 +187,38 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
         }
     }
     CHECK(on_front > 0);
+
+    // Whole solutions, on several sizes of patches, by presets and other methods.
+    const Json& solutions = trade["solutions"];
+    REQUIRE(solutions.size() > 6);
+    CHECK(trade["solution_reference"]["points"] > 400);
+    double last_seconds = 0.0;
+    double least_error = 1e300;
+    std::set<std::uint32_t> sizes;
+    std::set<std::string> methods;
+    bool refined = false;
+    for (const Json& solution : solutions) {
+        INFO(solution.dump());
+        CHECK(solution["seconds"] >= last_seconds);
+        last_seconds = solution["seconds"];
+        CHECK(solution["memory"] > 0);
+        CHECK(solution["vertices"]["rms"] > 0.0);
+        CHECK(solution["vertices"]["rms"] < 0.5);
+        CHECK(solution["field"]["rms"] >= 0.0);
+        CHECK(solution["row"] >= 0.0);
+        CHECK(solution["patches"] < trade["solution_reference"]["patches"]);
+        const double error = solution["vertices"]["rms"];
+        CHECK(solution["front"] == (error < least_error));
+        least_error = std::min(error, least_error);
+        methods.insert(solution["method"].get<std::string>());
+        refined = refined || solution["error_target"].is_number();
+        if (solution["patch_size"].is_number()) {
+            sizes.insert(solution["patches"].get<std::uint32_t>());
+        }
+    }
+    CHECK(refined);
+    CHECK(sizes.size() == 2);
+    CHECK(methods.size() > 2);
     const std::string plot = directory.read("plot.svg");
     CHECK(plot.starts_with("<svg "));
     CHECK(plot.ends_with("</svg>\n"));
@@ -190,12 +232,39 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
         ++legends;
     }
     CHECK(legends > 3);
+    CHECK(plot.find("seconds for the whole solution") != std::string::npos);
+    CHECK(plot.find("seconds for all rows") != std::string::npos);
     CHECK(plot.find("24 patches: Box &lt;1&gt; &amp; more") != std::string::npos);
 
-    const Outcome text = run_hemi(on_osmesa({"trade", scene, "--budget", "60s"}));
+    const Outcome text = run_hemi(on_cpu({"trade", scene, "--budget", "2s"}));
     CHECK(text.status == 0);
     CHECK(text.out_has("radiosity"));
+    CHECK(text.out_has("Compared at"));
+    CHECK(text.out_has("Recommended: "));
+    CHECK(text.out_has("--preset"));
+}
+
+TEST_CASE("trade: where there is no light, form factors alone are compared, and that is said", "[cli]") {
+    const Directory directory;
+    Json dark = cube(1);
+    dark["materials"]["lamp"]["exitance"] = 0;
+    Json black = cube(1);
+    black["materials"]["white"]["reflectance"] = 0;
+    const Outcome text = run_hemi(on_cpu({"trade", directory.write("black.json", black), "--budget", "1s"}));
+    CHECK(text.status == 0);
+    CHECK(text.out_has("Errors of form factors only: nothing in the scene reflects light."));
     CHECK(text.out_has("Recommended: --"));
+    const Outcome run = run_hemi(on_cpu({"trade", directory.write("dark.json", dark), "--budget", "1s",
+                                         "--json", "-o", directory.path("plot.svg")}));
+    INFO(run.err);
+    const Json trade = run.json();
+    CHECK(trade["solutions"].empty());
+    CHECK(trade["solution_reference"].is_null());
+    CHECK_FALSE(trade["measurements"].empty());
+    CHECK(trade["advice"].get<std::string>().find("for a row error of") != std::string::npos);
+    const std::string plot = directory.read("plot.svg");
+    CHECK(plot.find("seconds for all rows") != std::string::npos);
+    CHECK(plot.find("seconds for the whole solution") == std::string::npos);
 }
 
 TEST_CASE("trade: what it cannot do is refused", "[cli]") {

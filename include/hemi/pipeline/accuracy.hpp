@@ -127,37 +127,4 @@ struct TargetResult {
                                            const SolverSettings& solver, double target,
                                            Observer& observer = no_observer(), bool with_irradiance = true);
 
-/// Speed against accuracy of many candidates on one scene.
-struct Trade {
-    /// One candidate.
-    struct Entry {
-        Candidate candidate;                    ///< what was tried
-        std::optional<Measurement> measurement; ///< how it did
-        std::string omitted;                    ///< why there is no measurement
-        bool front = false;                     ///< nothing is both faster and better
-
-        /// Seconds for all rows.
-        [[nodiscard]] double seconds() const { return measurement->seconds; }
-        /// Error of a row (2-norm, rms over rows), at least what float factors can show.
-        [[nodiscard]] double error() const;
-    };
-    std::vector<Entry> entries; ///< in the order in which they were tried: cheap ones first
-    Reference reference;        ///< what they were judged by
-
-    /// Measured entries, quickest first.
-    [[nodiscard]] std::vector<const Entry*> by_time() const;
-    /// Least product of time and error on the front, as far as smaller errors are of use; null: none was
-    /// measured.
-    [[nodiscard]] const Entry* best() const;
-    /// The slowest entry of the front that is much faster than the best one; null: none.
-    [[nodiscard]] const Entry* faster() const;
-    /// The quickest entry of the front that is much better than the best one; null: none.
-    [[nodiscard]] const Entry* more_accurate() const;
-};
-/// Tries candidates until `budget` seconds are spent: each on a sample first, then on all rows if half of
-/// what time is left will do.
-/// @throws as compute_form_factors
-[[nodiscard]] Trade measure_trade(const Scene& scene, const PatchMesh& mesh, const FactorSettings& base,
-                                  double budget, Observer& observer = no_observer());
-
 } // namespace hemi

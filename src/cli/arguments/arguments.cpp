@@ -410,13 +410,14 @@ void add_trade(CLI::App& app, TradeArguments& a) {
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
     Options(app, "Output")
-        .path("-o,--output", "PLOT.svg", a.output, "error against seconds as a drawing; - for stdout");
+        .path("-o,--output", "PLOT.svg", a.output, "errors against seconds as a drawing; - for stdout");
     Options(app, "Computing")
         .value("--budget", "TIME", "about how long it may take in all, such as 30s or 5m (60s)",
                [&a](const std::string& text) { a.budget = parse_duration("--budget", text); });
     add_common(app, a.common);
     app.footer(
-        "Tries methods, presets, sample points and resolutions on this scene, and compares them with the\n"
+        "Solves the scene on patches of several sizes, uniform and refined, and compares the light with that\n"
+        "of a finer mesh; compares form factors by methods, presets, sample points and resolutions with the\n"
         "best rows that the budget affords. The last measurement may exceed the budget.\n\n"
         "Examples:\n"
         "  hemi trade scenes/cube.json -o cube.svg\n"

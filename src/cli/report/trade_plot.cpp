@@ -13,11 +13,12 @@ namespace hemi::cli {
 namespace {
 
 constexpr double width = 960.0;
-constexpr double height = 600.0;
 constexpr double left = 84.0;
 constexpr double right = width - 28.0;
-constexpr double top = 76.0;
-constexpr double bottom = height - 62.0;
+constexpr double title_height = 38.0;
+constexpr double panel_height = 580.0;
+constexpr double panel_top = 74.0; ///< of the axes, below the panel's own top
+constexpr double panel_bottom = panel_height - 62.0;
 constexpr double text_size = 12.0;
 constexpr double marker = 4.5;
 
@@ -104,12 +105,19 @@ private:
 constexpr std::array<const char*, 8> colours{"#b5442c", "#1f6f8b", "#7a7a2a", "#7b4a94",
                                              "#3d7a46", "#555555", "#b0407f", "#a06a10"};
 
-class Plot {
+std::string written(double x, double y, const char* anchor, const char* colour, const std::string& text,
+                    const std::string& more = "") {
+    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" {}>{}</text>\n", x, y,
+                       anchor, colour, more, escaped(text));
+}
+
+class Panel {
 public:
-    Plot(const std::vector<PlotPoint>& points, const std::string& error_name)
-        : points_(points), error_name_(error_name), x_(axis(&PlotPoint::seconds, left, right)),
-          y_(axis(&PlotPoint::error, bottom, top)) {
-        for (const PlotPoint& point : points) {
+    Panel(const PlotPanel& panel, double from_top)
+        : panel_(panel), points_(panel.points), from_top_(from_top), top_(from_top + panel_top),
+          bottom_(from_top + panel_bottom), x_(axis(&PlotPoint::seconds, left, right)),
+          y_(axis(&PlotPoint::error, bottom_, top_)) {
+        for (const PlotPoint& point : points_) {
             if (std::find(families_.begin(), families_.end(), point.family) == families_.end()) {
                 families_.push_back(point.family);
             }
@@ -119,12 +127,9 @@ public:
         }
     }
 
-    [[nodiscard]] std::string text(const std::string& title) {
-        svg_ = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-                           "height=\"{1}\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"{2}\">\n"
-                           "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-                           width, height, text_size);
-        write(left, 26.0, "start", "#222222", shortened(title), "font-size=\"16\" font-weight=\"bold\"");
+    [[nodiscard]] std::string text() {
+        write(left, from_top_ + 16.0, "start", "#222222", panel_.heading,
+              "font-size=\"14\" font-weight=\"bold\"");
         grid();
         legend();
         front();
@@ -132,7 +137,7 @@ public:
             series(family);
         }
         labels();
-        return svg_ + "</svg>\n";
+        return svg_;
     }
 
 private:
@@ -145,8 +150,7 @@ private:
 
     void write(double x, double y, const char* anchor, const char* colour, const std::string& text,
                const std::string& more = "") {
-        svg_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" fill=\"{}\" {}>{}</text>\n",
-                            x, y, anchor, colour, more, escaped(text));
+        svg_ += written(x, y, anchor, colour, text, more);
     }
     void line(double x0, double y0, double x1, double y1, const char* colour, double thickness) {
         svg_ += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
@@ -161,29 +165,31 @@ private:
     void grid() {
         for (const Axis::Tick& tick : x_.ticks()) {
             const double x = x_.at(tick.value);
-            line(x, top, x, bottom, tick.labelled ? "#d9d9d9" : "#f1f1f1", 1.0);
+            line(x, top_, x, bottom_, tick.labelled ? "#d9d9d9" : "#f1f1f1", 1.0);
             if (tick.labelled) {
-                write(x, bottom + 18.0, "middle", "#444444", fmt::format("{:g}", tick.value));
+                write(x, bottom_ + 18.0, "middle", "#444444", fmt::format("{:g}", tick.value));
             }
         }
         for (const Axis::Tick& tick : y_.ticks()) {
             const double y = y_.at(tick.value);
             line(left, y, right, y, tick.labelled ? "#d9d9d9" : "#f1f1f1", 1.0);
             if (tick.labelled) {
-                write(left - 8.0, y + 4.0, "end", "#444444", fmt::format("{:.0e}", tick.value));
+                write(left - 8.0, y + 4.0, "end", "#444444",
+                      panel_.percent ? fmt::format("{:g} %", 100.0 * tick.value)
+                                     : fmt::format("{:.0e}", tick.value));
             }
         }
         svg_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" "
                             "stroke=\"#888888\"/>\n",
-                            left, top, right - left, bottom - top);
-        write((left + right) / 2, height - 18.0, "middle", "#222222", "seconds for all rows");
-        write(0.0, 0.0, "middle", "#222222", error_name_,
-              fmt::format("transform=\"translate(20 {:.1f}) rotate(-90)\"", (top + bottom) / 2));
+                            left, top_, right - left, bottom_ - top_);
+        write((left + right) / 2, bottom_ + 42.0, "middle", "#222222", panel_.seconds_name);
+        write(0.0, 0.0, "middle", "#222222", panel_.error_name,
+              fmt::format("transform=\"translate(20 {:.1f}) rotate(-90)\"", (top_ + bottom_) / 2));
     }
 
     void legend() {
         double x = left;
-        double y = 46.0;
+        double y = from_top_ + 40.0;
         const auto make_room = [&](double needed) { // on a second line, where the first is full
             if (x > left && x + needed > right) {
                 x = left;
@@ -215,7 +221,7 @@ private:
         if (best.empty()) {
             return;
         }
-        std::string path = fmt::format("M{:.1f} {:.1f}", x_.at(best.front()->seconds), top);
+        std::string path = fmt::format("M{:.1f} {:.1f}", x_.at(best.front()->seconds), top_);
         for (const PlotPoint* point : best) {
             path += fmt::format(" H{:.1f} V{:.1f}", x_.at(point->seconds), y_.at(point->error));
         }
@@ -232,7 +238,7 @@ private:
             if (point.family == family) {
                 const double x = x_.at(point.seconds);
                 const double y = y_.at(point.error);
-                path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : " L", x, y);
+                path += fmt::format("{}{:.1f} {:.1f}", path.empty() || !point.joined ? " M" : " L", x, y);
                 circles += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\" "
                                        "stroke=\"#ffffff\" stroke-width=\"0.8\"/>\n",
                                        x, y, marker, colour_of(family));
@@ -246,6 +252,9 @@ private:
     /// Each where it covers least; away from its point, with a line to it, where there is no room beside it.
     void labels() {
         for (const PlotPoint& point : points_) {
+            if (point.label.empty()) {
+                continue;
+            }
             const double x = x_.at(point.seconds);
             const double y = y_.at(point.error);
             const double long_side = text_width(point.label);
@@ -264,7 +273,7 @@ private:
                     for (const Box& other : taken_) {
                         cost += 20.0 * box.overlap(other);
                     }
-                    const Box frame{left + 2.0, top + 2.0, right - 2.0, bottom - 2.0};
+                    const Box frame{left + 2.0, top_ + 2.0, right - 2.0, bottom_ - 2.0};
                     const double inside = box.overlap(frame);
                     cost += 20.0 * ((box.x1 - box.x0) * (box.y1 - box.y0) - inside);
                     if (cost < least) {
@@ -286,8 +295,9 @@ private:
         }
     }
 
+    const PlotPanel& panel_;
     const std::vector<PlotPoint>& points_;
-    std::string error_name_;
+    double from_top_, top_, bottom_;
     Axis x_, y_;
     std::vector<std::string> families_;
     std::vector<Box> taken_;
@@ -296,19 +306,34 @@ private:
 
 } // namespace
 
-std::string trade_plot(const std::string& title, const std::string& error_name,
-                       const std::vector<PlotPoint>& points) {
-    if (points.empty()) {
+std::string trade_plot(const std::string& title, const std::vector<PlotPanel>& panels) {
+    if (panels.empty()) {
         throw InvalidArgument("there is nothing to draw");
     }
-    for (const PlotPoint& point : points) {
-        if (!(point.seconds > 0.0) || !(point.error > 0.0) || !std::isfinite(point.seconds) ||
-            !std::isfinite(point.error)) {
-            throw InvalidArgument(fmt::format("{}: {} s with an error of {} has no place on logarithmic axes",
-                                              point.label, point.seconds, point.error));
+    const double height = title_height + panel_height * static_cast<double>(panels.size());
+    std::string svg =
+        fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+                    "height=\"{1}\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"{2}\">\n"
+                    "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+                    width, height, text_size);
+    svg += written(left, 26.0, "start", "#222222", shortened(title), "font-size=\"16\" font-weight=\"bold\"");
+    double from_top = title_height;
+    for (const PlotPanel& panel : panels) {
+        if (panel.points.empty()) {
+            throw InvalidArgument(fmt::format("{}: there is nothing to draw", panel.heading));
         }
+        for (const PlotPoint& point : panel.points) {
+            if (!(point.seconds > 0.0) || !(point.error > 0.0) || !std::isfinite(point.seconds) ||
+                !std::isfinite(point.error)) {
+                throw InvalidArgument(
+                    fmt::format("{}: {} s with an error of {} has no place on logarithmic axes", point.label,
+                                point.seconds, point.error));
+            }
+        }
+        svg += Panel(panel, from_top).text();
+        from_top += panel_height;
     }
-    return Plot(points, error_name).text(title);
+    return svg + "</svg>\n";
 }
 
 } // namespace hemi::cli

@@ -23,24 +23,75 @@ std::string options_of(const FactorSettings& settings) {
     return text;
 }
 
-std::string entry_text(const Trade::Entry& entry) {
+std::string options_of(const Trade::Answer& answer) {
+    const std::string patches = answer.error_target
+                                    ? fmt::format("--error-target {:g}% ", 100.0 * *answer.error_target)
+                                : answer.patch_size ? fmt::format("--patch-size {:g} ", *answer.patch_size)
+                                                    : "";
+    return patches + options_of(answer.candidate.settings);
+}
+
+std::string percent(double value) {
+    return fmt::format("{:.2g} %", 100.0 * value);
+}
+
+/// "patches of 0.05", "the scene's own patches", "patches refined to 1 %".
+std::string patches_of(const Trade::Answer& answer) {
+    return answer.error_target ? fmt::format("patches refined to {:g} %", 100.0 * *answer.error_target)
+           : answer.patch_size ? fmt::format("patches of {:g}", *answer.patch_size)
+                               : "the scene's own patches";
+}
+
+/// Whether a preset is used as it is.
+bool is_plain_preset(const FactorSettings& settings) {
+    return settings.method == Method::hemicube && !settings.eye_points && !settings.resolution &&
+           !settings.shadow_rays;
+}
+
+/// "fast", "plain 1x32", "hemisphere".
+std::string method_of(const Trade::Answer& answer) {
+    const Candidate& candidate = answer.candidate;
+    return is_plain_preset(candidate.settings) ? std::string(to_word(candidate.settings.preset))
+                                               : candidate.label();
+}
+
+std::string offer_text(const Trade::Answer& answer) {
+    return fmt::format("{} by {}: {} in {} ({})", patches_of(answer), answer.candidate.description(),
+                       percent(answer.vertices()), seconds_text(answer.seconds), options_of(answer));
+}
+
+std::string offer_text(const Trade::Entry& entry) {
     return fmt::format("{} ({} for a row error of {:.2g})", options_of(entry.candidate.settings),
                        seconds_text(entry.seconds()), entry.error());
 }
 
-std::string advice(const Trade& trade) {
-    const Trade::Entry* const best = trade.best();
-    if (best == nullptr) {
+template <class Offered>
+std::string advice(const std::vector<const Offered*>& offers, const Recommendation& recommended) {
+    if (!recommended.best) {
         return "Nothing was measured: give more time with --budget.";
     }
-    std::string text = "Recommended: " + entry_text(*best);
-    if (const Trade::Entry* const faster = trade.faster()) {
-        text += "; where time matters more: " + entry_text(*faster);
+    std::string text = "Recommended: " + offer_text(*offers[*recommended.best]);
+    if (recommended.faster) {
+        text += "; where time matters more: " + offer_text(*offers[*recommended.faster]);
     }
-    if (const Trade::Entry* const better = trade.more_accurate()) {
-        text += "; where accuracy matters more: " + entry_text(*better);
+    if (recommended.more_accurate) {
+        text += "; where accuracy matters more: " + offer_text(*offers[*recommended.more_accurate]);
     }
     return text + ".";
+}
+
+std::string advice(const Trade& trade) {
+    return trade.answers.empty() ? advice(trade.by_time(), trade.recommended_entries())
+                                 : advice(trade.answers_by_time(), trade.recommended_answers());
+}
+
+/// Options of what is recommended.
+Json best_options(const Trade& trade) {
+    if (!trade.answers.empty()) {
+        return options_of(*trade.answers_by_time()[*trade.recommended_answers().best]);
+    }
+    const auto best = trade.recommended_entries().best;
+    return best ? Json(options_of(trade.by_time()[*best]->candidate.settings)) : Json(nullptr);
 }
 
 /// A line of the table.
@@ -57,27 +108,92 @@ std::vector<std::string> entry_line(const Trade::Entry& entry) {
             m.all_rows ? "all" : "sample"};
 }
 
-Json entry_json(const Trade::Entry& entry, std::uint32_t patches) {
-    const Measurement& m = *entry.measurement;
-    const FactorSettings& settings = entry.candidate.settings;
+/// Keys that say how form factors are found.
+Json settings_json(const Candidate& candidate, std::uint32_t patches) {
+    const FactorSettings& settings = candidate.settings;
     const RowPlan plan = plan_rows(settings, patches);
     const bool hemicubes = settings.method == Method::hemicube;
     const auto hemicubes_only = [hemicubes](const Json& value) { return hemicubes ? value : Json(nullptr); };
-    return {{"label", entry.candidate.label()},
+    return {{"label", candidate.label()},
             {"method", to_word(settings.method)},
             {"preset", hemicubes_only(to_word(settings.preset))},
             {"eye_points", hemicubes_only(plan.hemicube.eye_points)},
             {"resolution", hemicubes_only(plan.hemicube.resolution)},
             {"shadow_rays", plan.weighted ? hemicubes_only(plan.weighted->shadow_rays) : Json(nullptr)},
-            {"rays", settings.rays ? Json(*settings.rays) : Json(nullptr)},
-            {"options", options_of(settings)},
-            {"rows", m.all_rows ? "all" : "sample"},
-            {"seconds", m.seconds},
-            {"rms", m.error.rms},
-            {"max", m.error.max},
-            {"row", m.error.row_rms},
-            {"radiosity", m.radiosity ? Json(*m.radiosity) : Json(nullptr)},
-            {"front", entry.front}};
+            {"rays", settings.rays ? Json(*settings.rays) : Json(nullptr)}};
+}
+
+Json entry_json(const Trade::Entry& entry, std::uint32_t patches) {
+    const Measurement& m = *entry.measurement;
+    Json json = settings_json(entry.candidate, patches);
+    json.update({{"options", options_of(entry.candidate.settings)},
+                 {"rows", m.all_rows ? "all" : "sample"},
+                 {"seconds", m.seconds},
+                 {"rms", m.error.rms},
+                 {"max", m.error.max},
+                 {"row", m.error.row_rms},
+                 {"radiosity", m.radiosity ? Json(*m.radiosity) : Json(nullptr)},
+                 {"front", entry.front}});
+    return json;
+}
+
+Json answer_json(const Trade::Answer& answer) {
+    const auto field = [](const FieldError& error) {
+        return Json{{"rms", error.rms}, {"p95", error.percentile95}};
+    };
+    const auto optional = [](const std::optional<double>& value) {
+        return value ? Json(*value) : Json(nullptr);
+    };
+    Json json = settings_json(answer.candidate, answer.patches);
+    json["label"] = patches_of(answer) + ", " + answer.candidate.label();
+    json.update({{"options", options_of(answer)},
+                 {"patches", answer.patches},
+                 {"patch_size", optional(answer.patch_size)},
+                 {"error_target", optional(answer.error_target)},
+                 {"gathered", answer.gathered},
+                 {"seconds", answer.seconds},
+                 {"memory", answer.memory},
+                 {"vertices", field(answer.error.vertices)},
+                 {"field", field(answer.error.field)},
+                 {"row", answer.row_error},
+                 {"front", answer.front}});
+    return json;
+}
+
+/// Whole solutions, quickest first, and what they were judged by.
+Report answers_report(const Trade& trade) {
+    if (!trade.answer_reference) {
+        return {fmt::format("\nErrors of form factors only: {}.\n", trade.unanswered),
+                {{"solutions", Json::array()}, {"solution_reference", nullptr}}};
+    }
+    Table table({"", "patches", "form factors", "number", "seconds", "memory", "picture", "constants", "row"},
+                3);
+    Json list = Json::array();
+    for (const Trade::Answer* const answer : trade.answers_by_time()) {
+        table.add({answer->front ? "*" : "", patches_of(*answer), method_of(*answer),
+                   count_text(answer->patches), fmt::format("{:.3g}", answer->seconds),
+                   memory_text(answer->memory), percent(answer->vertices()), percent(answer->error.field.rms),
+                   fmt::format("{:.1e}", answer->row_error)});
+        list.push_back(answer_json(*answer));
+    }
+    const RadiosityReference& reference = *trade.answer_reference;
+    const std::string legend = fmt::format(
+        "* on the Pareto front: nothing is both faster and more accurate. Seconds: all of a solution, "
+        "without\n"
+        "reading and drawing; of refined patches with the estimates that they follow. picture, constants: "
+        "rms "
+        "error\nof the reflected light, interpolated as pictures show it, and as one constant a patch; row: "
+        "2-norm of a\nrow's error. Compared at {} points with light gathered from {}, whose own\nerror is "
+        "about {}.\n",
+        count_text(reference.points.size()), plural(reference.patches, "patch", "patches"),
+        percent(reference.own_error));
+    return {fmt::format("\nSolutions\n{}\n{}", table.text(), legend),
+            {{"solutions", list},
+             {"solution_reference",
+              {{"patches", reference.patches},
+               {"points", reference.points.size()},
+               {"error", reference.own_error},
+               {"seconds", reference.seconds}}}}};
 }
 
 /// What the columns of the table mean.
@@ -105,7 +221,8 @@ Report measurements_report(const Trade& trade, std::uint32_t patches) {
         table.add(entry_line(*entry));
         list.push_back(entry_json(*entry, patches));
     }
-    return {fmt::format("\n{}\n{}", table.text(), legend(trade)), {{"measurements", list}}};
+    return {fmt::format("\nForm factors of the scene's own patches\n{}\n{}", table.text(), legend(trade)),
+            {{"measurements", list}}};
 }
 
 /// Candidates that there was no time for, or that do not apply.
@@ -117,6 +234,10 @@ Report omitted_report(const Trade& trade) {
             text += fmt::format("Not measured: {}, {}.\n", entry.candidate.label(), entry.omitted);
             list.push_back({{"label", entry.candidate.label()}, {"why", entry.omitted}});
         }
+    }
+    for (const auto& [what, why] : trade.omitted) {
+        text += fmt::format("Not measured: {}, {}.\n", what, why);
+        list.push_back({{"label", what}, {"why", why}});
     }
     return {text, {{"omitted", list}}};
 }
@@ -142,38 +263,93 @@ Report reference_report(const Reference& reference) {
 Report trade_report(const Trade& trade, const LoadedScene& loaded, double budget, double seconds) {
     const std::uint32_t patches = loaded.mesh.size();
     const std::string& renderer = trade.reference.renderer;
-    const Trade::Entry* const best = trade.best();
     Report report;
     report.add("scene", fmt::format("{}, {}", loaded.scene.name, plural(patches, "patch", "patches")),
                {{"scene", loaded.scene.name}});
     report.add("renderer", renderer, {{"renderer", renderer}});
     report.json.update({{"patches", patches}, {"budget", budget}, {"seconds", seconds}});
     report.add(reference_report(trade.reference));
+    report.add(answers_report(trade));
     report.add(measurements_report(trade, patches));
     report.add(omitted_report(trade));
-    report.json["best"] = best != nullptr ? Json(options_of(best->candidate.settings)) : Json(nullptr);
+    report.json["best"] = best_options(trade);
     report.json["advice"] = advice(trade);
     report.text += fmt::format("\n{}\n", advice(trade));
-    report.select("hemi/trade/1", {"scene", "renderer", "patches", "budget", "seconds", "reference",
-                                   "measurements", "omitted", "best", "advice"});
+    report.select("hemi/trade/1",
+                  {"scene", "renderer", "patches", "budget", "seconds", "reference", "measurements",
+                   "solutions", "solution_reference", "omitted", "best", "advice"});
     return report;
 }
 
-std::string trade_drawing(const Trade& trade, const LoadedScene& loaded) {
-    std::vector<PlotPoint> points; // in the order of the sweep, so that lines join settings that grow
+namespace {
+
+constexpr double least_seconds = 1e-3; // of a drawing
+
+PlotPanel factors_panel(const Trade& trade) {
+    PlotPanel panel{"Form factors of the scene's own patches",
+                    "seconds for all rows",
+                    "error of a row (2-norm, rms over rows)",
+                    false,
+                    {}};
     for (const Trade::Entry& entry : trade.entries) {
         if (entry.measurement) {
             const Candidate& candidate = entry.candidate;
-            points.push_back({candidate.family,
-                              candidate.variant.empty() ? candidate.family : candidate.variant,
-                              std::max(entry.seconds(), 1e-3), entry.error(), entry.front});
+            panel.points.push_back({candidate.family,
+                                    candidate.variant.empty() ? candidate.family : candidate.variant,
+                                    std::max(entry.seconds(), least_seconds), entry.error(), entry.front});
         }
     }
-    std::stable_sort(points.begin(), points.end(),
+    std::stable_sort(panel.points.begin(), panel.points.end(),
                      [](const PlotPoint& a, const PlotPoint& b) { return a.seconds < b.seconds; });
+    return panel;
+}
+
+/// Lines join the sizes of one preset; single settings on the scene's own patches are points without names.
+PlotPanel answers_panel(const Trade& trade) {
+    PlotPanel panel{"The answer: error of the light in the picture, by patch size",
+                    "seconds for the whole solution",
+                    "rms error of the reflected light",
+                    true,
+                    {}};
+    std::vector<PlotPoint> others;
+    for (const Trade::Answer& answer : trade.answers) {
+        const FactorSettings& settings = answer.candidate.settings;
+        PlotPoint point{"other form factors, the scene's own patches",
+                        "",
+                        std::max(answer.seconds, least_seconds),
+                        answer.vertices(),
+                        answer.front,
+                        false};
+        if (answer.error_target) {
+            point.family = fmt::format("refined, preset {}", to_word(settings.preset));
+            point.label = fmt::format("to {:g} %", 100.0 * *answer.error_target);
+        } else if (is_plain_preset(settings)) {
+            point.family = fmt::format("preset {}", to_word(settings.preset));
+            point.label = answer.patch_size ? fmt::format("size {:g}", *answer.patch_size) : "own size";
+        } else {
+            point.label = answer.front ? answer.candidate.label() : "";
+            others.push_back(std::move(point));
+            continue;
+        }
+        point.joined = true;
+        panel.points.push_back(std::move(point));
+    }
+    panel.points.insert(panel.points.end(), others.begin(), others.end());
+    return panel;
+}
+
+} // namespace
+
+std::string trade_drawing(const Trade& trade, const LoadedScene& loaded) {
+    std::vector<PlotPanel> panels;
+    if (!trade.answers.empty()) {
+        panels.push_back(answers_panel(trade));
+    }
+    if (!trade.by_time().empty()) {
+        panels.push_back(factors_panel(trade));
+    }
     const std::string size = plural(loaded.mesh.size(), "patch", "patches");
-    const std::string title = loaded.scene.name.empty() ? size : size + ": " + loaded.scene.name;
-    return trade_plot(title, "error of a row (root of its sum of squares, rms over rows)", points);
+    return trade_plot(loaded.scene.name.empty() ? size : size + ": " + loaded.scene.name, panels);
 }
 
 } // namespace hemi::cli

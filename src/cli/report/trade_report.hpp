@@ -2,7 +2,7 @@
 
 #include "cli/loaded_scene.hpp"
 #include "cli/report/report.hpp"
-#include "hemi/pipeline/accuracy.hpp"
+#include "hemi/pipeline/trade.hpp"
 
 #include <string>
 
