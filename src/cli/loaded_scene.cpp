@@ -89,7 +89,8 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     const Stopwatch watch;
     Diagnostics diagnostics;
     Scene scene = io::read_scene(
-        options.path, {options.two_sided, options.skip_degenerate, options.allow_outside}, diagnostics);
+        options.path, {options.two_sided, options.skip_degenerate, options.allow_outside, options.adiabatic},
+        diagnostics);
     terminal.warn(diagnostics);
     check_two_sided_groups(scene, options);
     scene.enclosure = options.enclosure.value_or(scene.enclosure);
