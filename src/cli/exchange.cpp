@@ -19,6 +19,9 @@ Outputs check_outputs(const ExchangeArguments& arguments) {
     Outputs outputs;
     outputs.keep(arguments.scene.path);
     check_factor_input(outputs, arguments.input);
+    if (arguments.heat.table) {
+        outputs.keep(*arguments.heat.table);
+    }
     if (arguments.output) {
         outputs.add("-o", *arguments.output, {".csv"}, true);
     }
@@ -52,7 +55,7 @@ io::TextTable exchange_table(const std::vector<std::string>& names, const HeatEx
 ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     const Outputs outputs = check_outputs(arguments);
     Seconds seconds({"load", "factors", "estimate", "repair", "solve"});
-    const LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, terminal);
+    const LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, false, terminal);
     seconds["load"] = loaded.seconds;
     TerminalObserver observer(terminal);
     const HeatProblem problem =

@@ -55,6 +55,9 @@ Outputs check_outputs(const HeatArguments& arguments) {
     Outputs outputs;
     outputs.keep(arguments.scene.path);
     check_factor_input(outputs, arguments.input);
+    if (arguments.heat.table) {
+        outputs.keep(*arguments.heat.table);
+    }
     if (arguments.series) {
         outputs.keep(*arguments.series);
     }
@@ -100,7 +103,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
         lines = read_series(*arguments.series);
     }
     Seconds seconds({"load", "factors", "estimate", "repair", "solve", "series"});
-    LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, terminal);
+    LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, true, terminal);
     seconds["load"] = loaded.seconds;
     TerminalObserver observer(terminal);
     const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);

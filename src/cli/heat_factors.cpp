@@ -2,6 +2,7 @@
 
 #include "cli/factor_source.hpp"
 #include "cli/output_paths.hpp"
+#include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/nearest_word.hpp"
 #include "hemi/core/stopwatch.hpp"
@@ -37,8 +38,8 @@ void set_condition(Scene& scene, std::string_view option, const std::string& nam
                    const HeatCondition& condition, std::vector<std::string>& set) {
     const std::uint32_t group = group_of_option(scene, option, name);
     if (std::find(set.begin(), set.end(), name) != set.end()) {
-        throw InvalidArgument(fmt::format("{} {}: this group has a temperature, heat flux or power on the "
-                                          "command line already; one follows from the other",
+        throw InvalidArgument(fmt::format("{} {}: this group is given a temperature, heat flux or power "
+                                          "already; one follows from the other",
                                           option, name));
     }
     set.push_back(name);
@@ -65,6 +66,64 @@ void set_emissivity(Scene& scene, const std::string& name, double emissivity) {
             scene.materials.push_back(std::move(material));
         }
         surface.material = copy;
+    }
+}
+
+/// A number, or a temperature with its unit, of a cell.
+double parse_cell(const std::filesystem::path& path, const io::TextTable& table, std::size_t row,
+                  std::size_t column, bool temperature) {
+    const std::string& text = table.rows[row][column];
+    const auto fail = [&](const char* wanted) {
+        throw ParseError(path.string(), table.lines[row], 0,
+                         fmt::format("{} '{}'; must be {}", table.columns[column], text, wanted));
+    };
+    const std::optional<double> value = parse_temperature(text);
+    const bool bare = text.find_first_of("KC") == std::string::npos;
+    if (!value || !(temperature || bare)) {
+        fail(temperature ? "kelvin, or with a unit such as 20C" : "a number");
+    }
+    if (temperature && *value < 0.0) {
+        fail("at least 0 K");
+    }
+    return *value;
+}
+
+/// Adds what a table says of groups.
+/// @param conditions  whether it may say something of temperatures and fluxes
+void add_table(const std::filesystem::path& path, bool conditions, HeatOptions& heat) {
+    const io::TextTable table = io::read_table(path);
+    std::vector<std::string> known{"group", "emissivity"};
+    if (conditions) {
+        known.insert(known.end(), {"temperature", "heat_flux", "power"});
+    }
+    for (const std::string& column : table.columns) {
+        if (std::find(known.begin(), known.end(), column) == known.end()) {
+            throw InputError(fmt::format("{}: unknown column \"{}\"{}", path.string(), column,
+                                         did_you_mean_or_list(column, known)));
+        }
+    }
+    const auto group = table.column("group");
+    if (!group) {
+        throw InputError(fmt::format("{}: no column \"group\"", path.string()));
+    }
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const std::string& name = table.rows[row][*group];
+        for (std::size_t c = 0; c < table.columns.size(); ++c) {
+            const std::string& column = table.columns[c];
+            if (c == *group || table.rows[row][c].empty()) {
+                continue;
+            }
+            const double value = parse_cell(path, table, row, c, column == "temperature");
+            if (column == "emissivity" && !(value > 0.0 && value <= 1.0)) {
+                throw ParseError(path.string(), table.lines[row], 0,
+                                 fmt::format("emissivity {}; must be above 0 and at most 1", value));
+            }
+            (column == "temperature"  ? heat.temperature
+             : column == "emissivity" ? heat.emissivity
+             : column == "power"      ? heat.power
+                                      : heat.heat_flux)
+                .emplace_back(name, value);
+        }
     }
 }
 
@@ -173,11 +232,14 @@ FormFactors find_raw_rows(const CommonOptions& common, const RowOptions& rows, c
 
 } // namespace
 
-LoadedScene load_thermal_scene(const SceneOptions& options, const HeatOptions& heat,
+LoadedScene load_thermal_scene(const SceneOptions& options, HeatOptions heat, bool conditions,
                                const Terminal& terminal) {
     if (!io::is_scene_file(options.path)) {
         throw InvalidArgument(
             fmt::format("{}: heat needs a scene ({})", options.path.string(), io::scene_extensions()));
+    }
+    if (heat.table) {
+        add_table(*heat.table, conditions, heat);
     }
     LoadedScene loaded = load_scene(options, terminal);
     Scene& scene = loaded.scene;

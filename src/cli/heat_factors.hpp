@@ -13,7 +13,8 @@ namespace hemi::cli {
 
 /// The scene, with what the options say of its groups.
 /// @throws InputError, InvalidArgument; for unknown groups with the nearest
-[[nodiscard]] LoadedScene load_thermal_scene(const SceneOptions& scene, const HeatOptions& heat,
+/// @param conditions  whether temperatures and fluxes are of interest
+[[nodiscard]] LoadedScene load_thermal_scene(const SceneOptions& scene, HeatOptions heat, bool conditions,
                                              const Terminal& terminal);
 
 /// All rows, reciprocal: computed, or from a file.

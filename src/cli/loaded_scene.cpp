@@ -7,6 +7,7 @@
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/scene/imprint.hpp"
+#include "hemi/scene/thermal_exitance.hpp"
 
 #include <fmt/format.h>
 
@@ -91,6 +92,9 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     Scene scene = io::read_scene(
         options.path, {options.two_sided, options.skip_degenerate, options.allow_outside, options.adiabatic},
         diagnostics);
+    if (!options.adiabatic) {
+        radiate_by_temperature(scene, diagnostics);
+    }
     terminal.warn(diagnostics);
     check_two_sided_groups(scene, options);
     scene.enclosure = options.enclosure.value_or(scene.enclosure);

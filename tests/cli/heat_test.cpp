@@ -292,6 +292,53 @@ TEST_CASE("hemi heat: groups of a mesh get what the command line says", "[cli][h
     CHECK(dark.err_has("ceiling")); // nothing is known of it
 }
 
+TEST_CASE("hemi heat: groups from a table", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3);
+    const Words words{"heat", directory.write("box.json", scene), "--json"};
+    const Json expected = run_hemi(on_cpu(words)).json();
+    scene.erase("groups");
+    scene["materials"]["top"]["emissivity"] = 0.1;
+    const std::string bare = directory.write("bare.json", scene);
+    const std::string table = directory.write("groups.csv", "group,temperature,emissivity,heat_flux,power\n"
+                                                            "bottom,276.85C,,,\ntop,300,0.75,,\n"
+                                                            "left,,,0,\nright,,,0,\nfront,,,0,\nback,,,,0\n");
+    const Json heat = run_hemi(on_cpu({"heat", bare, "--groups", table, "--json"})).json();
+    for (std::size_t g = 0; g < 6; ++g) {
+        CHECK(heat["radiosity"][g].get<double>() ==
+              Approx(expected["radiosity"][g].get<double>()).epsilon(1e-9));
+    }
+    const auto refused = [&](const std::string& text, const std::string& message) {
+        const Outcome run = run_hemi({"heat", bare, "--groups", directory.write("bad.csv", text)});
+        CHECK(run.status != 0);
+        INFO(run.err);
+        CHECK(run.err_has(message));
+    };
+    refused("group,temprature\ntop,300\n", "\"temperature\"");
+    refused("group,temperature\ntop,300,4\n", "bad.csv:2");
+    refused("group,temperature\ntop,-3\n", "0 K");
+    refused("group,emissivity\ntop,2\n", "at most 1");
+    refused("group,power\ntop,20C\n", "a number");
+    refused("group,power\ntopp,20\n", "\"top\"");
+}
+
+TEST_CASE("hemi solve: surfaces radiate by their temperatures", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3);
+    for (const char* side : {"left", "right", "front", "back"}) {
+        scene["groups"][side] = {{"temperature", 400}};
+    }
+    const std::string file = directory.write("box.json", scene);
+    const Json heat = run_hemi(on_cpu({"heat", file, "--json"})).json();
+    const Json light = run_hemi(on_cpu({"solve", file, "--json", "--tolerance", "1e-9"})).json();
+    for (std::size_t g = 0; g < 6; ++g) {
+        CHECK(light["radiosity"][g][0].get<double>() ==
+              Approx(heat["radiosity"][g].get<double>()).epsilon(1e-7));
+    }
+    scene["groups"]["left"] = {{"heat_flux", 0}};
+    CHECK(run_hemi(on_cpu({"solve", directory.write("flux.json", scene)})).err_has("hemi heat"));
+}
+
 TEST_CASE("hemi heat: slips in temperatures and units are told", "[cli][heat]") {
     const Directory directory;
     Json scene = box(1, 2, 3);

@@ -75,6 +75,10 @@ void add_heat_options(CLI::App& app, HeatOptions& heat, bool conditions) {
                           heat.environment = parse_kelvin("--environment-temperature", text);
                       });
     }
+    options.path("--groups", "FILE.csv", heat.table,
+                 conditions
+                     ? "the same from a table: columns group, emissivity, temperature, heat_flux, power"
+                     : "the same from a table: columns group, emissivity");
     options.choice<LengthUnit>("--unit", "UNIT", "unit of the scene's lengths: m, cm, mm, in or ft",
                                [&heat](LengthUnit unit) { heat.unit = metres(unit); });
 }

@@ -19,6 +19,7 @@ struct HeatOptions {
     std::vector<std::pair<std::string, double>> emissivity;
     std::vector<std::pair<std::string, double>> heat_flux; ///< W/m²
     std::vector<std::pair<std::string, double>> power;     ///< W
+    std::optional<std::filesystem::path> table;            ///< .csv with the same by group
     std::optional<double> environment;                     ///< temperature, K
     std::optional<double> unit;                            ///< metres in a scene unit
 };
