@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace hemi::cli {
 
 namespace {
@@ -76,11 +78,12 @@ ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     report.add(rows_report(factors, sums, enclosure));
     report.add(repair_report(*factors.repair, seconds["repair"]));
     report.add(seconds.report());
-    report.add(exchange_report(factors.groups, exchange));
+    const Report tables = exchange_report(factors.groups, exchange);
+    report.json.update(tables.json);
     report.select("hemi/exchange/1",
                   {"renderer", "patches", "groups", "areas", "emissivity", "gebhart", "script_f",
                    "conductance", "environment", "row_sum", "repair", "seconds"});
-    outputs.show(report, arguments.common.json, terminal);
+    show_with_tables(outputs, std::move(report), tables, arguments.common.json, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }

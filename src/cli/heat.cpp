@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace hemi::cli {
 
@@ -117,36 +118,36 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     const HeatSolution solution = solve_heat(factors, problem, {}, observer);
     seconds["solve"] = watch.seconds();
     write_patches(arguments, loaded, problem, solution);
-    Report series;
-    series.json["series"] = nullptr;
+    Report tables = heat_report(factors, problem, solution);
+    tables.json["series"] = nullptr;
     if (lines) {
         const Stopwatch series_watch;
-        series = series_report(factors.groups, lines->labels,
-                               solve_heat_series(factors, problem, lines->schedule, {}, observer));
+        const HeatSeries series = solve_heat_series(factors, problem, lines->schedule, {}, observer);
         seconds["series"] = series_watch.seconds();
+        terminal.detail(fmt::format("{} lines {}", lines->labels.size(),
+                                    series.superposed ? "by superposition of one solve a column"
+                                                      : "solved one by one: the problem is not linear"));
+        tables.text += "\n";
+        tables.add(series_report(factors.groups, lines->labels, series));
     }
     Report report = scene_size_report(loaded.mesh);
     report.add(rows_report(factors, sums, enclosure));
     report.add(repair_report(*factors.repair, seconds["repair"]));
     report.add(seconds.report());
-    report.add(heat_report(factors, problem, solution));
-    if (lines) {
-        report.text += "\n";
-    }
-    report.add(series);
+    report.add(heat_balance_report(solution));
+    report.json.update(tables.json);
     report.json["bands"] = problem.bands;
     report.json["unit"] = problem.unit;
-    const bool with_series = lines.has_value();
     report.select("hemi/heat/1",
                   {"renderer",    "patches",    "bands",       "unit",      "groups",
                    "areas",       "emissivity", "temperature", "emitted",   "absorbed",
                    "irradiation", "radiosity",  "net_flux",    "net_power", "environment_power",
                    "balance",     "error",      "buried",      "solver",    "row_sum",
                    "repair",      "series",     "seconds"});
-    if (!with_series) {
+    if (!lines) {
         report.json.erase("series");
     }
-    outputs.show(report, arguments.common.json, terminal);
+    show_with_tables(outputs, std::move(report), tables, arguments.common.json, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }

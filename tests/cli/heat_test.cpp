@@ -207,6 +207,9 @@ TEST_CASE("hemi heat: the JSON has all that is promised, in the right sizes", "[
     CHECK(std::abs(heat["balance"]["relative"].get<double>()) < 1e-7);
     CHECK(heat["seconds"]["total"] > 0.0);
     CHECK_FALSE(heat.contains("series"));
+    const Outcome quiet = run_hemi(on_cpu({"heat", directory.path("box.json"), "-q"}));
+    CHECK(quiet.err.empty());
+    CHECK(quiet.out.starts_with("group "));
     const std::string table = directory.read("box.csv");
     CHECK(table.starts_with("index,group,area,cx,cy,cz,nx,ny,nz,temperature,net_flux,emitted,absorbed,"
                             "irradiation,radiosity\n0,bottom,"));

@@ -88,6 +88,12 @@ Report heat_report(const FormFactors& factors, const HeatProblem& problem, const
                    {"net_power", column_json(all, &GroupHeat::net_power)},
                    {"environment_power", solution.environment_power},
                    {"error", {{"net_flux", column_json(all, &GroupHeat::flux_error)}}}};
+    report.text = table.text();
+    return report;
+}
+
+Report heat_balance_report(const HeatSolution& solution) {
+    Report report;
     report.add("balance",
                fmt::format("{:.3g} W, {:.2g} of all net powers", solution.balance, solution.relative_balance),
                {{"balance", {{"residual", solution.balance}, {"relative", solution.relative_balance}}}});
@@ -111,7 +117,6 @@ Report heat_report(const FormFactors& factors, const HeatProblem& problem, const
                                plural(static_cast<std::uint64_t>(buried), "patch has", "patches have")));
     }
     report.json["buried"] = buried;
-    report.text += fmt::format("\n{}", table.text());
     return report;
 }
 
@@ -141,9 +146,7 @@ Report series_report(std::span<const std::string> names, std::span<const std::st
                         {"net_power", slice_json(series.net_power, l * groups, groups)},
                         {"environment_power", series.environment_power[l]}});
     }
-    report.text = summary_line("series", fmt::format("{} lines, {}", labels.size(),
-                                                     series.superposed ? "by superposition" : "one by one")) +
-                  "\n" + table.text();
+    report.text = table.text();
     report.json["series"] = std::move(json);
     return report;
 }
@@ -165,7 +168,7 @@ Report exchange_report(std::span<const std::string> names, const HeatExchange& e
         table.add(std::move(row));
     }
     Report report;
-    report.text = fmt::format("\n{}", table.text());
+    report.text = table.text();
     report.json = {{"groups", std::vector<std::string>(names.begin(), names.end())},
                    {"areas", exchange.areas},
                    {"emissivity", exchange.emissivity},
@@ -174,6 +177,16 @@ Report exchange_report(std::span<const std::string> names, const HeatExchange& e
                    {"conductance", rows_json(exchange.conductance, groups)},
                    {"environment", exchange.environment}};
     return report;
+}
+
+void show_with_tables(const Outputs& outputs, Report summary, const Report& tables, bool json,
+                      const Terminal& terminal) {
+    if (!json && terminal.quiet() && !outputs.uses_standard_output()) {
+        print(tables.text);
+        return;
+    }
+    summary.text += fmt::format("\n{}", tables.text);
+    outputs.show(summary, json, terminal);
 }
 
 } // namespace hemi::cli
