@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace hemi::cli {
@@ -118,7 +119,14 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     const HeatSolution solution = solve_heat(factors, problem, {}, observer);
     seconds["solve"] = watch.seconds();
     write_patches(arguments, loaded, problem, solution);
-    Report tables = heat_report(factors, problem, solution);
+    std::vector<double> errors(factors.groups.size(), std::numeric_limits<double>::quiet_NaN());
+    if (arguments.rows.factors.estimate_error && factors.error) {
+        const Stopwatch estimate_watch;
+        errors = patch_size_flux_errors(loaded.scene, loaded.mesh, loaded.subdivision, factors, problem,
+                                        solution, arguments.rows.factors, observer);
+        seconds["estimate"] += estimate_watch.seconds();
+    }
+    Report tables = heat_report(factors, problem, solution, errors);
     tables.json["series"] = nullptr;
     if (lines) {
         const Stopwatch series_watch;

@@ -461,7 +461,7 @@ std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem&
     std::vector<double> exposed(groups + 1, 0.0);
     std::vector<double> power(groups + 1, 0.0);   // sigma T⁴
     std::vector<double> by_heat(groups + 1, 0.0); // eps sigma T⁴
-    std::vector<double> given(groups + 1, 0.0);   // eps where the flux is not given
+    std::vector<double> held(groups + 1, 0.0);    // eps where the flux is not given
     for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
         const double area = factors.areas[i] * unit;
         const bool buried = solution.buried[i] != 0;
@@ -490,7 +490,7 @@ std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem&
             heat.emitted += area * solution.emitted[i];
             heat.absorbed += area * solution.absorbed[i];
             heat.net_power += area * solution.net_flux[i];
-            given[g] += has_flux(problem, i) ? 0.0 : area * eps;
+            held[g] += is_held(problem, i) ? area * eps : 0.0;
         }
     }
     const std::vector<double> errors = irradiation_errors(factors, problem, solution);
@@ -507,7 +507,7 @@ std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem&
         heat.net_flux = heat.net_power / area;
         heat.temperature =
             exposed[g] > 0.0 && std::isfinite(power[g]) ? black_body_temperature(power[g] / area) : not_known;
-        heat.flux_error = errors[g] * given[g] / area;
+        heat.flux_error = errors[g] * held[g] / area;
     }
     return all;
 }

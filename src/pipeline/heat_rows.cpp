@@ -27,7 +27,7 @@ bool is_isothermal(const HeatProblem& problem, std::uint32_t patch) {
 
 /// Whether something holds the radiosity of a patch, whatever the others do.
 bool holds(const HeatProblem& problem, std::uint32_t patch) {
-    if (has_flux(problem, patch) || is_isothermal(problem, patch)) {
+    if (!is_held(problem, patch)) {
         return false;
     }
     const auto first = problem.emissivity.begin() + static_cast<std::ptrdiff_t>(patch) * problem.bands;
@@ -63,6 +63,11 @@ std::string names_text(const std::set<std::uint32_t>& groups, const std::vector<
 bool has_flux(const HeatProblem& problem, std::uint32_t patch) {
     const std::uint32_t c = problem.condition_of[patch];
     return c != no_heat && !problem.conditions[c].temperature && !problem.conditions[c].isothermal;
+}
+
+bool is_held(const HeatProblem& problem, std::uint32_t patch) {
+    const std::uint32_t c = problem.condition_of[patch];
+    return c == no_heat || problem.conditions[c].temperature;
 }
 
 double emissivity(const HeatProblem& problem, std::uint32_t patch, std::uint32_t band, double kelvin) {

@@ -27,6 +27,9 @@ namespace hemi {
 /// Whether the flux of a patch is given, uniformly.
 [[nodiscard]] bool has_flux(const HeatProblem& problem, std::uint32_t patch);
 
+/// Whether the net flux of a patch is not given, neither by itself nor with others'.
+[[nodiscard]] bool is_held(const HeatProblem& problem, std::uint32_t patch);
+
 /// Given net flux of every condition, W/m²; 0 where it has none.
 /// @param buried  N; have no flux
 [[nodiscard]] std::vector<double> condition_fluxes(const FormFactors& factors, const HeatProblem& problem,

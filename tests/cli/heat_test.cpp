@@ -217,6 +217,18 @@ TEST_CASE("hemi heat: the JSON has all that is promised, in the right sizes", "[
     CHECK(directory.read("box.vtp").find("Name=\"net_flux\"") != std::string::npos);
 }
 
+TEST_CASE("hemi heat: the estimated error of a flux is about what it is off by", "[cli][heat]") {
+    const Directory directory;
+    const Json heat =
+        run_hemi({"heat", directory.write("box.json", box(1, 2, 3, 4)), "--json", "--device", "cpu"}).json();
+    // From 8 x 8 and 16 x 16 patches a face, 1470.22 and 1455.83, extrapolated by the square of their size.
+    const double error = std::abs(heat["net_flux"][0].get<double>() - 1451.03);
+    const double estimate = heat["error"]["net_flux"][0].get<double>();
+    CHECK(estimate > 0.6 * error);
+    CHECK(estimate < 1.7 * error);
+    CHECK(heat["error"]["parts"]["patch_size"][0].get<double>() > 0.9 * estimate);
+}
+
 TEST_CASE("hemi heat: MOOSE's cavity by factors from a file", "[cli][heat]") {
     const Directory directory;
     const std::string scene = directory.write("cavity.json", cavity());

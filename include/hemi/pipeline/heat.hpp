@@ -2,6 +2,7 @@
 
 #include "hemi/matrix/form_factors.hpp"
 #include "hemi/pipeline/observer.hpp"
+#include "hemi/pipeline/settings.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <array>
@@ -103,6 +104,22 @@ struct GroupHeat {
 /// Of every group of the form factors; a last one with everything but the environment.
 [[nodiscard]] std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem& problem,
                                                 const HeatSolution& solution);
+
+/// What the mean net flux of every group is off by because patches have a size, W/m², estimated as by
+/// estimate_patch_size_error() for the light that goes from patch to patch. 0 where the flux is given; not a
+/// number where it is not known.
+/// @param scene        that the problem is of
+/// @param mesh         its patches
+/// @param subdivision  by which PatchMesh(scene, subdivision) has these patches
+/// @param factors      all rows
+/// @param problem      of the mesh
+/// @param solution     of the problem
+/// @param settings     as in estimate_patch_size_error()
+/// @param observer     gets progress and may cancel; gets a warning where it cannot be estimated
+[[nodiscard]] std::vector<double>
+patch_size_flux_errors(const Scene& scene, const PatchMesh& mesh, const Subdivision& subdivision,
+                       const FormFactors& factors, const HeatProblem& problem, const HeatSolution& solution,
+                       const FactorSettings& settings, Observer& observer = no_observer());
 
 /// What changes with time: a column for each of some groups, or for the environment.
 struct HeatSchedule {

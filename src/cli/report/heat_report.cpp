@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hemi::cli {
 
@@ -25,6 +26,14 @@ Json column_json(const std::vector<GroupHeat>& all, double GroupHeat::*member) {
     Json json = Json::array();
     for (std::size_t g = 0; g + 1 < all.size(); ++g) {
         json.push_back(value_json(all[g].*member));
+    }
+    return json;
+}
+
+Json numbers_json(std::span<const double> values) {
+    Json json = Json::array();
+    for (const double value : values) {
+        json.push_back(value_json(value));
     }
     return json;
 }
@@ -53,8 +62,19 @@ Json gebhart_json(const HeatExchange& exchange) {
 
 } // namespace
 
-Report heat_report(const FormFactors& factors, const HeatProblem& problem, const HeatSolution& solution) {
+Report heat_report(const FormFactors& factors, const HeatProblem& problem, const HeatSolution& solution,
+                   std::span<const double> patch_size_errors) {
     const std::vector<GroupHeat> all = group_heat(factors, problem, solution);
+    Json errors = Json::array();
+    std::vector<double> combined;
+    for (std::size_t g = 0; g < all.size(); ++g) {
+        const bool estimated = g < patch_size_errors.size();
+        combined.push_back(estimated ? std::hypot(all[g].flux_error, patch_size_errors[g])
+                                     : std::numeric_limits<double>::quiet_NaN());
+        if (g + 1 < all.size()) {
+            errors.push_back(value_json(combined[g]));
+        }
+    }
     Table table({"group", "area m²", "emissivity", "T K", "emitted W/m²", "absorbed W/m²", "irradiation W/m²",
                  "radiosity W/m²", "net flux W/m²", "+-", "net power W"});
     for (std::size_t g = 0; g < all.size(); ++g) {
@@ -64,7 +84,7 @@ Report heat_report(const FormFactors& factors, const HeatProblem& problem, const
                    number_text(heat.emissivity), value_text(heat.temperature), number_text(heat.emitted),
                    number_text(heat.absorbed), number_text(heat.irradiation), number_text(heat.radiosity),
                    number_text(heat.net_flux),
-                   std::isfinite(heat.flux_error) ? fmt::format("{:.2g}", heat.flux_error) : "-",
+                   std::isfinite(combined[g]) ? fmt::format("{:.2g}", combined[g]) : "-",
                    number_text(heat.net_power)});
     }
     const std::string none;
@@ -87,7 +107,11 @@ Report heat_report(const FormFactors& factors, const HeatProblem& problem, const
                    {"net_flux", column_json(all, &GroupHeat::net_flux)},
                    {"net_power", column_json(all, &GroupHeat::net_power)},
                    {"environment_power", solution.environment_power},
-                   {"error", {{"net_flux", column_json(all, &GroupHeat::flux_error)}}}};
+                   {"error",
+                    {{"net_flux", std::move(errors)},
+                     {"parts",
+                      {{"factors", column_json(all, &GroupHeat::flux_error)},
+                       {"patch_size", numbers_json(patch_size_errors)}}}}}};
     report.text = table.text();
     return report;
 }

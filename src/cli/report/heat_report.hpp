@@ -14,8 +14,9 @@
 namespace hemi::cli {
 
 /// Table of groups, and its keys of `heat --json`.
+/// @param patch_size_errors  of their net fluxes; empty: not estimated
 [[nodiscard]] Report heat_report(const FormFactors& factors, const HeatProblem& problem,
-                                 const HeatSolution& solution);
+                                 const HeatSolution& solution, std::span<const double> patch_size_errors);
 
 /// Lines and keys on the balance, the solver and buried patches.
 [[nodiscard]] Report heat_balance_report(const HeatSolution& solution);
