@@ -412,25 +412,32 @@ private:
     double outer_change_ = 0.0;
 };
 
-/// Root mean square of what the sampled rows' irradiations are off by, W/m², of every group; of all rows
-/// where a group has hardly any; not a number where there are none.
+/// What the mean irradiation of every group is off by, W/m², by its sampled rows: their mean and its standard
+/// error together; by all rows where a group has hardly any; not a number where there are none.
 std::vector<double> irradiation_errors(const FormFactors& factors, const HeatProblem& problem,
                                        const HeatSolution& solution) {
     const std::size_t groups = factors.groups.size();
+    std::vector<double> sums(groups + 1, 0.0);
     std::vector<double> squares(groups + 1, 0.0);
     std::vector<std::size_t> counts(groups + 1, 0);
     if (factors.reference.size() == factors.matrix.size()) {
         const IrradianceErrors errors = irradiance_errors(factors.matrix, factors.reference, problem.bands,
                                                           solution.radiosity, environment_exitance(problem));
+        // What a row has too much comes out of what the patch sends itself.
+        const std::vector<double> ones(factors.matrix.size(), 1.0);
+        const IrradianceErrors excess =
+            irradiance_errors(factors.matrix, factors.reference, 1, ones, std::vector<double>{1.0});
         for (std::size_t k = 0; k < errors.rows.size(); ++k) {
             if (solution.buried[errors.rows[k]] != 0) {
                 continue;
             }
             double sum = 0.0;
             for (std::uint32_t b = 0; b < problem.bands; ++b) {
-                sum += errors.errors[k * problem.bands + b];
+                sum += errors.errors[k * problem.bands + b] -
+                       excess.errors[k] * solution.radiosity[std::size_t{errors.rows[k]} * problem.bands + b];
             }
             for (const std::size_t g : {std::size_t{factors.group_of[errors.rows[k]]}, groups}) {
+                sums[g] += sum;
                 squares[g] += sum * sum;
                 ++counts[g];
             }
@@ -440,8 +447,10 @@ std::vector<double> irradiation_errors(const FormFactors& factors, const HeatPro
     std::vector<double> result;
     for (std::size_t g = 0; g <= groups; ++g) {
         const std::size_t from = counts[g] < few ? groups : g;
-        result.push_back(counts[from] == 0 ? not_known
-                                           : std::sqrt(squares[from] / static_cast<double>(counts[from])));
+        const auto count = static_cast<double>(counts[from]);
+        const double mean = sums[from] / count; // not a number where there are none
+        const double spread = std::max(squares[from] / count - mean * mean, 0.0);
+        result.push_back(std::hypot(mean, count > 1.0 ? std::sqrt(spread / (count - 1.0)) : 0.0));
     }
     return result;
 }

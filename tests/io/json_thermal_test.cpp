@@ -91,6 +91,11 @@ TEST_CASE("JSON: what is wrong with heat is told with its place", "[io][heat]") 
     refused([](Json& j) { j["surfaces"][0]["temperature"] = "-300 C"; }, Contains("below 0 K"));
     refused([](Json& j) { j["surfaces"][0]["temperature"] = "68 F"; },
             Contains("\"68 F\"") && Contains("20 C"));
+    refused(
+        [](Json& j) {
+            j["surfaces"][0]["temperature"] = {1, 2};
+        },
+        Contains("surfaces[0].temperature") && Contains("kelvin"));
     refused([](Json& j) { j["surfaces"][0]["heat_flux"] = 1; },
             Contains("\"temperature\"") && Contains("\"heat_flux\""));
     refused([](Json& j) { j["surfaces"][1]["isothermal"] = true; }, Contains("isothermal"));

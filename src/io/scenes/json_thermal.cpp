@@ -34,8 +34,10 @@ double read_temperature(const JsonNode& node) {
                 fmt::format("{}; must be kelvin, or a text such as \"20 C\" or \"300 K\"", in_quotes(text)));
         }
         kelvin = *value;
-    } else {
+    } else if (node.value().is_number()) {
         kelvin = node.number();
+    } else {
+        node.expect("kelvin, or a text such as \"20 C\"");
     }
     if (kelvin < 0.0) {
         node.fail(fmt::format("{} K; must not be below 0 K", kelvin));
