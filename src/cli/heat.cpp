@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -51,6 +52,29 @@ Lines read_series(const std::filesystem::path& path) {
         }
     }
     return lines;
+}
+
+/// What the scene says nothing of has the temperatures of the first line.
+void give_temperatures(Scene& scene, const HeatSchedule& schedule) {
+    for (std::size_t c = 0; c < schedule.columns.size(); ++c) {
+        const auto found = std::find(scene.groups.begin(), scene.groups.end(), schedule.columns[c]);
+        auto& environment = scene.thermal->environment_temperature;
+        if (found == scene.groups.end() && schedule.columns[c] == "environment" && !environment) {
+            environment = schedule.values[c];
+        }
+        const auto group = static_cast<std::uint32_t>(found - scene.groups.begin());
+        const auto is_known = [group](const Surface& surface) {
+            return surface.group == group && surface.heat != no_heat;
+        };
+        if (std::any_of(scene.surfaces.begin(), scene.surfaces.end(), is_known)) {
+            continue;
+        }
+        const auto index = static_cast<std::uint32_t>(scene.thermal->conditions.size());
+        scene.thermal->conditions.emplace_back().temperature = schedule.values[c];
+        for (Surface& surface : scene.surfaces) {
+            surface.heat = surface.group == group ? index : surface.heat;
+        }
+    }
 }
 
 Outputs check_outputs(const HeatArguments& arguments) {
@@ -107,6 +131,9 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     Seconds seconds({"load", "factors", "estimate", "repair", "solve", "series"});
     LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, true, terminal);
     seconds["load"] = loaded.seconds;
+    if (lines) {
+        give_temperatures(loaded.scene, lines->schedule);
+    }
     TerminalObserver observer(terminal);
     const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);
     const FormFactors factors = find_heat_rows(arguments.common, arguments.rows, arguments.input, loaded,

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace hemi {
 
@@ -20,8 +21,16 @@ constexpr std::uint32_t of_environment = no_heat;
 
 constexpr const char* environment_name = "environment";
 
-/// The condition that a column changes.
-std::uint32_t condition_of(const FormFactors& factors, const HeatProblem& problem, const std::string& name) {
+/// What a condition gives.
+enum class Given { temperature, heat_flux, power };
+
+Given given(const HeatCondition& condition) {
+    return condition.temperature ? Given::temperature : condition.power ? Given::power : Given::heat_flux;
+}
+
+/// The condition that a column changes: one for all of its group, in place of several of one kind, or of
+/// none.
+std::uint32_t condition_of(const FormFactors& factors, HeatProblem& problem, const std::string& name) {
     const auto found = std::find(factors.groups.begin(), factors.groups.end(), name);
     if (found == factors.groups.end()) {
         if (name == environment_name) {
@@ -32,29 +41,50 @@ std::uint32_t condition_of(const FormFactors& factors, const HeatProblem& proble
         throw InputError(fmt::format("series: no group \"{}\"{}", name, did_you_mean_or_list(name, known)));
     }
     const auto group = static_cast<std::uint32_t>(found - factors.groups.begin());
-    std::uint32_t condition = no_heat;
+    std::set<std::uint32_t> own;
+    std::set<std::uint32_t> others;
     for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
-        if (factors.group_of[i] != group) {
-            continue;
-        }
-        if (problem.condition_of[i] == no_heat ||
-            (condition != no_heat && problem.condition_of[i] != condition)) {
-            throw InputError(fmt::format(
-                "series: group \"{}\" has {}; it needs one temperature, heat flux or "
-                "power for all of it, which the column changes",
-                name,
-                problem.condition_of[i] == no_heat ? "parts without temperature, heat flux and power"
-                                                   : "several temperatures, heat fluxes or powers"));
-        }
-        condition = problem.condition_of[i];
+        (factors.group_of[i] == group ? own : others).insert(problem.condition_of[i]);
     }
+    const auto refuse = [&name](const char* has) {
+        throw InputError(
+            fmt::format("series: group \"{}\" has {}; the column needs one kind of condition for all "
+                        "of it and nothing else: temperature, heat flux or power",
+                        name, has));
+    };
+    if (own.size() > 1 && own.contains(no_heat)) {
+        refuse("parts without temperature, heat flux and power");
+    }
+    HeatCondition condition;
+    condition.temperature = 0.0; // of each line its own
+    bool shared = false;
+    if (!own.empty() && !own.contains(no_heat)) {
+        condition = problem.conditions[*own.begin()];
+        for (const std::uint32_t c : own) {
+            const HeatCondition& other = problem.conditions[c];
+            shared = shared || others.contains(c);
+            if (given(other) != given(condition)) {
+                refuse("conditions of several kinds");
+            }
+            if (other.isothermal && (own.size() > 1 || others.contains(c))) {
+                refuse("an isothermal part, or is isothermal together with others");
+            }
+        }
+        if (shared && given(condition) == Given::power) {
+            refuse("a power together with others");
+        }
+        if (own.size() == 1 && !shared) {
+            return *own.begin();
+        }
+    }
+    const auto index = static_cast<std::uint32_t>(problem.conditions.size());
+    problem.conditions.push_back(condition);
     for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
-        if (problem.condition_of[i] == condition && factors.group_of[i] != group) {
-            throw InputError(fmt::format("series: group \"{}\" shares its condition with group \"{}\"", name,
-                                         factors.groups[factors.group_of[i]]));
+        if (factors.group_of[i] == group) {
+            problem.condition_of[i] = index;
         }
     }
-    return condition;
+    return index;
 }
 
 class Series {
@@ -69,7 +99,7 @@ public:
         }
         lines_ = schedule.values.size() / columns_;
         for (const std::string& name : schedule.columns) {
-            condition_.push_back(hemi::condition_of(factors, problem, name));
+            condition_.push_back(hemi::condition_of(factors, problem_, name));
             if (std::count(schedule.columns.begin(), schedule.columns.end(), name) > 1) {
                 throw InputError(fmt::format("series: two columns \"{}\"", name));
             }
@@ -317,7 +347,7 @@ private:
     }
 
     const FormFactors& factors_;
-    const HeatProblem& problem_;
+    HeatProblem problem_; // with one condition a column
     const HeatSchedule& schedule_;
     const HeatSettings& settings_;
     Observer& observer_;

@@ -365,6 +365,28 @@ TEST_CASE("heat: a series is as many single runs", "[heat]") {
         problem.table_of[2] = 0;
         check(false, 1e-12);
     }
+    SECTION("a column stands for all conditions of its group, and makes one where there is none") {
+        FormFactors joined = factors;
+        joined.groups = {"bottom", "right", "walls"};
+        joined.group_of = {0, 1, 2, 2};
+        HeatProblem several = problem;
+        several.conditions[3] = at(900.0); // beside the 300 K of the other one
+        several.condition_of[1] = no_heat;
+        const HeatSeries series = solve_heat_series(joined, several, {{"walls", "right"}, {500.0, 350.0}});
+        HeatProblem single = problem;
+        single.conditions = {at(1500.0), at(350.0), at(500.0), at(500.0)};
+        const HeatSolution solution = solve_heat(joined, single);
+        const std::vector<GroupHeat> groups = group_heat(joined, single, solution);
+        for (std::size_t g = 0; g < 3; ++g) {
+            CHECK(series.net_power[g] == Approx(groups[g].net_power).epsilon(1e-9));
+        }
+        several.conditions[3] = with_flux(0.0);
+        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}}),
+                          Contains("walls") && Contains("several kinds"));
+        several.condition_of[3] = no_heat;
+        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}}),
+                          Contains("parts without"));
+    }
     SECTION("unknown groups are refused with the nearest") {
         schedule.columns[0] = "topp";
         CHECK_THROWS_WITH(solve_heat_series(factors, problem, schedule), Contains("\"top\""));

@@ -137,13 +137,14 @@ struct HeatSeries {
     std::vector<double> environment_power; ///< W, a line
     bool superposed = false; ///< by one solve a column; else by one a line, since the problem is not linear
 };
-/// Solves for every line of a schedule, which replaces what the problem says of these groups.
+/// Solves for every line of a schedule, which replaces what the problem says of these groups: all of their
+/// temperatures, fluxes or powers; groups of which it says nothing get temperatures.
 /// @param factors   as in solve_heat()
 /// @param problem   as in solve_heat()
 /// @param schedule  temperatures, fluxes and powers
 /// @param settings  tolerances
 /// @param observer  gets progress and may cancel
-/// @throws InputError for unknown groups, with the nearest, groups with several conditions or none, and
+/// @throws InputError for unknown groups, with the nearest, groups with conditions of several kinds, and
 ///   temperatures below 0 K; as solve_heat()
 [[nodiscard]] HeatSeries solve_heat_series(const FormFactors& factors, const HeatProblem& problem,
                                            const HeatSchedule& schedule, const HeatSettings& settings = {},
