@@ -46,3 +46,22 @@ TEST_CASE("temperatures become exitance where light is solved for", "[scene][hea
     REQUIRE(diagnostics.warnings().size() == 1);
     CHECK_THAT(diagnostics.warnings()[0], Contains("plate") && Contains("hemi heat"));
 }
+
+TEST_CASE("validate: reflectance 1 is for thermal scenes, and conditions must be there", "[scene][heat]") {
+    Scene scene;
+    scene.groups = {"plate"};
+    scene.environment = {0.0};
+    scene.materials = {{"mirror", {1.0}, {0.0}}};
+    Surface surface;
+    surface.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)};
+    scene.surfaces = {surface};
+    CHECK_THROWS_WITH(validate(scene), Contains("mirror") && Contains("below 1"));
+    scene.thermal.emplace();
+    CHECK_NOTHROW(validate(scene));
+    scene.surfaces[0].heat = 0;
+    CHECK_THROWS_WITH(validate(scene), Contains("heat condition 0"));
+    scene.thermal->conditions.resize(1);
+    CHECK_NOTHROW(validate(scene));
+    scene.materials[0].reflectance = {1.5};
+    CHECK_THROWS_WITH(validate(scene), Contains("at most 1"));
+}
