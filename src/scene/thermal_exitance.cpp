@@ -34,6 +34,7 @@ Material radiating(Material material, double kelvin, const std::vector<double>& 
         emissivity.push_back(1.0 - reflectance);
     }
     add_exitance(material.exitance, emissivity, kelvin, limits);
+    material.name += fmt::format(" at {} K", number_text(kelvin));
     return material;
 }
 

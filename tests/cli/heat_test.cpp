@@ -376,6 +376,9 @@ TEST_CASE("hemi heat: slips in temperatures and units are told", "[cli][heat]") 
     const std::string file = directory.write("mirrors.json", mirrors);
     CHECK(run_hemi(on_cpu({"heat", file})).status == 0);
     CHECK(run_hemi(on_cpu({"solve", file})).err_has("below 1"));
+    const Outcome factors = run_hemi(on_cpu({"factors", file})); // they know no reflectance
+    CHECK(factors.status == 0);
+    CHECK(factors.err.empty());
 }
 
 TEST_CASE("hemi heat: a series of temperatures", "[cli][heat]") {

@@ -41,6 +41,7 @@ TEST_CASE("temperatures become exitance where light is solved for", "[scene][hea
     CHECK(material(0).exitance[1] == Approx(0.5 * hot[1] * black_body_exitance(1300.0) + 3.0));
     CHECK(material(1).reflectance[0] == Approx(0.35));
     CHECK(material(1).exitance[0] + material(1).exitance[1] == Approx(0.65 * black_body_exitance(800.0)));
+    CHECK(material(0).name == "grey at 1300 K");
     CHECK(material(2) == grey);
     CHECK(scene.environment[0] + scene.environment[1] == Approx(3.0 + black_body_exitance(290.0)));
     REQUIRE(diagnostics.warnings().size() == 1);

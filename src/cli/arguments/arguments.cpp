@@ -342,6 +342,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
 }
 
 void add_factors(CLI::App& app, FactorsArguments& a) {
+    a.scene.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
@@ -386,6 +387,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
 }
 
 void add_check(CLI::App& app, CheckArguments& a) {
+    a.scene.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
@@ -560,6 +562,7 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
 }
 
 void add_info(CLI::App& app, InfoArguments& a) {
+    a.scene.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff, .hres, .mtx, .csv, .npz, .txt, .vf, .dat, .bin");
     add_rows(app, a.rows);
     add_common(app, a.common);

@@ -45,7 +45,7 @@ struct SceneOptions {
     bool skip_degenerate = false;
     bool allow_outside = false;
     bool imprint = false;   ///< cut faces where they touch
-    bool adiabatic = false; ///< reflectances of 1 are allowed
+    bool adiabatic = false; ///< reflectances of 1 are allowed, and temperatures stay what they are
 };
 
 struct RowOptions {
