@@ -7,6 +7,7 @@
 #include "hemi/pipeline/accuracy.hpp"
 #include "hemi/pipeline/diagnosis.hpp"
 #include "hemi/pipeline/form_factors.hpp"
+#include "hemi/pipeline/heat.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/picture.hpp"
 #include "hemi/pipeline/radiosity.hpp"

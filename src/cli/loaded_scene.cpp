@@ -6,6 +6,7 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/scene/thermal_exitance.hpp"
 
 #include <fmt/format.h>
 
@@ -102,7 +103,11 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     const Stopwatch watch;
     Diagnostics diagnostics;
     Scene scene = io::read_scene(
-        options.path, {options.two_sided, options.skip_degenerate, options.allow_outside}, diagnostics);
+        options.path, {options.two_sided, options.skip_degenerate, options.allow_outside, options.adiabatic},
+        diagnostics);
+    if (!options.adiabatic) {
+        radiate_by_temperature(scene, diagnostics);
+    }
     terminal.warn(diagnostics);
     check_two_sided_groups(scene, options);
     scene.enclosure = options.enclosure.value_or(scene.enclosure);

@@ -2,6 +2,7 @@
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/scene/imprint.hpp"
+#include "hemi/scene/thermal_exitance.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/work.hpp"
@@ -205,7 +206,9 @@ ScenePointer read_scene(const py::object& path, std::optional<double> patch_size
     }
     Diagnostics diagnostics;
     Scene scene = run([&] {
-        return io::read_scene(file, {two_sided, skip_degenerate, allow_outside}, diagnostics);
+        Scene read = io::read_scene(file, {two_sided, skip_degenerate, allow_outside}, diagnostics);
+        radiate_by_temperature(read, diagnostics);
+        return read;
     });
     warn(diagnostics);
     if (enclosure) {

@@ -22,16 +22,16 @@ bool finite(const Vec3& point) {
     return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
 }
 
-void validate(const Material& material, std::size_t channels) {
+void validate(const Material& material, std::size_t channels, bool thermal) {
     if (material.reflectance.size() != channels || material.exitance.size() != channels) {
         throw InputError(
             fmt::format("material \"{}\": {} reflectances and {} exitances; the scene has {} channels",
                         material.name, material.reflectance.size(), material.exitance.size(), channels));
     }
     for (const double value : material.reflectance) {
-        if (!(value >= 0.0 && value < 1.0)) {
-            throw InputError(fmt::format("material \"{}\": reflectance {}; must be at least 0 and below 1",
-                                         material.name, value));
+        if (!(value >= 0.0 && (value < 1.0 || (thermal && value == 1.0)))) {
+            throw InputError(fmt::format("material \"{}\": reflectance {}; must be at least 0 and {} 1",
+                                         material.name, value, thermal ? "at most" : "below"));
         }
     }
     for (const double value : material.exitance) {
@@ -43,6 +43,20 @@ void validate(const Material& material, std::size_t channels) {
 }
 
 } // namespace
+
+double emissivity_at(std::span<const std::array<double, 2>> table, double kelvin) {
+    const auto above = std::find_if(table.begin(), table.end(), [kelvin](const std::array<double, 2>& entry) {
+        return entry[0] > kelvin;
+    });
+    if (above == table.begin()) {
+        return (*above)[1];
+    }
+    const auto& [low, from] = *(above - 1);
+    if (above == table.end()) {
+        return from;
+    }
+    return from + ((*above)[1] - from) * (kelvin - low) / ((*above)[0] - low);
+}
 
 std::uint32_t Scene::group_index(const std::string& group_name) {
     const auto found = std::find(groups.begin(), groups.end(), group_name);
@@ -71,7 +85,7 @@ void validate(const Scene& scene) {
         throw InputError("the scene has no channels; it needs at least one");
     }
     for (const Material& material : scene.materials) {
-        validate(material, scene.channels.size());
+        validate(material, scene.channels.size(), scene.thermal.has_value());
     }
     if (!scene.environment.empty() && scene.environment.size() != scene.channels.size()) {
         throw InputError(fmt::format("environment: {} exitances; the scene has {} channels",
@@ -91,6 +105,9 @@ void validate(const Scene& scene) {
             throw InputError(fmt::format("surface {}: group {} of {} or material {} of {} does not exist", s,
                                          surface.group, scene.groups.size(), surface.material,
                                          scene.materials.size()));
+        }
+        if (surface.heat != no_heat && (!scene.thermal || surface.heat >= scene.thermal->conditions.size())) {
+            throw InputError(fmt::format("surface {}: heat condition {} does not exist", s, surface.heat));
         }
         if (const auto defect = polygon_defect(surface.polygon())) {
             throw InputError(

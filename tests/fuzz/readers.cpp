@@ -4,6 +4,7 @@
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/io/table_file.hpp"
 #include "io/factors/checkpoint_file.hpp"
 
 #include <zlib.h>
@@ -231,6 +232,11 @@ const std::map<std::string, Reader> readers{
     {"csv",
      {"fuzzed.csv", [](const fs::path& path) { (void)io::read_csv(path); },
       [](const fs::path& folder) { io::write_csv(folder / "a.csv", small_matrix(false)); }}},
+    {"table",
+     {"fuzzed.csv", [](const fs::path& path) { (void)io::read_table(path); },
+      [](const fs::path& folder) {
+          io::write_table(folder / "a.csv", {{"time", "a, b"}, {{"0", "300"}, {"1", "\"20\" C"}}, {}});
+      }}},
     {"npz",
      {"fuzzed.npz", [](const fs::path& path) { (void)io::read_npz(path); },
       [](const fs::path& folder) { io::write_npz(folder / "a.npz", small_matrix(false)); }}},

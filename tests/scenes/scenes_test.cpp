@@ -82,7 +82,8 @@ TEST_CASE("scenes: every file reads without a warning and says what it shows", "
         if (name.ends_with(".json")) {
             CHECK(scene.name.size() > 20);
             CHECK(scene.camera.has_value());
-            CHECK(scene.channels == std::vector<std::string>{"red", "green", "blue"});
+            const std::vector<std::string> colours{"red", "green", "blue"};
+            CHECK(scene.channels == (scene.thermal ? std::vector<std::string>{"heat"} : colours));
         }
     }
 }

@@ -14,6 +14,7 @@ struct SceneReaderOptions {
     std::vector<std::string> two_sided_groups; ///< groups whose faces radiate on both sides
     bool skip_degenerate = false; ///< leave out faces of zero area, with a warning, instead of refusing
     bool allow_outside = false;   ///< open files outside the scene's folder that the scene names
+    bool adiabatic = false;       ///< allow reflectances of 1 in .json, where heat is solved for
 };
 
 /// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3 (View3D),

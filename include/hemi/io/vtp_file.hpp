@@ -24,6 +24,13 @@ struct CellArray {
 /// @throws InvalidArgument for arrays of another length, values that are not finite; IoError
 void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::span<const CellArray> arrays);
 
+/// The same as a table: one line a patch with index,group,area,cx,cy,cz,nx,ny,nz (index from 0; shortest
+/// digits that read back equal), then a column for every component of the arrays, `name` or `name_component`.
+/// Cells of values that are not a number are empty.
+/// @throws InvalidArgument for arrays of another length; IoError
+void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
+                       std::span<const CellArray> arrays);
+
 /// What a stored solution knows of its patches: row balance, radiosity, irradiance, exitance, reflectance,
 /// and estimated errors where there are any.
 /// @param result  what is shown

@@ -17,9 +17,18 @@ struct Material {
     std::string name;                ///< as in the file
     std::vector<double> reflectance; ///< Share reflected, in [0, 1), one value per channel.
     std::vector<double> exitance;    ///< Radiated by itself, W/m² (or lm/m²), >= 0, one value per channel.
+    /// Emissivity by temperature, in all bands: pairs of kelvin, ascending, and emissivity, straight between
+    /// them and constant beyond. Empty: 1 - reflectance, whatever the temperature. Where there is one, the
+    /// reflectance is that at 300 K.
+    std::vector<std::array<double, 2>> emissivity_table{};
 
     bool operator==(const Material&) const = default; ///< member by member
 };
+
+/// Emissivity at a temperature by a table as Material::emissivity_table.
+/// @param table   not empty
+/// @param kelvin  temperature
+[[nodiscard]] double emissivity_at(std::span<const std::array<double, 2>> table, double kelvin);
 
 /// Number of patches along the two directions of a surface.
 struct Grid {
@@ -29,14 +38,41 @@ struct Grid {
     bool operator==(const Grid&) const = default; ///< member by member
 };
 
+/// What is known of the heat of some surfaces: one of temperature, heat flux and power.
+struct HeatCondition {
+    std::optional<double> temperature; ///< K
+    std::optional<double> heat_flux;   ///< net, leaving the surface positive, W/m²; 0: adiabatic
+    std::optional<double> power;       ///< net, of all surfaces with this condition together, W
+    /// All surfaces with this condition have one temperature, which follows from their power or mean flux;
+    /// else that is a uniform flux.
+    bool isothermal = false;
+
+    bool operator==(const HeatCondition&) const = default; ///< member by member
+};
+
+/// What a scene says of heat beside its materials' emissivities.
+struct Thermal {
+    /// Limits of the wavelength bands, µm, ascending: n limits make n + 1 bands from 0 to infinity, which are
+    /// the channels. Empty: one, grey.
+    std::vector<double> band_limits;
+    std::vector<HeatCondition> conditions;         ///< Surface::heat points here.
+    std::optional<double> environment_temperature; ///< K; radiates as a black body does
+
+    bool operator==(const Thermal&) const = default; ///< member by member
+};
+
+/// Surface::heat where nothing is known.
+inline constexpr std::uint32_t no_heat = 0xFFFFFFFF;
+
 /// A planar convex triangle or quadrilateral. Front side: vertices counter-clockwise.
 struct Surface {
     std::array<Vec3, 4> vertices{}; ///< The fourth is unused for a triangle.
     std::uint32_t vertex_count = 4; ///< 3 or 4
     std::uint32_t material = 0;     ///< Index into Scene::materials.
     std::uint32_t group = 0;        ///< Index into Scene::groups.
-    bool two_sided = false;      ///< Radiates and receives on its back too; otherwise the back only blocks.
-    std::optional<Grid> patches; ///< Subdivision of its own; beats Scene::patch_size.
+    bool two_sided = false;       ///< Radiates and receives on its back too; otherwise the back only blocks.
+    std::optional<Grid> patches;  ///< Subdivision of its own; beats Scene::patch_size.
+    std::uint32_t heat = no_heat; ///< Index into Thermal::conditions, or no_heat.
 
     /// The vertices that are used.
     [[nodiscard]] std::span<const Vec3> polygon() const { return {vertices.data(), vertex_count}; }
@@ -63,6 +99,9 @@ struct Scene {
     Enclosure enclosure = Enclosure::automatic; ///< What the file says about it.
     std::vector<double> environment; ///< Exitance of the environment (pi times its radiance), per channel.
     std::optional<Camera> camera;    ///< None: see default_camera().
+    std::optional<double> unit;      ///< Metres in a scene unit; none: 1.
+    /// What it says of heat. Reflectances of 1 are allowed where there is some: such surfaces are adiabatic.
+    std::optional<Thermal> thermal;
 
     /// Index of the group of that name, made if it is new.
     std::uint32_t group_index(const std::string& group_name);
@@ -71,8 +110,8 @@ struct Scene {
 };
 
 /// Checks what every part of hemi relies on: at least one surface, indices in range, one value per channel,
-/// reflectance in [0, 1), exitance finite and >= 0, finite planar convex polygons of positive area, a scene
-/// that is not lost in the rounding of its coordinates.
+/// reflectance in [0, 1), or [0, 1] where the scene is thermal, exitance finite and >= 0, finite planar
+/// convex polygons of positive area, a scene that is not lost in the rounding of its coordinates.
 /// @throws InputError naming the material or the group and surface, the value and the range.
 void validate(const Scene& scene);
 

@@ -216,7 +216,10 @@ void add_resume(CLI::App& app, RowOptions& rows, CLI::Option* output) {
         .flag("--resume", rows.resume,
               fmt::format("with {}: resume from the rows that an interrupted run left in FILE.rows",
                           output->get_name()));
-    app.get_option("--resume")->needs(output)->excludes(app.get_option("--error-target"));
+    auto* resume = app.get_option("--resume")->needs(output);
+    if (auto* target = app.get_option_no_throw("--error-target")) {
+        resume->excludes(target);
+    }
 }
 
 void add_max_memory(CLI::App& app, RowOptions& rows) {
@@ -340,6 +343,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
 }
 
 void add_factors(CLI::App& app, FactorsArguments& a) {
+    a.scene.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
@@ -384,6 +388,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
 }
 
 void add_check(CLI::App& app, CheckArguments& a) {
+    a.scene.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
@@ -422,6 +427,43 @@ void add_trade(CLI::App& app, TradeArguments& a) {
         "Examples:\n"
         "  hemi trade scenes/cube.json -o cube.svg\n"
         "  hemi trade room.obj --patch-size 0.1 --budget 5m --json");
+}
+
+/// What `heat` and `exchange` have in common.
+void add_rows_of_heat(CLI::App& app, SceneOptions& scene, RowOptions& rows, FactorInput& input) {
+    scene.adiabatic = true;
+    add_scene(app, scene);
+    add_enclosure(app, scene, rows);
+    add_rows(app, rows);
+    add_repair(app, rows.factors.repair);
+    Options(app, "Form factors")
+        .flag("--no-estimate", rows.factors.estimate_error,
+              "skip the error estimates, which take a tenth of the time of new form factors", false);
+    auto* factors = add_factor_input(app, input);
+    add_resume(app, rows, factors);
+    add_max_memory(app, rows);
+}
+
+void add_heat(CLI::App& app, HeatArguments& a) {
+    add_rows_of_heat(app, a.scene, a.rows, a.input);
+    add_heat_options(app, a.heat, true);
+    add_heat_output(app, a);
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi heat scenes/furnace-hot.json\n"
+               "  hemi heat room.obj --temperature walls=20C --temperature floor=26C --emissivity walls=0.9");
+}
+
+void add_exchange(CLI::App& app, ExchangeArguments& a) {
+    add_rows_of_heat(app, a.scene, a.rows, a.input);
+    add_heat_options(app, a.heat, false);
+    Options(app, "Output")
+        .path("-o,--output", "FILE.csv", a.output,
+              "from, to, Gebhart factor, script-F and conductance of every pair; - for stdout");
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi exchange scenes/furnace-hot.json\n"
+               "  hemi exchange room.obj --emissivity walls=0.9 -o room.csv");
 }
 
 void add_render(CLI::App& app, RenderArguments& a) {
@@ -522,6 +564,7 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
 }
 
 void add_info(CLI::App& app, InfoArguments& a) {
+    a.scene.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff, .hres, .mtx, .csv, .npz, .txt, .vf, .dat, .bin");
     add_rows(app, a.rows);
     add_common(app, a.common);
@@ -596,6 +639,9 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
     add_command(app, "factors", "Form factors only", add_factors, chosen);
     add_command(app, "check", "Which rows are wrong, and why", add_check, chosen);
     add_command(app, "trade", "Speed against accuracy, measured on a scene", add_trade, chosen);
+    add_command(app, "heat", "Net heat fluxes and temperatures", add_heat, chosen);
+    add_command(app, "exchange", "Grey exchange between groups: Gebhart factors, script-F, conductances",
+                add_exchange, chosen);
     add_command(app, "render", "Picture of a stored solution", add_render, chosen);
 #ifdef HEMI_WITH_VIEWER
     add_command(app, "view", "Window with an orbiting camera", add_view, chosen);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "cli/arguments/heat_arguments.hpp"
 #include "cli/arguments/option_values.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/display/picture.hpp"
@@ -43,7 +44,8 @@ struct SceneOptions {
     std::vector<std::string> two_sided;
     bool skip_degenerate = false;
     bool allow_outside = false;
-    bool imprint = true; ///< cut faces where they touch
+    bool imprint = true;    ///< cut faces where they touch
+    bool adiabatic = false; ///< reflectances of 1 are allowed, and temperatures stay what they are
 };
 
 struct RowOptions {
@@ -116,6 +118,26 @@ struct TradeArguments {
     double budget = 60.0; ///< seconds
 };
 
+struct HeatArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    HeatOptions heat;
+    FactorInput input;
+    std::optional<std::filesystem::path> output; ///< .vtp
+    std::optional<std::filesystem::path> fluxes; ///< .csv by patch
+    std::optional<std::filesystem::path> series; ///< .csv that is read
+};
+
+struct ExchangeArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    HeatOptions heat;
+    FactorInput input;
+    std::optional<std::filesystem::path> output; ///< .csv
+};
+
 struct RenderArguments {
     CommonOptions common;
     std::filesystem::path input;
@@ -162,12 +184,12 @@ struct DevicesArguments {
     CommonOptions common;
 };
 
-using Arguments =
-    std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments, RenderArguments,
+using Arguments = std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments,
+                               HeatArguments, ExchangeArguments, RenderArguments,
 #ifdef HEMI_WITH_VIEWER
-                 ViewArguments,
+                               ViewArguments,
 #endif
-                 BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+                               BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
 
 /// Text that was asked for instead of work: help or the version.
 struct Answer {

@@ -65,9 +65,11 @@ Report groups_report(const PatchMesh& mesh) {
 Report materials_report(const Scene& scene) {
     Table table({"material", "reflectance", "exitance"}, 3);
     Json list = Json::array();
-    for (const auto& [name, reflectance, exitance] : scene.materials) {
-        table.add({name, values_text(reflectance), values_text(exitance)});
-        list.push_back({{"name", name}, {"reflectance", reflectance}, {"exitance", exitance}});
+    for (const Material& material : scene.materials) {
+        table.add({material.name, values_text(material.reflectance), values_text(material.exitance)});
+        list.push_back({{"name", material.name},
+                        {"reflectance", material.reflectance},
+                        {"exitance", material.exitance}});
     }
     return {fmt::format("\n{}", table.text()), {{"materials", list}}};
 }

@@ -1,6 +1,12 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/result_file.hpp"
+#include "hemi/io/vtp_file.hpp"
 #include "io/formats/text_output.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace hemi::io {
 
@@ -59,6 +65,41 @@ void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh,
     output.print(FMT_COMPILE("{}\n"), PatchColumns::header);
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
         columns.print(output, patch);
+        output.print(FMT_COMPILE("\n"));
+    }
+    output.commit();
+}
+
+void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
+                       std::span<const CellArray> arrays) {
+    std::vector<std::string> names;
+    for (const CellArray& array : arrays) {
+        if (array.values.size() != mesh.size() * std::max<std::size_t>(array.components.size(), 1)) {
+            throw InvalidArgument(fmt::format("{}: {} values for {} patches of {} components", array.name,
+                                              array.values.size(), mesh.size(), array.components.size()));
+        }
+        if (array.components.empty()) {
+            names.push_back(csv_field(array.name));
+        }
+        for (const std::string& component : array.components) {
+            names.push_back(csv_field(fmt::format("{}_{}", array.name, component)));
+        }
+    }
+    const PatchColumns columns(mesh);
+    TextOutput output(path);
+    output.print(FMT_COMPILE("{},{}\n"), PatchColumns::header, fmt::join(names, ","));
+    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        columns.print(output, patch);
+        for (const CellArray& array : arrays) {
+            const std::size_t count = std::max<std::size_t>(array.components.size(), 1);
+            for (const double value : std::span(array.values).subspan(patch * count, count)) {
+                if (std::isnan(value)) {
+                    output.print(FMT_COMPILE(","));
+                } else {
+                    output.print(FMT_COMPILE(",{}"), value);
+                }
+            }
+        }
         output.print(FMT_COMPILE("\n"));
     }
     output.commit();

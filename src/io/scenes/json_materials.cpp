@@ -2,6 +2,7 @@
 
 #include "hemi/core/nearest_word.hpp"
 #include "io/formats/text_scan.hpp"
+#include "io/scenes/json_thermal.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,20 +14,41 @@ namespace hemi::io {
 
 namespace {
 
+const double up_to_one = std::nextafter(1.0, 2.0);
+constexpr double room_temperature = 300.0; // where emissivity is by temperature, and none is given
+
 double channel_value(const JsonNode& node, double below) {
     const double value = node.number();
     if (!(value >= 0.0 && value < below)) {
-        node.fail(below == 1.0 ? fmt::format("{}; must be at least 0 and below 1", value)
-                               : fmt::format("{}; must not be negative", value));
+        node.fail(below <= up_to_one ? fmt::format("{}; must be at least 0 and {} 1", value,
+                                                   below > 1.0 ? "at most" : "below")
+                                     : fmt::format("{}; must not be negative", value));
     }
     return value;
 }
 
 Material read_material(const JsonNode& node, const std::string& name,
-                       const std::vector<std::string>& channels) {
-    node.check_keys({"reflectance", "exitance"});
-    Material material{name, channel_values(node.member("reflectance"), channels, 1.0),
-                      std::vector<double>(channels.size(), 0.0)};
+                       const std::vector<std::string>& channels, bool adiabatic) {
+    node.check_keys({"reflectance", "emissivity", "exitance"});
+    Material material{name, {}, std::vector<double>(channels.size(), 0.0)};
+    if (node.has("emissivity")) {
+        if (node.has("reflectance")) {
+            node.fail("both \"emissivity\" and \"reflectance\", which is 1 - emissivity; must have one of "
+                      "them");
+        }
+        const JsonNode emissivity = node.member("emissivity");
+        if (is_emissivity_table(emissivity.value())) {
+            material.emissivity_table = read_emissivity_table(emissivity);
+            material.reflectance.assign(channels.size(), 1.0 - emissivity_at(material.emissivity_table, room_temperature));
+        } else {
+            for (const double value : read_emissivity(emissivity, channels)) {
+                material.reflectance.push_back(1.0 - value);
+            }
+        }
+    } else {
+        material.reflectance =
+            channel_values(node.member("reflectance"), channels, adiabatic ? up_to_one : 1.0);
+    }
     if (node.has("exitance")) {
         material.exitance =
             channel_values(node.member("exitance"), channels, std::numeric_limits<double>::infinity());
@@ -52,7 +74,7 @@ std::vector<double> channel_values(const JsonNode& node, const std::vector<std::
     return values;
 }
 
-JsonMaterials::JsonMaterials(const JsonNode& scene, const std::vector<std::string>& channels)
+JsonMaterials::JsonMaterials(const JsonNode& scene, const std::vector<std::string>& channels, bool adiabatic)
     : channels_(channels) {
     if (!scene.has("materials")) {
         return;
@@ -61,7 +83,7 @@ JsonMaterials::JsonMaterials(const JsonNode& scene, const std::vector<std::strin
     all.check_object();
     for (const auto& [name, ignored] : all.value().items()) {
         indices_.emplace(name, static_cast<std::uint32_t>(materials_.size()));
-        materials_.push_back(read_material(all.member(name), name, channels));
+        materials_.push_back(read_material(all.member(name), name, channels, adiabatic));
         own_.push_back(name);
     }
 }

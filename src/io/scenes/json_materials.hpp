@@ -16,8 +16,10 @@ namespace hemi::io {
 /// The materials of a JSON scene: its own, and those that the MTL files of its meshes add.
 class JsonMaterials {
 public:
-    /// Reads the scene's own ("materials" may be missing). @param channels  must outlive this.
-    JsonMaterials(const JsonNode& scene, const std::vector<std::string>& channels);
+    /// Reads the scene's own ("materials" may be missing).
+    /// @param channels   must outlive this
+    /// @param adiabatic  whether reflectances of 1 are allowed
+    JsonMaterials(const JsonNode& scene, const std::vector<std::string>& channels, bool adiabatic);
 
     /// Index of one of the scene's own. @throws InputError at `node` for an unknown name, with the nearest.
     [[nodiscard]] std::uint32_t index(const JsonNode& node) const;

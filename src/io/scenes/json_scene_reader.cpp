@@ -7,6 +7,7 @@
 #include "io/meshes/face_mesh.hpp"
 #include "io/meshes/polygon_pieces.hpp"
 #include "io/scenes/json_materials.hpp"
+#include "io/scenes/json_thermal.hpp"
 #include "io/scenes/obj_materials.hpp"
 #include "io/scenes/scene_folder.hpp"
 #include "io/scenes/transform.hpp"
@@ -103,7 +104,7 @@ Enclosure read_enclosure(const JsonNode& node) {
 
 bool has_three(const Json& material) {
     return material.is_object() && std::any_of(material.begin(), material.end(), [](const Json& value) {
-               return value.is_array() && value.size() == 3;
+               return value.is_array() && value.size() == 3 && !is_emissivity_table(value);
            });
 }
 
@@ -123,7 +124,7 @@ public:
         }
         load_meshes(surfaces);
         read_channels();
-        JsonMaterials materials(root_, scene_.channels);
+        JsonMaterials materials(root_, scene_.channels, options_.adiabatic);
         for (std::size_t s = 0; s < surfaces.size(); ++s) {
             read_surface(surfaces.element(s), s, materials);
         }
@@ -134,6 +135,9 @@ public:
         }
         scene_.materials = materials.take();
         read_settings();
+        if (root_.has("groups")) {
+            read_heat_of_groups(root_.member("groups"), scene_);
+        }
         make_two_sided(scene_, options_.two_sided_groups, file_);
         return std::move(scene_);
     }
@@ -141,7 +145,7 @@ public:
 private:
     void check_version() {
         root_.check_keys({"hemi", "name", "channels", "materials", "surfaces", "patch_size", "enclosure",
-                          "environment", "camera"});
+                          "environment", "camera", "groups", "bands", "unit"});
         if (!root_.has("hemi")) {
             root_.fail("\"hemi\": 1 is missing, the version of the format");
         }
@@ -191,6 +195,25 @@ private:
     }
 
     void read_channels() {
+        if (options_.adiabatic) {
+            (void)thermal_of(scene_); // which allows reflectances of 1
+        }
+        if (root_.has("bands")) {
+            const JsonNode bands = root_.member("bands");
+            thermal_of(scene_).band_limits = read_band_limits(bands);
+            const std::size_t count = scene_.thermal->band_limits.size() + 1;
+            if (!root_.has("channels")) {
+                scene_.channels.clear();
+                for (std::size_t k = 1; k <= count; ++k) {
+                    scene_.channels.push_back(fmt::format("band_{}", k));
+                }
+                return;
+            }
+            if (root_.member("channels").size() != count) {
+                bands.fail(fmt::format("{} limits make {} bands, and there are {} channels; must be as many",
+                                       count - 1, count, root_.member("channels").size()));
+            }
+        }
         if (!root_.has("channels")) {
             scene_.channels = has_colours() ? std::vector<std::string>{"red", "green", "blue"}
                                             : std::vector<std::string>{"grey"};
@@ -225,7 +248,8 @@ private:
     }
 
     void read_surface(const JsonNode& node, std::size_t index, JsonMaterials& materials) {
-        node.check_keys({"name", "material", "polygon", "mesh", "transform", "patches", "two_sided"});
+        node.check_keys({"name", "material", "polygon", "mesh", "transform", "patches", "two_sided",
+                         "temperature", "heat_flux", "power", "isothermal"});
         if (node.has("polygon") == node.has("mesh")) {
             node.fail(node.has("mesh") ? "both \"polygon\" and \"mesh\"; must have one of them"
                                        : "neither \"polygon\" nor \"mesh\"; must have one of them");
@@ -234,6 +258,11 @@ private:
         common.two_sided = node.has("two_sided") && node.member("two_sided").boolean();
         if (node.has("patches")) {
             common.patches = read_grid(node.member("patches"));
+        }
+        if (const auto heat = read_heat(node)) {
+            Thermal& thermal = thermal_of(scene_);
+            common.heat = static_cast<std::uint32_t>(thermal.conditions.size());
+            thermal.conditions.push_back(*heat);
         }
         if (node.has("mesh")) {
             add_mesh(node, common, materials);
@@ -285,6 +314,7 @@ private:
             Surface surface = face;
             surface.two_sided = common.two_sided;
             surface.patches = common.patches;
+            surface.heat = common.heat;
             surface.group = groups[face.group];
             surface.material = mesh_materials[face.material];
             std::transform(face.vertices.begin(), face.vertices.end(), surface.vertices.begin(), place);
@@ -356,9 +386,18 @@ private:
         scene_.environment.assign(scene_.channels.size(), 0.0);
         if (root_.has("environment")) {
             const JsonNode environment = root_.member("environment");
-            environment.check_keys({"exitance"});
-            scene_.environment = channel_values(environment.member("exitance"), scene_.channels,
-                                                std::numeric_limits<double>::infinity());
+            environment.check_keys({"exitance", "temperature"});
+            if (environment.has("temperature")) {
+                thermal_of(scene_).environment_temperature =
+                    read_temperature(environment.member("temperature"));
+            }
+            if (environment.has("exitance") || !environment.has("temperature")) {
+                scene_.environment = channel_values(environment.member("exitance"), scene_.channels,
+                                                    std::numeric_limits<double>::infinity());
+            }
+        }
+        if (root_.has("unit")) {
+            scene_.unit = read_unit(root_.member("unit"));
         }
         if (root_.has("camera")) {
             scene_.camera = read_camera(root_.member("camera"));

@@ -1,0 +1,91 @@
+#include "cli/commands.hpp"
+#include "cli/heat_factors.hpp"
+#include "cli/output_paths.hpp"
+#include "cli/report/balance_report.hpp"
+#include "cli/report/factor_report.hpp"
+#include "cli/report/heat_report.hpp"
+#include "cli/report/scene_report.hpp"
+#include "cli/terminal_observer.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/io/table_file.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace hemi::cli {
+
+namespace {
+
+Outputs check_outputs(const ExchangeArguments& arguments) {
+    Outputs outputs;
+    outputs.keep(arguments.scene.path);
+    check_factor_input(outputs, arguments.input);
+    if (arguments.heat.table) {
+        outputs.keep(*arguments.heat.table);
+    }
+    if (arguments.output) {
+        outputs.add("-o", *arguments.output, {".csv"}, true);
+    }
+    outputs.refuse_with_json(arguments.common.json);
+    return outputs;
+}
+
+/// Every pair of groups, and every group with the environment.
+io::TextTable exchange_table(const std::vector<std::string>& names, const HeatExchange& exchange) {
+    const std::size_t groups = names.size();
+    io::TextTable table;
+    table.columns = {"from", "to", "gebhart", "script_f", "conductance"};
+    const auto number = [](double value) { return fmt::format("{}", value); };
+    for (std::size_t g = 0; g < groups; ++g) {
+        const bool emits = exchange.emissivity[g] > 0.0;
+        for (std::size_t h = 0; h < groups; ++h) {
+            const std::size_t at = g * groups + h;
+            table.rows.push_back({names[g], names[h], emits ? number(exchange.gebhart[at]) : "",
+                                  number(exchange.script_f[at]), number(exchange.conductance[at])});
+        }
+        const double environment = exchange.environment[g];
+        table.rows.push_back({names[g], "(environment)",
+                              emits ? number(environment / exchange.emissivity[g]) : "", number(environment),
+                              number(environment * exchange.areas[g])});
+    }
+    return table;
+}
+
+} // namespace
+
+ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
+    const Outputs outputs = check_outputs(arguments);
+    Seconds seconds({"load", "factors", "estimate", "repair", "solve"});
+    const LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, false, terminal);
+    seconds["load"] = loaded.seconds;
+    TerminalObserver observer(terminal);
+    const HeatProblem problem =
+        heat_problem(loaded.scene, loaded.mesh); // nothing need be known of temperatures
+    const FormFactors factors = find_heat_rows(arguments.common, arguments.rows, arguments.input, loaded,
+                                               observer, terminal, seconds);
+    const double max_row_error = arguments.rows.max_row_error;
+    const RowSums sums = row_sums(factors.matrix);
+    const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
+    report_buried(sums, terminal);
+    const Stopwatch watch;
+    const HeatExchange exchange = heat_exchange(factors, problem, {}, observer);
+    seconds["solve"] = watch.seconds();
+    if (arguments.output) {
+        io::write_table(*arguments.output, exchange_table(factors.groups, exchange));
+    }
+    Report report = scene_size_report(loaded.mesh);
+    report.add(rows_report(factors, sums, enclosure));
+    report.add(repair_report(*factors.repair, seconds["repair"]));
+    report.add(seconds.report());
+    const Report tables = exchange_report(factors.groups, exchange);
+    report.json.update(tables.json);
+    report.select("hemi/exchange/1",
+                  {"renderer", "patches", "groups", "areas", "emissivity", "gebhart", "script_f",
+                   "conductance", "environment", "row_sum", "repair", "seconds"});
+    show_with_tables(outputs, std::move(report), tables, arguments.common.json, terminal);
+    report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
+    return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
+}
+
+} // namespace hemi::cli

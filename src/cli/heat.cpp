@@ -1,0 +1,190 @@
+#include "cli/commands.hpp"
+#include "cli/heat_factors.hpp"
+#include "cli/output_paths.hpp"
+#include "cli/report/balance_report.hpp"
+#include "cli/report/factor_report.hpp"
+#include "cli/report/heat_report.hpp"
+#include "cli/report/scene_report.hpp"
+#include "cli/terminal_observer.hpp"
+#include "hemi/core/black_body.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/io/table_file.hpp"
+#include "hemi/io/vtp_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace hemi::cli {
+
+namespace {
+
+/// A schedule and the names of its lines.
+struct Lines {
+    HeatSchedule schedule;
+    std::vector<std::string> labels;
+};
+
+Lines read_series(const std::filesystem::path& path) {
+    const io::TextTable table = io::read_table(path);
+    if (table.columns.size() < 2 || table.rows.empty()) {
+        throw InputError(fmt::format("{}: {} of {}; a series has a column of times, then one for every group "
+                                     "that changes, and a line for each time",
+                                     path.string(), plural(table.rows.size(), "line", "lines"),
+                                     plural(table.columns.size(), "column", "columns")));
+    }
+    Lines lines;
+    lines.schedule.columns.assign(table.columns.begin() + 1, table.columns.end());
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        lines.labels.push_back(table.rows[row][0]);
+        for (std::size_t c = 1; c < table.columns.size(); ++c) {
+            const auto value = parse_temperature(table.rows[row][c]);
+            if (!value) {
+                throw ParseError(path.string(), table.lines[row], 0,
+                                 fmt::format("{} '{}'; must be a number, or a temperature such as 20C",
+                                             table.columns[c], table.rows[row][c]));
+            }
+            lines.schedule.values.push_back(*value);
+        }
+    }
+    return lines;
+}
+
+/// What the scene says nothing of has the temperatures of the first line.
+void give_temperatures(Scene& scene, const HeatSchedule& schedule) {
+    for (std::size_t c = 0; c < schedule.columns.size(); ++c) {
+        const auto found = std::find(scene.groups.begin(), scene.groups.end(), schedule.columns[c]);
+        auto& environment = scene.thermal->environment_temperature;
+        if (found == scene.groups.end() && schedule.columns[c] == "environment" && !environment) {
+            environment = schedule.values[c];
+        }
+        const auto group = static_cast<std::uint32_t>(found - scene.groups.begin());
+        const auto is_known = [group](const Surface& surface) {
+            return surface.group == group && surface.heat != no_heat;
+        };
+        if (std::any_of(scene.surfaces.begin(), scene.surfaces.end(), is_known)) {
+            continue;
+        }
+        const auto index = static_cast<std::uint32_t>(scene.thermal->conditions.size());
+        scene.thermal->conditions.emplace_back().temperature = schedule.values[c];
+        for (Surface& surface : scene.surfaces) {
+            surface.heat = surface.group == group ? index : surface.heat;
+        }
+    }
+}
+
+Outputs check_outputs(const HeatArguments& arguments) {
+    Outputs outputs;
+    outputs.keep(arguments.scene.path);
+    check_factor_input(outputs, arguments.input);
+    if (arguments.heat.table) {
+        outputs.keep(*arguments.heat.table);
+    }
+    if (arguments.series) {
+        outputs.keep(*arguments.series);
+    }
+    if (arguments.output) {
+        outputs.add("-o", *arguments.output, {".vtp"});
+    }
+    if (arguments.fluxes) {
+        outputs.add("--fluxes", *arguments.fluxes, {".csv"}, true);
+    }
+    outputs.refuse_with_json(arguments.common.json);
+    return outputs;
+}
+
+void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, const HeatProblem& problem,
+                   const HeatSolution& solution) {
+    std::vector<std::string> bands;
+    if (problem.bands > 1) {
+        bands = loaded.scene.channels;
+    }
+    std::vector<io::CellArray> arrays{{"temperature", solution.temperature, {}},
+                                      {"net_flux", solution.net_flux, {}},
+                                      {"emitted", solution.emitted, {}},
+                                      {"absorbed", solution.absorbed, {}},
+                                      {"irradiation", solution.irradiation, bands},
+                                      {"radiosity", solution.radiosity, bands}};
+    if (arguments.fluxes) {
+        io::write_patch_table(*arguments.fluxes, loaded.mesh, arrays);
+    }
+    if (arguments.output) {
+        for (double& kelvin : arrays[0].values) {
+            kelvin = std::isfinite(kelvin) ? kelvin : 0.0; // the format has numbers only
+        }
+        io::write_vtp(*arguments.output, loaded.mesh, arrays);
+    }
+}
+
+} // namespace
+
+ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
+    const Outputs outputs = check_outputs(arguments);
+    std::optional<Lines> lines;
+    if (arguments.series) {
+        lines = read_series(*arguments.series);
+    }
+    Seconds seconds({"load", "factors", "estimate", "repair", "solve", "series"});
+    LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, true, terminal);
+    seconds["load"] = loaded.seconds;
+    if (lines) {
+        give_temperatures(loaded.scene, lines->schedule);
+    }
+    TerminalObserver observer(terminal);
+    const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);
+    const FormFactors factors = find_heat_rows(arguments.common, arguments.rows, arguments.input, loaded,
+                                               observer, terminal, seconds);
+    const double max_row_error = arguments.rows.max_row_error;
+    const RowSums sums = row_sums(factors.matrix);
+    const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
+    report_buried(sums, terminal);
+    const Stopwatch watch;
+    const HeatSolution solution = solve_heat(factors, problem, {}, observer);
+    seconds["solve"] = watch.seconds();
+    write_patches(arguments, loaded, problem, solution);
+    std::vector<double> errors(factors.groups.size(), std::numeric_limits<double>::quiet_NaN());
+    if (arguments.rows.factors.estimate_error && factors.error) {
+        const Stopwatch estimate_watch;
+        errors = patch_size_flux_errors(loaded.scene, loaded.mesh, loaded.subdivision, factors, problem,
+                                        solution, arguments.rows.factors, observer);
+        seconds["estimate"] += estimate_watch.seconds();
+    }
+    Report tables = heat_report(factors, problem, solution, errors);
+    tables.json["series"] = nullptr;
+    if (lines) {
+        const Stopwatch series_watch;
+        const HeatSeries series = solve_heat_series(factors, problem, lines->schedule, {}, observer);
+        seconds["series"] = series_watch.seconds();
+        terminal.detail(fmt::format("{} lines {}", lines->labels.size(),
+                                    series.superposed ? "by superposition of one solve a column"
+                                                      : "solved one by one: the problem is not linear"));
+        tables.text += "\n";
+        tables.add(series_report(factors.groups, lines->labels, series));
+    }
+    Report report = scene_size_report(loaded.mesh);
+    report.add(rows_report(factors, sums, enclosure));
+    report.add(repair_report(*factors.repair, seconds["repair"]));
+    report.add(seconds.report());
+    report.add(heat_balance_report(solution));
+    report.json.update(tables.json);
+    report.json["bands"] = problem.bands;
+    report.json["unit"] = problem.unit;
+    report.select("hemi/heat/1",
+                  {"renderer",    "patches",    "bands",       "unit",      "groups",
+                   "areas",       "emissivity", "temperature", "emitted",   "absorbed",
+                   "irradiation", "radiosity",  "net_flux",    "net_power", "environment_power",
+                   "balance",     "error",      "buried",      "solver",    "row_sum",
+                   "repair",      "series",     "seconds"});
+    if (!lines) {
+        report.json.erase("series");
+    }
+    show_with_tables(outputs, std::move(report), tables, arguments.common.json, terminal);
+    report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
+    return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,216 @@
+#include "cli/report/heat_report.hpp"
+
+#include "hemi/core/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hemi::cli {
+
+namespace {
+
+std::string value_text(double value) {
+    return std::isfinite(value) ? number_text(value) : "-";
+}
+
+/// Null where it is not a number.
+Json value_json(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
+}
+
+/// Of every group, without the last of `all`, which is their total.
+Json column_json(const std::vector<GroupHeat>& all, double GroupHeat::*member) {
+    Json json = Json::array();
+    for (std::size_t g = 0; g + 1 < all.size(); ++g) {
+        json.push_back(value_json(all[g].*member));
+    }
+    return json;
+}
+
+Json numbers_json(std::span<const double> values) {
+    Json json = Json::array();
+    for (const double value : values) {
+        json.push_back(value_json(value));
+    }
+    return json;
+}
+
+Json slice_json(const std::vector<double>& values, std::size_t first, std::size_t count) {
+    Json json = Json::array();
+    for (std::size_t k = first; k < first + count; ++k) {
+        json.push_back(value_json(values[k]));
+    }
+    return json;
+}
+
+/// Rows of a matrix, null in those of groups that emit nothing.
+Json gebhart_json(const HeatExchange& exchange) {
+    const std::size_t groups = exchange.areas.size();
+    Json json = Json::array();
+    for (std::size_t g = 0; g < groups; ++g) {
+        Json row = Json::array();
+        for (std::size_t h = 0; h < groups; ++h) {
+            row.push_back(exchange.emissivity[g] > 0.0 ? Json(exchange.gebhart[g * groups + h]) : Json());
+        }
+        json.push_back(std::move(row));
+    }
+    return json;
+}
+
+} // namespace
+
+Report heat_report(const FormFactors& factors, const HeatProblem& problem, const HeatSolution& solution,
+                   std::span<const double> patch_size_errors) {
+    const std::vector<GroupHeat> all = group_heat(factors, problem, solution);
+    Json errors = Json::array();
+    std::vector<double> combined;
+    for (std::size_t g = 0; g < all.size(); ++g) {
+        const bool estimated = g < patch_size_errors.size();
+        combined.push_back(estimated ? std::hypot(all[g].flux_error, patch_size_errors[g])
+                                     : std::numeric_limits<double>::quiet_NaN());
+        if (g + 1 < all.size()) {
+            errors.push_back(value_json(combined[g]));
+        }
+    }
+    Table table({"group", "area m²", "emissivity", "T K", "emitted W/m²", "absorbed W/m²", "irradiation W/m²",
+                 "radiosity W/m²", "net flux W/m²", "+-", "net power W"});
+    for (std::size_t g = 0; g < all.size(); ++g) {
+        const GroupHeat& heat = all[g];
+        const bool total = g + 1 == all.size();
+        table.add({total ? "(all surfaces)" : factors.groups[g], number_text(heat.area),
+                   number_text(heat.emissivity), value_text(heat.temperature), number_text(heat.emitted),
+                   number_text(heat.absorbed), number_text(heat.irradiation), number_text(heat.radiosity),
+                   number_text(heat.net_flux),
+                   std::isfinite(combined[g]) ? fmt::format("{:.2g}", combined[g]) : "-",
+                   number_text(heat.net_power)});
+    }
+    const std::string none;
+    table.add({"(environment)", none, none,
+               problem.environment_temperature ? number_text(*problem.environment_temperature) : none, none,
+               none, none, none, none, none, number_text(solution.environment_power)});
+    Report report;
+    Json names = Json::array();
+    for (const std::string& name : factors.groups) {
+        names.push_back(name);
+    }
+    report.json = {{"groups", std::move(names)},
+                   {"areas", column_json(all, &GroupHeat::area)},
+                   {"emissivity", column_json(all, &GroupHeat::emissivity)},
+                   {"temperature", column_json(all, &GroupHeat::temperature)},
+                   {"emitted", column_json(all, &GroupHeat::emitted)},
+                   {"absorbed", column_json(all, &GroupHeat::absorbed)},
+                   {"irradiation", column_json(all, &GroupHeat::irradiation)},
+                   {"radiosity", column_json(all, &GroupHeat::radiosity)},
+                   {"net_flux", column_json(all, &GroupHeat::net_flux)},
+                   {"net_power", column_json(all, &GroupHeat::net_power)},
+                   {"environment_power", solution.environment_power},
+                   {"error",
+                    {{"net_flux", std::move(errors)},
+                     {"parts",
+                      {{"factors", column_json(all, &GroupHeat::flux_error)},
+                       {"patch_size", numbers_json(patch_size_errors)}}}}}};
+    report.text = table.text();
+    return report;
+}
+
+Report heat_balance_report(const HeatSolution& solution) {
+    Report report;
+    report.add("balance",
+               fmt::format("{:.3g} W, {:.2g} of all net powers", solution.balance, solution.relative_balance),
+               {{"balance", {{"residual", solution.balance}, {"relative", solution.relative_balance}}}});
+    report.add("solver",
+               fmt::format("conjugate gradients, {}, residual {:.3g}",
+                           plural(solution.iterations, "iteration", "iterations"), solution.residual),
+               {{"solver",
+                 {{"iterations", solution.iterations},
+                  {"residual", solution.residual},
+                  {"outer_iterations", solution.outer},
+                  {"outer_change", solution.outer_change}}}});
+    if (solution.outer > 0) {
+        report.add("", fmt::format("{} for temperatures; sigma T⁴ changed by {:.2g} in the last",
+                                   plural(solution.outer, "outer iteration", "outer iterations"),
+                                   solution.outer_change));
+    }
+    const auto buried = std::count(solution.buried.begin(), solution.buried.end(), std::uint8_t{1});
+    if (buried > 0) {
+        report.add("buried",
+                   fmt::format("{} no flux and are left out of means",
+                               plural(static_cast<std::uint64_t>(buried), "patch has", "patches have")));
+    }
+    report.json["buried"] = buried;
+    return report;
+}
+
+Report series_report(std::span<const std::string> names, std::span<const std::string> labels,
+                     const HeatSeries& series) {
+    Report report;
+    Json json = Json::array();
+    std::vector<std::string> header{"time"};
+    for (const std::string& name : names) {
+        header.push_back(name + " K");
+        header.push_back(name + " W/m²");
+    }
+    header.emplace_back("environment W");
+    Table table(std::move(header));
+    const std::size_t groups = series.groups;
+    for (std::size_t l = 0; l < labels.size(); ++l) {
+        std::vector<std::string> row{labels[l]};
+        for (std::size_t g = 0; g < groups; ++g) {
+            row.push_back(value_text(series.temperature[l * groups + g]));
+            row.push_back(number_text(series.net_flux[l * groups + g]));
+        }
+        row.push_back(number_text(series.environment_power[l]));
+        table.add(std::move(row));
+        json.push_back({{"time", labels[l]},
+                        {"temperature", slice_json(series.temperature, l * groups, groups)},
+                        {"net_flux", slice_json(series.net_flux, l * groups, groups)},
+                        {"net_power", slice_json(series.net_power, l * groups, groups)},
+                        {"environment_power", series.environment_power[l]}});
+    }
+    report.text = table.text();
+    report.json["series"] = std::move(json);
+    return report;
+}
+
+Report exchange_report(std::span<const std::string> names, const HeatExchange& exchange) {
+    const std::size_t groups = names.size();
+    std::vector<std::string> header{"conductance m²"};
+    header.insert(header.end(), names.begin(), names.end());
+    header.insert(header.end(), {"(environment)", "emissivity", "area m²"});
+    Table table(std::move(header));
+    for (std::size_t g = 0; g < groups; ++g) {
+        std::vector<std::string> row{names[g]};
+        for (std::size_t h = 0; h < groups; ++h) {
+            row.push_back(number_text(exchange.conductance[g * groups + h]));
+        }
+        row.push_back(number_text(exchange.environment[g] * exchange.areas[g]));
+        row.push_back(number_text(exchange.emissivity[g]));
+        row.push_back(number_text(exchange.areas[g]));
+        table.add(std::move(row));
+    }
+    Report report;
+    report.text = table.text();
+    report.json = {{"groups", std::vector<std::string>(names.begin(), names.end())},
+                   {"areas", exchange.areas},
+                   {"emissivity", exchange.emissivity},
+                   {"gebhart", gebhart_json(exchange)},
+                   {"script_f", rows_json(exchange.script_f, groups)},
+                   {"conductance", rows_json(exchange.conductance, groups)},
+                   {"environment", exchange.environment}};
+    return report;
+}
+
+void show_with_tables(const Outputs& outputs, Report summary, const Report& tables, bool json,
+                      const Terminal& terminal) {
+    if (!json && terminal.quiet() && !outputs.uses_standard_output()) {
+        print(tables.text);
+        return;
+    }
+    summary.text += fmt::format("\n{}", tables.text);
+    outputs.show(summary, json, terminal);
+}
+
+} // namespace hemi::cli

@@ -1,0 +1,369 @@
+#include "hemi/core/black_body.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/core/nearest_word.hpp"
+#include "hemi/pipeline/heat.hpp"
+#include "pipeline/heat_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace hemi {
+
+namespace {
+
+/// Column that is the environment's.
+constexpr std::uint32_t of_environment = no_heat;
+
+constexpr const char* environment_name = "environment";
+
+/// What a condition gives.
+enum class Given { temperature, heat_flux, power };
+
+Given given(const HeatCondition& condition) {
+    return condition.temperature ? Given::temperature : condition.power ? Given::power : Given::heat_flux;
+}
+
+/// The condition that a column changes: one for all of its group, in place of several of one kind, or of
+/// none.
+std::uint32_t condition_of(const FormFactors& factors, HeatProblem& problem, const std::string& name) {
+    const auto found = std::find(factors.groups.begin(), factors.groups.end(), name);
+    if (found == factors.groups.end()) {
+        if (name == environment_name) {
+            return of_environment;
+        }
+        std::vector<std::string> known = factors.groups;
+        known.emplace_back(environment_name);
+        throw InputError(fmt::format("series: no group \"{}\"{}", name, did_you_mean_or_list(name, known)));
+    }
+    const auto group = static_cast<std::uint32_t>(found - factors.groups.begin());
+    std::set<std::uint32_t> own;
+    std::set<std::uint32_t> others;
+    for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
+        (factors.group_of[i] == group ? own : others).insert(problem.condition_of[i]);
+    }
+    const auto refuse = [&name](const char* has) {
+        throw InputError(
+            fmt::format("series: group \"{}\" has {}; the column needs one kind of condition for all "
+                        "of it and nothing else: temperature, heat flux or power",
+                        name, has));
+    };
+    if (own.size() > 1 && own.contains(no_heat)) {
+        refuse("parts without temperature, heat flux and power");
+    }
+    HeatCondition condition;
+    condition.temperature = 0.0; // of each line its own
+    bool shared = false;
+    if (!own.empty() && !own.contains(no_heat)) {
+        condition = problem.conditions[*own.begin()];
+        for (const std::uint32_t c : own) {
+            const HeatCondition& other = problem.conditions[c];
+            shared = shared || others.contains(c);
+            if (given(other) != given(condition)) {
+                refuse("conditions of several kinds");
+            }
+            if (other.isothermal && (own.size() > 1 || others.contains(c))) {
+                refuse("an isothermal part, or is isothermal together with others");
+            }
+        }
+        if (shared && given(condition) == Given::power) {
+            refuse("a power together with others");
+        }
+        if (own.size() == 1 && !shared) {
+            return *own.begin();
+        }
+    }
+    const auto index = static_cast<std::uint32_t>(problem.conditions.size());
+    problem.conditions.push_back(condition);
+    for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
+        if (factors.group_of[i] == group) {
+            problem.condition_of[i] = index;
+        }
+    }
+    return index;
+}
+
+class Series {
+public:
+    Series(const FormFactors& factors, const HeatProblem& problem, const HeatSchedule& schedule,
+           const HeatSettings& settings, Observer& observer)
+        : factors_(factors), problem_(problem), schedule_(schedule), settings_(settings), observer_(observer),
+          columns_(schedule.columns.size()), groups_(factors.groups.size()) {
+        if (columns_ == 0 || schedule.values.size() % columns_ != 0) {
+            throw InvalidArgument(
+                fmt::format("a schedule of {} columns and {} values", columns_, schedule.values.size()));
+        }
+        lines_ = schedule.values.size() / columns_;
+        for (const std::string& name : schedule.columns) {
+            condition_.push_back(hemi::condition_of(factors, problem_, name));
+            if (std::count(schedule.columns.begin(), schedule.columns.end(), name) > 1) {
+                throw InputError(fmt::format("series: two columns \"{}\"", name));
+            }
+        }
+        for (std::size_t l = 0; l < lines_; ++l) {
+            for (std::size_t c = 0; c < columns_; ++c) {
+                if (is_temperature(c) && !(value(l, c) >= 0.0)) {
+                    throw InputError(fmt::format("series: line {}, {}: {} K; must not be below 0 K", l + 1,
+                                                 schedule.columns[c], value(l, c)));
+                }
+            }
+        }
+        series_.groups = static_cast<std::uint32_t>(groups_);
+    }
+
+    HeatSeries solve() {
+        series_.superposed = is_linear();
+        if (series_.superposed) {
+            superpose();
+        } else {
+            solve_lines();
+        }
+        return std::move(series_);
+    }
+
+private:
+    [[nodiscard]] double value(std::size_t l, std::size_t c) const {
+        return schedule_.values[l * columns_ + c];
+    }
+    [[nodiscard]] bool is_temperature(std::size_t c) const {
+        return condition_[c] == of_environment || problem_.conditions[condition_[c]].temperature;
+    }
+
+    /// Whether the field of several lines is the sum of their fields.
+    [[nodiscard]] bool is_linear() const {
+        bool fluxes = false;
+        for (const std::uint32_t c : problem_.condition_of) {
+            const bool given = c == no_heat || problem_.conditions[c].temperature;
+            fluxes = fluxes || !given;
+            if (!given && problem_.conditions[c].isothermal) {
+                return false;
+            }
+        }
+        const bool tables = std::any_of(problem_.table_of.begin(), problem_.table_of.end(),
+                                        [](std::uint32_t table) { return table != no_heat; });
+        return !tables && (problem_.bands == 1 || !fluxes);
+    }
+
+    /// The problem with the values of a line.
+    [[nodiscard]] HeatProblem at_line(std::size_t l) const {
+        HeatProblem problem = problem_;
+        for (std::size_t c = 0; c < columns_; ++c) {
+            if (condition_[c] == of_environment) {
+                problem.environment_temperature = value(l, c);
+                continue;
+            }
+            HeatCondition& condition = problem.conditions[condition_[c]];
+            (condition.temperature ? condition.temperature
+             : condition.power     ? condition.power
+                                   : condition.heat_flux) = value(l, c);
+        }
+        return problem;
+    }
+
+    void solve_lines() {
+        for (std::size_t l = 0; l < lines_; ++l) {
+            const HeatProblem problem = at_line(l);
+            const HeatSolution solution = solve_heat(factors_, problem, settings_, observer_);
+            const std::vector<GroupHeat> all = group_heat(factors_, problem, solution);
+            for (std::size_t g = 0; g < groups_; ++g) {
+                series_.temperature.push_back(all[g].temperature);
+                series_.net_flux.push_back(all[g].net_flux);
+                series_.net_power.push_back(all[g].net_power);
+            }
+            series_.environment_power.push_back(solution.environment_power);
+        }
+    }
+
+    /// What comes of a source of 1 W/m², summed over the area of every group.
+    struct Response {
+        std::vector<double> net;      // W, a group
+        std::vector<double> arriving; // of patches with given flux: their irradiation, W, a group
+        double environment = 0.0;     // W, leaving the environment
+    };
+
+    /// One column a source and band; the last one of a band is everything that the schedule leaves alone.
+    void find_responses(const ExchangeNetwork& network, const std::vector<std::uint8_t>& buried) {
+        const std::uint32_t sources = static_cast<std::uint32_t>(columns_) + 1;
+        const std::vector<double> fixed_fluxes = condition_fluxes(factors_, problem_, buried);
+        const std::vector<double> bright = environment_exitance(problem_);
+        const bool own_environment = std::count(condition_.begin(), condition_.end(), of_environment) == 0;
+        responses_.assign(std::size_t{problem_.bands} * sources, {});
+        for (std::uint32_t k = 0; k < problem_.bands; ++k) {
+            NetworkSources columns;
+            columns.columns = sources;
+            columns.environment.assign(sources, 0.0);
+            const double beside = problem_.environment.empty() ? 0.0 : problem_.environment[k];
+            columns.environment.back() = own_environment ? bright[k] : beside;
+            for (std::size_t c = 0; c < columns_; ++c) {
+                columns.environment[c] = condition_[c] == of_environment ? 1.0 : 0.0;
+            }
+            for (std::uint32_t i = 0; i < network.size(); ++i) {
+                add_sources(columns, i, k, fixed_fluxes, buried[i] != 0);
+            }
+            const NetworkFluxes fluxes =
+                network.solve(columns, settings_.tolerance, heat_progress(observer_, settings_.tolerance));
+            for (std::uint32_t s = 0; s < sources; ++s) {
+                Response& response = responses_[std::size_t{k} * sources + s];
+                response.net.assign(groups_, 0.0);
+                response.arriving.assign(groups_, 0.0);
+                for (std::uint32_t i = 0; i < network.size(); ++i) {
+                    const std::size_t at = std::size_t{i} * sources + s;
+                    const double area = factors_.areas[i] * problem_.unit * problem_.unit;
+                    response.environment +=
+                        area * network.environment()[i] * (columns.environment[s] - fluxes.radiosity[at]);
+                    if (buried[i] == 0) {
+                        response.net[factors_.group_of[i]] +=
+                            area * (columns.source[at] - columns.emissivity[at] * fluxes.irradiation[at]);
+                        response.arriving[factors_.group_of[i]] +=
+                            has_flux(problem_, i) ? area * fluxes.irradiation[at] : 0.0;
+                    }
+                }
+            }
+        }
+    }
+
+    void add_sources(NetworkSources& columns, std::uint32_t i, std::uint32_t k,
+                     const std::vector<double>& fixed_fluxes, bool buried) const {
+        const std::uint32_t c = problem_.condition_of[i];
+        const bool flux = has_flux(problem_, i);
+        const std::size_t at = std::size_t{i} * problem_.bands + k;
+        const double eps = problem_.emissivity[at];
+        const auto changed =
+            c == no_heat ? condition_.end() : std::find(condition_.begin(), condition_.end(), c);
+        for (std::size_t s = 0; s <= columns_; ++s) {
+            columns.emissivity.push_back(flux ? 0.0 : eps);
+            double source = 0.0;
+            if (s < columns_ && changed == condition_.begin() + static_cast<std::ptrdiff_t>(s)) {
+                source = flux ? (buried ? 0.0 : 1.0) : eps;
+            } else if (s == columns_ && flux) {
+                source = changed == condition_.end() && !buried ? fixed_fluxes[c] : 0.0;
+            } else if (s == columns_) {
+                source = problem_.exitance[at];
+                if (c != no_heat && changed == condition_.end()) {
+                    const double kelvin = *problem_.conditions[c].temperature;
+                    source +=
+                        eps * band_fractions(kelvin, problem_.band_limits)[k] * black_body_exitance(kelvin);
+                }
+            }
+            columns.source.push_back(source);
+        }
+    }
+
+    /// Area of every group by what tells its sigma T⁴.
+    struct Exposed {
+        double area = 0.0;
+        double unknown = 0.0;
+        std::map<std::uint32_t, double> given; // a condition with a temperature
+        std::map<std::uint32_t, double> flux;  // a condition with a flux: area over emissivity
+        double exitance = 0.0;                 // of those, over emissivity
+    };
+
+    [[nodiscard]] std::vector<Exposed> exposed_areas(const std::vector<std::uint8_t>& buried) const {
+        std::vector<Exposed> all(groups_);
+        for (std::uint32_t i = 0; i < factors_.matrix.size(); ++i) {
+            if (buried[i] != 0) {
+                continue;
+            }
+            Exposed& exposed = all[factors_.group_of[i]];
+            const double area = factors_.areas[i] * problem_.unit * problem_.unit;
+            const std::uint32_t c = problem_.condition_of[i];
+            exposed.area += area;
+            if (c == no_heat) {
+                exposed.unknown += area;
+            } else if (!has_flux(problem_, i)) {
+                exposed.given[c] += area;
+            } else if (problem_.emissivity[i] > 0.0) {
+                exposed.flux[c] += area / problem_.emissivity[i];
+                exposed.exitance += area * problem_.exitance[i] / problem_.emissivity[i];
+            }
+        }
+        return all;
+    }
+
+    void superpose() {
+        const ExchangeNetwork network = make_network(factors_, problem_);
+        const std::vector<std::uint8_t> buried = buried_patches(network);
+        refuse_singular(factors_, problem_, network, buried);
+        find_responses(network, buried);
+        const std::vector<Exposed> exposed = exposed_areas(buried);
+        for (std::size_t l = 0; l < lines_; ++l) {
+            add_line(l, exposed, condition_fluxes(factors_, at_line(l), buried));
+        }
+    }
+
+    /// @param fluxes  of the line's conditions
+    void add_line(std::size_t l, const std::vector<Exposed>& exposed, const std::vector<double>& fluxes) {
+        const std::size_t sources = columns_ + 1;
+        std::vector<double> net(groups_, 0.0);
+        std::vector<double> arriving(groups_, 0.0);
+        double environment = 0.0;
+        for (std::size_t s = 0; s < sources; ++s) {
+            std::vector<double> shares(problem_.bands, 1.0);
+            double strength = 1.0;
+            if (s < columns_ && is_temperature(s)) {
+                strength = black_body_exitance(value(l, s));
+                shares = band_fractions(value(l, s), problem_.band_limits);
+            } else if (s < columns_) {
+                strength = fluxes[condition_[s]];
+            }
+            for (std::uint32_t k = 0; k < problem_.bands; ++k) {
+                const Response& response = responses_[std::size_t{k} * sources + s];
+                for (std::size_t g = 0; g < groups_; ++g) {
+                    net[g] += strength * shares[k] * response.net[g];
+                    arriving[g] += strength * shares[k] * response.arriving[g];
+                }
+                environment += strength * shares[k] * response.environment;
+            }
+        }
+        for (std::size_t g = 0; g < groups_; ++g) {
+            series_.net_power.push_back(net[g]);
+            series_.net_flux.push_back(exposed[g].area > 0.0 ? net[g] / exposed[g].area : 0.0);
+            series_.temperature.push_back(temperature(l, exposed[g], arriving[g], fluxes));
+        }
+        series_.environment_power.push_back(environment);
+    }
+
+    [[nodiscard]] double temperature(std::size_t l, const Exposed& exposed, double arriving,
+                                     const std::vector<double>& fluxes) const {
+        if (exposed.unknown > 0.0 || exposed.area == 0.0) {
+            return std::numeric_limits<double>::quiet_NaN();
+        }
+        double power = arriving - exposed.exitance;
+        for (const auto& [c, area] : exposed.flux) {
+            power += area * fluxes[c];
+        }
+        for (const auto& [c, area] : exposed.given) {
+            const auto column = std::find(condition_.begin(), condition_.end(), c);
+            const double kelvin = column == condition_.end()
+                                      ? *problem_.conditions[c].temperature
+                                      : value(l, static_cast<std::size_t>(column - condition_.begin()));
+            power += area * black_body_exitance(kelvin);
+        }
+        return black_body_temperature(power / exposed.area);
+    }
+
+    const FormFactors& factors_;
+    HeatProblem problem_; // with one condition a column
+    const HeatSchedule& schedule_;
+    const HeatSettings& settings_;
+    Observer& observer_;
+    std::size_t columns_;
+    std::size_t groups_;
+    std::size_t lines_ = 0;
+    std::vector<std::uint32_t> condition_; // of every column
+    std::vector<Response> responses_;
+    HeatSeries series_;
+};
+
+} // namespace
+
+HeatSeries solve_heat_series(const FormFactors& factors, const HeatProblem& problem,
+                             const HeatSchedule& schedule, const HeatSettings& settings, Observer& observer) {
+    return Series(factors, problem, schedule, settings, observer).solve();
+}
+
+} // namespace hemi

@@ -1,0 +1,437 @@
+#include "cli/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+using namespace hemi::cli_test;
+
+namespace {
+
+constexpr double sigma = 5.670374419e-8;
+
+/// `words`, and a device on which rows come fast.
+Words on_cpu(Words words) {
+    words.insert(words.end(), {"--device", "cpu", "--jobs", "1", "--no-estimate"});
+    return words;
+}
+
+/// A box seen from inside, one patch a face: bottom and top have temperatures, the sides are adiabatic.
+Json box(double x, double y, double z, int n = 1) {
+    const auto polygon = [&](std::vector<std::array<double, 3>> unit) {
+        Json points = Json::array();
+        for (const auto& p : unit) {
+            points.push_back({p[0] * x, p[1] * y, p[2] * z});
+        }
+        return points;
+    };
+    return {{"hemi", 1},
+            {"materials",
+             {{"bottom", {{"emissivity", 0.9}}},
+              {"top", {{"emissivity", 0.75}}},
+              {"side", {{"emissivity", 0.5}}}}},
+            {"surfaces",
+             {face("bottom", "bottom", polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}), n),
+              face("top", "top", polygon({{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}), n),
+              face("left", "side", polygon({{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}), n),
+              face("right", "side", polygon({{1, 0, 0}, {1, 0, 1}, {1, 1, 1}, {1, 1, 0}}), n),
+              face("front", "side", polygon({{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}), n),
+              face("back", "side", polygon({{0, 1, 0}, {1, 1, 0}, {1, 1, 1}, {0, 1, 1}}), n)}},
+            {"groups",
+             {{"bottom", {{"temperature", 550}}},
+              {"top", {{"temperature", 300}}},
+              {"left", {{"heat_flux", 0}}},
+              {"right", {{"heat_flux", 0}}},
+              {"front", {{"heat_flux", 0}}},
+              {"back", {{"power", 0}}}}},
+            {"enclosure", "closed"}};
+}
+
+/// Between opposite rectangles a x b at distance c.
+double opposite(double a, double b, double c) {
+    const double x = a / c;
+    const double y = b / c;
+    const double x1 = std::sqrt(1.0 + x * x);
+    const double y1 = std::sqrt(1.0 + y * y);
+    return 2.0 / (std::numbers::pi * x * y) *
+           (std::log(x1 * y1 / std::sqrt(1.0 + x * x + y * y)) + x * y1 * std::atan(x / y1) +
+            y * x1 * std::atan(y / x1) - x * std::atan(x) - y * std::atan(y));
+}
+
+/// F of the box's faces (bottom, top, left, right, front, back); neighbours from closure and reciprocity:
+/// three unknowns a_xy, a_xz, a_yz, exchange areas of a face with each of two pairs of neighbours.
+std::vector<std::vector<double>> box_factors(double x, double y, double z) {
+    const double xy = x * y;
+    const double yz = y * z;
+    const double xz = x * z;
+    // What a face leaves for its neighbours, half of it to either side.
+    const double b = 0.5 * xy * (1.0 - opposite(x, y, z));
+    const double l = 0.5 * yz * (1.0 - opposite(y, z, x));
+    const double f = 0.5 * xz * (1.0 - opposite(x, z, y));
+    // b = bl + bf, l = bl + lf, f = bf + lf.
+    const double bl = 0.5 * (b + l - f);
+    const double bf = 0.5 * (b + f - l);
+    const double lf = 0.5 * (l + f - b);
+    const double areas[6] = {xy, xy, yz, yz, xz, xz};
+    const double own[3] = {opposite(x, y, z), opposite(y, z, x), opposite(x, z, y)};
+    std::vector<std::vector<double>> factors(6, std::vector<double>(6, 0.0));
+    for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t j = 0; j < 6; ++j) {
+            if (i / 2 == j / 2) {
+                factors[i][j] = i == j ? 0.0 : own[i / 2];
+                continue;
+            }
+            const std::size_t kinds =
+                i / 2 + j / 2; // 1: bottom and left, 2: bottom and front, 3: left and front
+            factors[i][j] = (kinds == 1 ? bl : kinds == 2 ? bf : lf) / areas[i];
+        }
+    }
+    return factors;
+}
+
+/// Solves A x = b.
+std::vector<double> solve(std::vector<std::vector<double>> a, std::vector<double> b) {
+    const std::size_t n = b.size();
+    for (std::size_t k = 0; k < n; ++k) {
+        std::size_t pivot = k;
+        for (std::size_t i = k; i < n; ++i) {
+            pivot = std::abs(a[i][k]) > std::abs(a[pivot][k]) ? i : pivot;
+        }
+        std::swap(a[k], a[pivot]);
+        std::swap(b[k], b[pivot]);
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i != k) {
+                const double factor = a[i][k] / a[k][k];
+                for (std::size_t j = k; j < n; ++j) {
+                    a[i][j] -= factor * a[k][j];
+                }
+                b[i] -= factor * b[k];
+            }
+        }
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+        b[k] /= a[k][k];
+    }
+    return b;
+}
+
+/// MOOSE's cavity as a duct of length 1, whose ends do not count: rows come from a file.
+Json cavity() {
+    Json scene = box(1, 1, 2);
+    scene["surfaces"] = {scene["surfaces"][0], scene["surfaces"][3], scene["surfaces"][1],
+                         scene["surfaces"][2]};
+    scene["materials"]["bottom"]["emissivity"] = 1;
+    scene["groups"].erase("front");
+    scene["groups"].erase("back");
+    return scene;
+}
+
+std::string cavity_factors() {
+    const double ends = std::sqrt(5.0) - 2.0;
+    const double sides = (std::sqrt(5.0) - 1.0) / 2.0;
+    const double to_side = (1.0 - ends) / 2.0;
+    const double to_end = (1.0 - sides) / 2.0;
+    const double rows[4][4] = {{0.0, to_side, ends, to_side},
+                               {to_end, 0.0, to_end, sides},
+                               {ends, to_side, 0.0, to_side},
+                               {to_end, sides, to_end, 0.0}};
+    std::string text = "i,j,F\n";
+    for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) {
+            if (i != j) {
+                char line[64];
+                std::snprintf(line, sizeof line, "%d,%d,%.17g\n", i, j, rows[i][j]);
+                text += line;
+            }
+        }
+    }
+    return text;
+}
+
+} // namespace
+
+TEST_CASE("hemi heat: a re-radiating box is its 6 x 6 system", "[cli][heat]") {
+    const Directory directory;
+    const Outcome run =
+        run_hemi(on_cpu({"heat", directory.write("box.json", box(1, 2, 3)), "--json", "--preset", "exact"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json heat = run.json();
+    const auto factors = box_factors(1, 2, 3);
+    // J = eps sigma T⁴ + (1 - eps) F J, and J = F J of the sides.
+    const double eps[6] = {0.9, 0.75, 0, 0, 0, 0};
+    std::vector<std::vector<double>> system(6, std::vector<double>(6, 0.0));
+    for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t j = 0; j < 6; ++j) {
+            system[i][j] = (i == j ? 1.0 : 0.0) - (1.0 - eps[i]) * factors[i][j];
+        }
+    }
+    const auto radiosity = solve(
+        system, {0.9 * sigma * std::pow(550.0, 4), 0.75 * sigma * std::pow(300.0, 4), 0.0, 0.0, 0.0, 0.0});
+    for (std::size_t i = 0; i < 6; ++i) {
+        CHECK(heat["radiosity"][i].get<double>() == Approx(radiosity[i]).epsilon(1e-6));
+        if (i >= 2) {
+            CHECK(heat["temperature"][i].get<double>() ==
+                  Approx(std::pow(radiosity[i] / sigma, 0.25)).epsilon(1e-6));
+            CHECK(heat["net_flux"][i].get<double>() == Approx(0.0).margin(1e-9));
+        }
+    }
+    CHECK(heat["balance"]["relative"].get<double>() < 1e-9);
+}
+
+TEST_CASE("hemi heat: the JSON has all that is promised, in the right sizes", "[cli][heat]") {
+    const Directory directory;
+    const Outcome run =
+        run_hemi({"heat", directory.write("box.json", box(1, 2, 3, 3)), "--json", "--device", "cpu",
+                  "--fluxes", directory.path("box.csv"), "-o", directory.path("box.vtp")});
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json heat = run.json();
+    CHECK(heat["schema"] == "hemi/heat/1");
+    CHECK(heat["groups"] == Json({"bottom", "top", "left", "right", "front", "back"}));
+    for (const char* key : {"areas", "emissivity", "temperature", "emitted", "absorbed", "irradiation",
+                            "radiosity", "net_flux", "net_power"}) {
+        INFO(key);
+        REQUIRE(heat[key].size() == 6);
+        CHECK(heat[key][0].is_number());
+    }
+    REQUIRE(heat["error"]["net_flux"].size() == 6);
+    CHECK(heat["error"]["net_flux"][0] > 0.0);
+    CHECK(heat["error"]["net_flux"][2] == 0.0); // adiabatic
+    CHECK(heat["areas"][0].get<double>() == Approx(2.0));
+    CHECK(heat["temperature"][0].get<double>() == Approx(550.0));
+    CHECK(heat["emissivity"][0].get<double>() == Approx(0.9));
+    CHECK(heat["net_power"][0].get<double>() == Approx(2.0 * heat["net_flux"][0].get<double>()));
+    CHECK(heat["environment_power"] == 0.0);
+    CHECK(std::abs(heat["balance"]["relative"].get<double>()) < 1e-7);
+    CHECK(heat["seconds"]["total"] > 0.0);
+    CHECK_FALSE(heat.contains("series"));
+    const Outcome quiet = run_hemi(on_cpu({"heat", directory.path("box.json"), "-q"}));
+    CHECK(quiet.err.empty());
+    CHECK(quiet.out.starts_with("group "));
+    const std::string table = directory.read("box.csv");
+    CHECK(table.starts_with("index,group,area,cx,cy,cz,nx,ny,nz,temperature,net_flux,emitted,absorbed,"
+                            "irradiation,radiosity\n0,bottom,"));
+    CHECK(std::count(table.begin(), table.end(), '\n') == 55);
+    CHECK(directory.read("box.vtp").find("Name=\"net_flux\"") != std::string::npos);
+}
+
+TEST_CASE("hemi heat: the estimated error of a flux is about what it is off by", "[cli][heat]") {
+    const Directory directory;
+    const Json heat =
+        run_hemi({"heat", directory.write("box.json", box(1, 2, 3, 4)), "--json", "--device", "cpu"}).json();
+    // From 8 x 8 and 16 x 16 patches a face, 1470.22 and 1455.83, extrapolated by the square of their size.
+    const double error = std::abs(heat["net_flux"][0].get<double>() - 1451.03);
+    const double estimate = heat["error"]["net_flux"][0].get<double>();
+    CHECK(estimate > 0.6 * error);
+    CHECK(estimate < 1.7 * error);
+    CHECK(heat["error"]["parts"]["patch_size"][0].get<double>() > 0.9 * estimate);
+}
+
+TEST_CASE("hemi heat: MOOSE's cavity by factors from a file", "[cli][heat]") {
+    const Directory directory;
+    const std::string scene = directory.write("cavity.json", cavity());
+    const std::string factors = directory.write("F.csv", cavity_factors());
+    const Outcome run = run_hemi({"heat", scene, "--factors", factors, "--json"});
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json heat = run.json();
+    CHECK(heat["net_flux"][0].get<double>() == Approx(2423.657817).epsilon(1e-7));
+    CHECK(heat["radiosity"][2].get<double>() == Approx(1267.186267).epsilon(1e-7));
+    CHECK(heat["temperature"][1].get<double>() == Approx(488.460360).epsilon(1e-7));
+    // Areas of another length of the duct, from a table.
+    const std::string areas = directory.write("areas.csv", "group,area\nbottom,600\nright,1200\ntop,600\n"
+                                                           "left,1200\n");
+    const Json longer = run_hemi({"heat", scene, "--factors", factors, "--areas", areas, "--json"}).json();
+    CHECK(longer["net_power"][0].get<double>() == Approx(600.0 * 2423.657817).epsilon(1e-7));
+    CHECK(run_hemi({"heat", scene, "--areas", areas}).status == 2);
+    CHECK(run_hemi({"heat", scene, "--factors", factors, "--preset", "fast"}).err_has("another program"));
+    const Outcome wrong =
+        run_hemi({"heat", scene, "--factors", directory.write("G.csv", "i,j,F\n0,1,1\n1,0,1\n")});
+    CHECK(wrong.status == 3);
+    CHECK(wrong.err_has("2 rows"));
+}
+
+TEST_CASE("hemi heat: a furnace with a load on its hearth balances", "[cli][heat][scenes]") {
+    const Outcome run = run_hemi(on_cpu({"heat", HEMI_SOURCE_DIR "/scenes/furnace-hot.json", "--json"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json heat = run.json();
+    CHECK(heat["buried"] == 32); // of the hearth, under the load
+    CHECK(std::abs(heat["balance"]["relative"].get<double>()) < 1e-7);
+    const std::size_t heaters = 3;
+    const std::size_t load = 4;
+    REQUIRE(heat["groups"][heaters] == "heaters");
+    CHECK(heat["net_power"][heaters].get<double>() ==
+          Approx(-heat["net_power"][load].get<double>()).epsilon(1e-7));
+    CHECK(heat["net_power"][heaters] > 1e4);
+    for (const std::size_t brick : {0u, 1u, 2u}) {
+        CHECK(heat["temperature"][brick] > 723.15);
+        CHECK(heat["temperature"][brick] < 1273.15);
+    }
+    CHECK(heat["emissivity"][load].get<double>() == Approx(0.6 + 0.2 * 430.0 / 780.0));
+}
+
+TEST_CASE("hemi heat: groups of a mesh get what the command line says", "[cli][heat]") {
+    const Directory directory;
+    const std::string mesh = directory.write("plates.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                                                           "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                                                           "g floor\nf 1 2 3 4\ng ceiling\nf 8 7 6 5\n");
+    const Words words = on_cpu({"heat", mesh, "--json", "--temperature", "floor=226.85C", "--emissivity",
+                                "floor=0.8", "--heat-flux", "ceiling=0", "--environment-temperature", "300"});
+    const Outcome run = run_hemi(words);
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json heat = run.json();
+    CHECK(heat["temperature"][0].get<double>() == Approx(500.0));
+    CHECK(heat["emissivity"][0].get<double>() == Approx(0.8));
+    CHECK(heat["net_power"][1].get<double>() == Approx(0.0).margin(1e-9));
+    CHECK(heat["environment_power"].get<double>() ==
+          Approx(-heat["net_power"][0].get<double>()).epsilon(1e-9));
+    // Of the same mesh in millimetres the powers are a millionth.
+    Words small = words;
+    small.insert(small.end(), {"--unit", "mm"});
+    CHECK(run_hemi(small).json()["net_power"][0].get<double>() ==
+          Approx(1e-6 * heat["net_power"][0].get<double>()));
+    const Outcome nearest = run_hemi(on_cpu({"heat", mesh, "--temperature", "flor=300"}));
+    CHECK(nearest.status == 2);
+    CHECK(nearest.err_has("\"floor\""));
+    CHECK(run_hemi({"heat", mesh, "--temperature", "floor=300", "--heat-flux", "floor=0"}).status == 2);
+    CHECK(run_hemi({"heat", mesh, "--temperature", "floor=-1"}).err_has("below 0 K"));
+    CHECK(run_hemi({"heat", mesh, "--emissivity", "floor=1.5"}).status == 2);
+    CHECK(run_hemi({"heat", mesh, "--temperature", "floor"}).err_has("GROUP=T"));
+    const Outcome dark = run_hemi(on_cpu({"heat", mesh, "--temperature", "floor=500"}));
+    CHECK(dark.status == 0);
+    CHECK(dark.err_has("0 K"));
+    CHECK(dark.err_has("ceiling")); // nothing is known of it
+}
+
+TEST_CASE("hemi heat: groups from a table", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3);
+    const Words words{"heat", directory.write("box.json", scene), "--json"};
+    const Json expected = run_hemi(on_cpu(words)).json();
+    scene.erase("groups");
+    scene["materials"]["top"]["emissivity"] = 0.1;
+    const std::string bare = directory.write("bare.json", scene);
+    const std::string table = directory.write("groups.csv", "group,temperature,emissivity,heat_flux,power\n"
+                                                            "bottom,276.85C,,,\ntop,300,0.75,,\n"
+                                                            "left,,,0,\nright,,,0,\nfront,,,0,\nback,,,,0\n");
+    const Json heat = run_hemi(on_cpu({"heat", bare, "--groups", table, "--json"})).json();
+    for (std::size_t g = 0; g < 6; ++g) {
+        CHECK(heat["radiosity"][g].get<double>() ==
+              Approx(expected["radiosity"][g].get<double>()).epsilon(1e-9));
+    }
+    const auto refused = [&](const std::string& text, const std::string& message) {
+        const Outcome run = run_hemi({"heat", bare, "--groups", directory.write("bad.csv", text)});
+        CHECK(run.status != 0);
+        INFO(run.err);
+        CHECK(run.err_has(message));
+    };
+    refused("group,temprature\ntop,300\n", "\"temperature\"");
+    refused("group,temperature\ntop,300,4\n", "bad.csv:2");
+    refused("group,temperature\ntop,-3\n", "0 K");
+    refused("group,emissivity\ntop,2\n", "at most 1");
+    refused("group,power\ntop,20C\n", "a number");
+    refused("group,power\ntopp,20\n", "\"top\"");
+}
+
+TEST_CASE("hemi solve: surfaces radiate by their temperatures", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3);
+    for (const char* side : {"left", "right", "front", "back"}) {
+        scene["groups"][side] = {{"temperature", 400}};
+    }
+    const std::string file = directory.write("box.json", scene);
+    const Json heat = run_hemi(on_cpu({"heat", file, "--json"})).json();
+    const Json light = run_hemi(on_cpu({"solve", file, "--json", "--tolerance", "1e-9"})).json();
+    for (std::size_t g = 0; g < 6; ++g) {
+        CHECK(light["radiosity"][g][0].get<double>() ==
+              Approx(heat["radiosity"][g].get<double>()).epsilon(1e-7));
+    }
+    scene["groups"]["left"] = {{"heat_flux", 0}};
+    CHECK(run_hemi(on_cpu({"solve", directory.write("flux.json", scene)})).err_has("hemi heat"));
+}
+
+TEST_CASE("hemi heat: slips in temperatures and units are told", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3);
+    scene["groups"]["top"]["temperature"] = 20;
+    CHECK(run_hemi(on_cpu({"heat", directory.write("cold.json", scene)})).err_has("\"20 C\""));
+    CHECK(run_hemi(on_cpu({"heat", directory.write("large.json", box(100, 200, 600))})).err_has("no unit"));
+    Json closed = box(1, 2, 3);
+    closed["groups"]["bottom"] = {{"power", 10}};
+    closed["groups"]["top"] = {{"power", 10}};
+    const Outcome singular = run_hemi(on_cpu({"heat", directory.write("closed.json", closed)}));
+    CHECK(singular.status == 3);
+    CHECK(singular.err_has("bottom"));
+    CHECK(singular.err_has("20 W"));
+    // Reflectance 1 is adiabatic here, and an error where light is solved for.
+    Json mirrors = box(1, 2, 3);
+    mirrors["materials"]["side"] = {{"reflectance", 1}};
+    for (const char* side : {"left", "right", "front", "back"}) {
+        mirrors["groups"].erase(side);
+    }
+    const std::string file = directory.write("mirrors.json", mirrors);
+    CHECK(run_hemi(on_cpu({"heat", file})).status == 0);
+    CHECK(run_hemi(on_cpu({"solve", file})).err_has("below 1"));
+    const Outcome factors = run_hemi(on_cpu({"factors", file})); // they know no reflectance
+    CHECK(factors.status == 0);
+    CHECK(factors.err.empty());
+}
+
+TEST_CASE("hemi heat: a series of temperatures", "[cli][heat]") {
+    const Directory directory;
+    const std::string scene = directory.write("box.json", box(1, 2, 3, 2));
+    const std::string times = directory.write("times.csv", "time,top,bottom\n0 h,300,550\n1 h,20C,600\n");
+    const Outcome run = run_hemi(on_cpu({"heat", scene, "--series", times, "--json"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json heat = run.json();
+    REQUIRE(heat["series"].size() == 2);
+    CHECK(heat["series"][0]["time"] == "0 h");
+    for (std::size_t g = 0; g < 6; ++g) {
+        CHECK(heat["series"][0]["temperature"][g].get<double>() ==
+              Approx(heat["temperature"][g].get<double>()).epsilon(1e-9));
+        CHECK(heat["series"][0]["net_power"][g].get<double>() ==
+              Approx(heat["net_power"][g].get<double>()).epsilon(1e-9).margin(1e-6));
+    }
+    CHECK(heat["series"][1]["temperature"][1].get<double>() == Approx(293.15));
+    const Outcome unknown =
+        run_hemi(on_cpu({"heat", scene, "--series", directory.write("unknown.csv", "time,botom\n0,300\n")}));
+    CHECK(unknown.status == 3);
+    CHECK(unknown.err_has("\"bottom\""));
+    const Outcome word = run_hemi(
+        on_cpu({"heat", scene, "--series", directory.write("word.csv", "time,top\n0,300\n1,warm\n")}));
+    CHECK(word.status == 3);
+    CHECK(word.err_has("word.csv:3"));
+}
+
+TEST_CASE("hemi exchange: conductances are reciprocal and balance", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3, 2);
+    scene.erase("groups");
+    scene["materials"]["top"] = {{"reflectance", 1}};
+    const Outcome run = run_hemi(on_cpu({"exchange", directory.write("box.json", scene), "--json",
+                                         "--emissivity", "left=0.05", "-o", directory.path("box.csv")}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json exchange = run.json();
+    CHECK(exchange["schema"] == "hemi/exchange/1");
+    CHECK(exchange["emissivity"][2].get<double>() == Approx(0.05));
+    for (std::size_t g = 0; g < 6; ++g) {
+        double sum = exchange["environment"][g].get<double>();
+        for (std::size_t h = 0; h < 6; ++h) {
+            sum += exchange["script_f"][g][h].get<double>();
+            CHECK(exchange["conductance"][g][h] == exchange["conductance"][h][g]);
+        }
+        CHECK(sum == Approx(exchange["emissivity"][g].get<double>()).epsilon(1e-9).margin(1e-12));
+    }
+    CHECK(exchange["gebhart"][1][0].is_null()); // emits nothing
+    CHECK(exchange["gebhart"][0][2].get<double>() > 0.0);
+    const std::string table = directory.read("box.csv");
+    CHECK(table.starts_with("from,to,gebhart,script_f,conductance\nbottom,bottom,"));
+    CHECK(std::count(table.begin(), table.end(), '\n') == 1 + 6 * 7);
+    CHECK(run_hemi({"exchange", directory.path("box.json"), "--temperature", "top=300"}).status == 2);
+}
