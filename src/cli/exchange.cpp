@@ -57,7 +57,8 @@ io::TextTable exchange_table(const std::vector<std::string>& names, const HeatEx
 ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     const Outputs outputs = check_outputs(arguments);
     Seconds seconds({"load", "factors", "estimate", "repair", "solve"});
-    const LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, false, terminal);
+    const LoadedScene loaded =
+        load_thermal_scene(arguments.scene, arguments.heat, arguments.input, false, terminal);
     seconds["load"] = loaded.seconds;
     TerminalObserver observer(terminal);
     const HeatProblem problem =
@@ -74,14 +75,14 @@ ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     if (arguments.output) {
         io::write_table(*arguments.output, exchange_table(factors.groups, exchange));
     }
-    Report report = scene_size_report(loaded.mesh);
+    Report report = scene_size_report(loaded);
     report.add(rows_report(factors, sums, enclosure));
     report.add(repair_report(*factors.repair, seconds["repair"]));
     report.add(seconds.report());
     const Report tables = exchange_report(factors.groups, exchange);
     report.json.update(tables.json);
     report.select("hemi/exchange/1",
-                  {"renderer", "patches", "groups", "areas", "emissivity", "gebhart", "script_f",
+                  {"renderer", "patches", "parts", "groups", "areas", "emissivity", "gebhart", "script_f",
                    "conductance", "environment", "row_sum", "repair", "seconds"});
     show_with_tables(outputs, std::move(report), tables, arguments.common.json, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);

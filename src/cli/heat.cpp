@@ -97,6 +97,30 @@ Outputs check_outputs(const HeatArguments& arguments) {
     return outputs;
 }
 
+/// What is known of the mesh's patches, for those that results are about: means by area, of temperatures that
+/// of the fourth power; nothing of those of which nothing is left.
+std::vector<io::CellArray> of_patches(std::vector<io::CellArray> arrays, const LoadedScene& loaded) {
+    if (!loaded.as_read) {
+        return arrays;
+    }
+    for (io::CellArray& array : arrays) {
+        const bool is_temperature = array.name == "temperature";
+        for (double& value : array.values) {
+            value = is_temperature ? std::pow(value, 4.0) : value;
+        }
+        const std::size_t components = std::max<std::size_t>(array.components.size(), 1);
+        array.values = loaded.means(array.values, components);
+        for (std::size_t k = 0; k < array.values.size(); ++k) {
+            double& value = array.values[k];
+            value = is_temperature ? std::sqrt(std::sqrt(value)) : value;
+            value = loaded.as_read->left.areas[k / components] > 0.0
+                        ? value
+                        : std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+    return arrays;
+}
+
 void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, const HeatProblem& problem,
                    const HeatSolution& solution) {
     std::vector<std::string> bands;
@@ -110,7 +134,8 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
                                       {"irradiation", solution.irradiation, bands},
                                       {"radiosity", solution.radiosity, bands}};
     if (arguments.fluxes) {
-        io::write_patch_table(*arguments.fluxes, loaded.mesh, arrays);
+        io::write_patch_table(*arguments.fluxes, loaded.patches(), of_patches(arrays, loaded),
+                              loaded.as_read ? loaded.as_read->left : io::PatchPlaces());
     }
     if (arguments.output) {
         for (double& kelvin : arrays[0].values) {
@@ -129,7 +154,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
         lines = read_series(*arguments.series);
     }
     Seconds seconds({"load", "factors", "estimate", "repair", "solve", "series"});
-    LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, true, terminal);
+    LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, arguments.input, true, terminal);
     seconds["load"] = loaded.seconds;
     if (lines) {
         give_temperatures(loaded.scene, lines->schedule);
@@ -165,7 +190,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
         tables.text += "\n";
         tables.add(series_report(factors.groups, lines->labels, series));
     }
-    Report report = scene_size_report(loaded.mesh);
+    Report report = scene_size_report(loaded);
     report.add(rows_report(factors, sums, enclosure));
     report.add(repair_report(*factors.repair, seconds["repair"]));
     report.add(seconds.report());
@@ -173,12 +198,12 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     report.json.update(tables.json);
     report.json["bands"] = problem.bands;
     report.json["unit"] = problem.unit;
-    report.select("hemi/heat/1",
-                  {"renderer",    "patches",    "bands",       "unit",      "groups",
-                   "areas",       "emissivity", "temperature", "emitted",   "absorbed",
-                   "irradiation", "radiosity",  "net_flux",    "net_power", "environment_power",
-                   "balance",     "error",      "buried",      "solver",    "row_sum",
-                   "repair",      "series",     "seconds"});
+    report.select("hemi/heat/1", {"renderer",    "patches",  "parts",     "bands",
+                                  "unit",        "groups",   "areas",     "emissivity",
+                                  "temperature", "emitted",  "absorbed",  "irradiation",
+                                  "radiosity",   "net_flux", "net_power", "environment_power",
+                                  "balance",     "error",    "buried",    "solver",
+                                  "row_sum",     "repair",   "series",    "seconds"});
     if (!lines) {
         report.json.erase("series");
     }

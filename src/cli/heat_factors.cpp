@@ -232,8 +232,9 @@ FormFactors find_raw_rows(const CommonOptions& common, const RowOptions& rows, c
 
 } // namespace
 
-LoadedScene load_thermal_scene(const SceneOptions& options, HeatOptions heat, bool conditions,
-                               const Terminal& terminal) {
+LoadedScene load_thermal_scene(SceneOptions options, HeatOptions heat, const FactorInput& input,
+                               bool conditions, const Terminal& terminal) {
+    options.imprint = options.imprint && (!input.factors || is_own(*input.factors));
     if (!io::is_scene_file(options.path)) {
         throw InvalidArgument(
             fmt::format("{}: heat needs a scene ({})", options.path.string(), io::scene_extensions()));

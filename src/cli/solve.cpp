@@ -11,6 +11,7 @@
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/pipeline/accuracy.hpp"
+#include "hemi/pipeline/light_balance.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/vertex_gather.hpp"
 
@@ -67,9 +68,15 @@ void check_input(const SolveArguments& arguments) {
     }
 }
 
+/// Where light comes from and is reflected: without reflection all of it is known.
 std::vector<std::uint32_t> needed_patches(const SolveArguments& arguments, const LoadedScene& loaded) {
-    return arguments.factors || arguments.with_irradiance() ? all_patches(loaded.mesh.size())
-                                                            : reflecting_patches(loaded.scene, loaded.mesh);
+    if (!arguments.factors && !arguments.with_irradiance() &&
+        reflecting_patches(loaded.scene, loaded.mesh).empty()) {
+        return {};
+    }
+    return arguments.factors || arguments.with_irradiance()
+               ? all_patches(loaded.mesh.size())
+               : shining_patches(patch_values(loaded.scene, loaded.mesh));
 }
 
 /// Form factors, prepared, and the radiosity by them.
@@ -250,12 +257,16 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         throw;
     }
     write_solution(arguments, loaded, solution, false);
+    const std::optional<LightBalance> balance =
+        light_balance(factors, patch_values(loaded.scene, loaded.mesh), solution.radiosity);
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
-    Report report = solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, seconds);
+    Report report =
+        solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, balance, seconds);
     report.text += refinement.text + picture.text;
     report.json.update(refinement.json);
     outputs.show(report, arguments.common.json, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
+    report_lost_light(balance, factors.groups, terminal);
     if (!missed.empty()) {
         terminal.warn(missed);
     }

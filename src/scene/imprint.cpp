@@ -123,7 +123,7 @@ Joined join_back_to_back(const Scene& scene) {
         const auto mate = std::find_if(there.begin(), there.end(), [&](std::uint32_t s) {
             const Surface& other = result.scene.surfaces[s];
             return !surface.two_sided && !other.two_sided && other.material == surface.material &&
-                   other.group == surface.group &&
+                   other.group == surface.group && other.heat == surface.heat &&
                    glm::dot(area_vector(other.polygon()), area_vector(surface.polygon())) < 0.0;
         });
         if (mate != there.end()) {

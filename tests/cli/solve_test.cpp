@@ -91,9 +91,13 @@ TEST_CASE("solve: a furnace is E / (1 - rho) everywhere, and grey scenes are sol
     CHECK(jacobi["radiosity"][3][2].get<double>() == Approx(2.0).epsilon(1e-3));
 }
 
-TEST_CASE("solve: rows of patches that reflect nothing are computed only where they are asked for", "[cli]") {
+TEST_CASE("solve: rows of patches from which no light comes are computed only where they are asked for",
+          "[cli]") {
     const Directory directory;
-    const std::string scene = directory.write("cube.json", coloured(3));
+    Json black = coloured(3);
+    black["materials"]["black"] = {{"reflectance", 0}};
+    black["surfaces"][1]["material"] = "black";
+    const std::string scene = directory.write("cube.json", black);
     const Outcome picture_only = run_hemi(quick({"solve", scene, "-v"}));
     CHECK(picture_only.err_has("rows computed: 45 of 54"));
     CHECK(picture_only.err_has("channels solved: 3 of 3"));
@@ -112,6 +116,33 @@ TEST_CASE("solve: rows of patches that reflect nothing are computed only where t
     CHECK(none.json()["renderer"] == "none");
     CHECK(none.json()["row_sum"]["mean"].is_null());
     CHECK(none.json()["radiosity"][5][0] == 1.0);
+}
+
+TEST_CASE("solve: the balance tells where the light goes, and what is lost is warned of", "[cli]") {
+    const Directory directory;
+    Json room = cube(3);
+    room["unit"] = "cm";
+    const Outcome closed = run_hemi(quick({"solve", directory.write("room.json", room), "--json"}));
+    REQUIRE(closed.status == 0);
+    const Json balance = closed.json()["balance"];
+    CHECK(balance["emitted"].get<double>() == Approx(1e-4)); // 1 W/m² of a square centimetre
+    CHECK(balance["absorbed"].get<double>() == Approx(1e-4).epsilon(1e-3));
+    CHECK(balance["environment"] == 0.0);
+    CHECK(balance["lost"] == 0.0);
+    CHECK_FALSE(closed.err_has("lost"));
+
+    room["surfaces"].push_back(
+        {{"name", "baffle"},
+         {"material", "white"},
+         {"polygon", Json::parse("[[0.2,0.2,0.5],[0.2,0.8,0.5],[0.8,0.8,0.5],[0.8,0.2,0.5]]")}});
+    const Outcome baffled = run_hemi(quick({"solve", directory.write("baffle.json", room)}));
+    CHECK(baffled.status == 0);
+    CHECK(baffled.out_has("balance"));
+    CHECK(baffled.err_has("% of the light is lost: it meets backs"));
+    CHECK(baffled.err_has("most of what leaves ceiling"));
+    const Json lost = run_hemi(quick({"solve", directory.path("baffle.json"), "--json"})).json()["balance"];
+    CHECK(lost["lost"].get<double>() > 1e-5);
+    CHECK(lost["absorbed"].get<double>() + lost["lost"].get<double>() == Approx(1e-4).epsilon(1e-3));
 }
 
 TEST_CASE("solve: the summary has patches, renderer, row sums, sweeps, residual, seconds and the picture",

@@ -27,9 +27,13 @@ void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::sp
 /// The same as a table: one line a patch with index,group,area,cx,cy,cz,nx,ny,nz (index from 0; shortest
 /// digits that read back equal), then a column for every component of the arrays, `name` or `name_component`.
 /// Cells of values that are not a number are empty.
-/// @throws InvalidArgument for arrays of another length; IoError
+/// @param path    of the file
+/// @param mesh    N patches
+/// @param arrays  columns
+/// @param left    what is left of the patches
+/// @throws InvalidArgument for arrays and places of another length; IoError
 void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
-                       std::span<const CellArray> arrays);
+                       std::span<const CellArray> arrays, const PatchPlaces& left = {});
 
 /// What a stored solution knows of its patches: row balance, radiosity, irradiance, exitance, reflectance,
 /// and estimated errors where there are any.

@@ -9,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace hemi::cli {
 
@@ -200,21 +202,69 @@ Report stored_solution_report(const Solution& solution, const PatchMesh& mesh) {
     return report;
 }
 
+Report light_balance_report(const std::optional<LightBalance>& balance, double metres) {
+    Report report;
+    report.json["balance"] = nullptr;
+    if (!balance) {
+        return report;
+    }
+    const auto watts = [&](double power) { return power * metres * metres; };
+    const auto part = [&](double power) {
+        return fmt::format("{} ({:.3g} %)", number_text(watts(power)),
+                           balance->incoming > 0.0 ? 100.0 * power / balance->incoming : 0.0);
+    };
+    report.add("balance",
+               fmt::format("emitted {}; absorbed {}, to the environment {}, lost on backs {}",
+                           number_text(watts(balance->emitted)), part(balance->absorbed),
+                           part(balance->environment), part(balance->lost)),
+               {{"balance",
+                 {{"emitted", watts(balance->emitted)},
+                  {"absorbed", watts(balance->absorbed)},
+                  {"environment", watts(balance->environment)},
+                  {"lost", watts(balance->lost)}}}});
+    return report;
+}
+
 Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
-                    const Solution& solution, const Seconds& seconds) {
+                    const Solution& solution, const std::optional<LightBalance>& balance,
+                    const Seconds& seconds) {
     const RepairReport& repair = *factors.repair;
     Report report = scene_size_report(loaded);
     report.add(rows);
     report.add(repair_report(repair, seconds["repair"]));
     report.add(solution_report(solution, loaded.mesh));
+    report.add(light_balance_report(balance, loaded.scene.unit.value_or(1.0)));
     report.add(seconds.report());
     report.json.update(group_means_json(loaded, factors.matrix, solution));
     report.json["reciprocity"] =
         factors.matrix.all_known() ? reciprocity_json(repair.reciprocity_after) : Json(nullptr);
     report.select("hemi/solve/1", {"renderer", "patches", "parts", "channels", "groups", "areas", "radiosity",
                                    "exitance", "environment", "blocked", "solver", "row_sum", "reciprocity",
-                                   "repair", "chosen_for", "error", "error_estimate", "seconds"});
+                                   "repair", "chosen_for", "error", "error_estimate", "balance", "seconds"});
     return report;
+}
+
+void report_lost_light(const std::optional<LightBalance>& balance, const std::vector<std::string>& groups,
+                       const Terminal& terminal) {
+    constexpr double worth_a_warning = 1e-3;
+    if (!balance || balance->lost_share() <= worth_a_warning) {
+        return;
+    }
+    std::vector<std::size_t> order(groups.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const std::vector<double>& lost = balance->lost_of_group;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return lost[a] > lost[b]; });
+    std::string worst;
+    for (std::size_t k = 0; k < std::min<std::size_t>(3, order.size()) && lost[order[k]] > 0.0; ++k) {
+        worst += fmt::format("{}{} ({:.2g} %)", k == 0 ? "" : ", ", groups[order[k]],
+                             100.0 * lost[order[k]] / balance->incoming);
+    }
+    terminal.warn(
+        fmt::format("{:.2g} % of the light is lost: it meets backs of one-sided surfaces, or leaves what is "
+                    "buried; most of what leaves {}. `hemi check` says where; \"two_sided\", or "
+                    "--two-sided GROUP, makes backs reflect",
+                    100.0 * balance->lost_share(), worst));
 }
 
 void report_savings(const LoadedScene& loaded, const FormFactors& factors, const Solution& solution,
@@ -223,7 +273,7 @@ void report_savings(const LoadedScene& loaded, const FormFactors& factors, const
         return;
     }
     if (!factors.work.from_file) {
-        terminal.detail(fmt::format("rows computed: {} of {} (patches that reflect nothing need none)",
+        terminal.detail(fmt::format("rows computed: {} of {} (patches from which no light comes need none)",
                                     count_text(factors.work.rows), count_text(loaded.mesh.size())));
     }
     terminal.detail(fmt::format("channels solved: {} of {}{}", solution.channels_solved, solution.channels,

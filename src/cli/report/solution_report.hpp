@@ -4,6 +4,7 @@
 #include "cli/report/report.hpp"
 #include "cli/report/seconds.hpp"
 #include "hemi/matrix/form_factors.hpp"
+#include "hemi/pipeline/light_balance.hpp"
 #include "hemi/pipeline/refinement.hpp"
 #include "hemi/solver/solution.hpp"
 
@@ -11,9 +12,18 @@
 namespace hemi::cli {
 
 /// Report of `hemi solve`, without the picture.
-/// @param rows  report of the rows
+/// @param rows     report of the rows
+/// @param balance  of the light, where it is known
 [[nodiscard]] Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
-                                  const Solution& solution, const Seconds& seconds);
+                                  const Solution& solution, const std::optional<LightBalance>& balance,
+                                  const Seconds& seconds);
+/// Where the light goes.
+/// @param metres  in a unit of the scene
+[[nodiscard]] Report light_balance_report(const std::optional<LightBalance>& balance, double metres);
+/// Warns where more than 0.1 % of the light is lost.
+/// @param groups  their names
+void report_lost_light(const std::optional<LightBalance>& balance, const std::vector<std::string>& groups,
+                       const Terminal& terminal);
 /// Report of the meshes on the way to the last one.
 [[nodiscard]] Report refinement_report(const std::vector<Refinement::Step>& steps,
                                        const std::string& stopped);

@@ -59,19 +59,8 @@ std::string csv_field(const std::string& text) {
     return result + '"';
 }
 
-void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh, const PatchPlaces& left) {
-    const PatchColumns columns(mesh, left);
-    TextOutput output(path);
-    output.print(FMT_COMPILE("{}\n"), PatchColumns::header);
-    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
-        columns.print(output, patch);
-        output.print(FMT_COMPILE("\n"));
-    }
-    output.commit();
-}
-
 void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
-                       std::span<const CellArray> arrays) {
+                       std::span<const CellArray> arrays, const PatchPlaces& left) {
     std::vector<std::string> names;
     for (const CellArray& array : arrays) {
         if (array.values.size() != mesh.size() * std::max<std::size_t>(array.components.size(), 1)) {
@@ -85,9 +74,13 @@ void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
             names.push_back(csv_field(fmt::format("{}_{}", array.name, component)));
         }
     }
-    const PatchColumns columns(mesh);
+    const PatchColumns columns(mesh, left);
     TextOutput output(path);
-    output.print(FMT_COMPILE("{},{}\n"), PatchColumns::header, fmt::join(names, ","));
+    output.print(FMT_COMPILE("{}"), PatchColumns::header);
+    for (const std::string& name : names) {
+        output.print(FMT_COMPILE(",{}"), name);
+    }
+    output.print(FMT_COMPILE("\n"));
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
         columns.print(output, patch);
         for (const CellArray& array : arrays) {
@@ -105,6 +98,10 @@ void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
     output.commit();
 }
 
+void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh, const PatchPlaces& left) {
+    write_patch_table(path, mesh, {}, left);
+}
+
 void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
                          std::span<const std::string> channels, std::span<const double> exitance,
                          std::span<const double> irradiance, std::span<const double> radiosity,
@@ -119,34 +116,16 @@ void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mes
         throw InvalidArgument(fmt::format("{} errors for {} patches with {} channels; must be {}",
                                           errors.size(), mesh.size(), channels.size(), values));
     }
-    struct Quantity {
-        const char* name;
-        std::span<const double> values;
+    const std::vector<std::string> names(channels.begin(), channels.end());
+    const auto array = [&names](const char* name, std::span<const double> of_patches) {
+        return CellArray{name, {of_patches.begin(), of_patches.end()}, names};
     };
-    std::vector<Quantity> quantities{
-        {"exitance", exitance}, {"irradiance", irradiance}, {"radiosity", radiosity}};
+    std::vector<CellArray> arrays{array("exitance", exitance), array("irradiance", irradiance),
+                                  array("radiosity", radiosity)};
     if (!errors.empty()) {
-        quantities.push_back({"error", errors});
+        arrays.push_back(array("error", errors));
     }
-    const PatchColumns columns(mesh, left);
-    TextOutput output(path);
-    output.print(FMT_COMPILE("{}"), PatchColumns::header);
-    for (const Quantity& quantity : quantities) {
-        for (const std::string& channel : channels) {
-            output.print(FMT_COMPILE(",{}"), csv_field(fmt::format("{}_{}", quantity.name, channel)));
-        }
-    }
-    output.print(FMT_COMPILE("\n"));
-    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
-        columns.print(output, patch);
-        for (const Quantity& quantity : quantities) {
-            for (const double value : quantity.values.subspan(patch * channels.size(), channels.size())) {
-                output.print(FMT_COMPILE(",{}"), value);
-            }
-        }
-        output.print(FMT_COMPILE("\n"));
-    }
-    output.commit();
+    write_patch_table(path, mesh, arrays, left);
 }
 
 } // namespace hemi::io
