@@ -57,7 +57,8 @@ io::TextTable exchange_table(const std::vector<std::string>& names, const HeatEx
 ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     const Outputs outputs = check_outputs(arguments);
     Seconds seconds({"load", "factors", "estimate", "repair", "solve"});
-    const LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, false, terminal);
+    const LoadedScene loaded =
+        load_thermal_scene(arguments.scene, arguments.input, arguments.heat, false, terminal);
     seconds["load"] = loaded.seconds;
     TerminalObserver observer(terminal);
     const HeatProblem problem =

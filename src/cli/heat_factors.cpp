@@ -201,9 +201,9 @@ FormFactors read_foreign(const FactorInput& input, const LoadedScene& loaded, do
 FormFactors find_raw_rows(const CommonOptions& common, const RowOptions& rows, const FactorInput& input,
                           const LoadedScene& loaded, Observer& observer, const Terminal& terminal) {
     if (input.factors && !is_own(*input.factors)) {
-        static const std::vector<std::string> of_rows{"--preset",     "--method",      "--rays",
-                                                      "--eye-points", "--shadow-rays", "--seed",
-                                                      "--resume",     "--resolution",  "--no-merge"};
+        static const std::vector<std::string> of_rows{"--preset",      "--method", "--rays",   "--eye-points",
+                                                      "--shadow-rays", "--seed",   "--resume", "--resolution",
+                                                      "--no-merge",    "--imprint"};
         for (const std::string& option : common.given) {
             if (std::find(of_rows.begin(), of_rows.end(), option) != of_rows.end()) {
                 throw InvalidArgument(
@@ -232,8 +232,8 @@ FormFactors find_raw_rows(const CommonOptions& common, const RowOptions& rows, c
 
 } // namespace
 
-LoadedScene load_thermal_scene(const SceneOptions& options, HeatOptions heat, bool conditions,
-                               const Terminal& terminal) {
+LoadedScene load_thermal_scene(SceneOptions options, const FactorInput& input, HeatOptions heat,
+                               bool conditions, const Terminal& terminal) {
     if (!io::is_scene_file(options.path)) {
         throw InvalidArgument(
             fmt::format("{}: heat needs a scene ({})", options.path.string(), io::scene_extensions()));
@@ -241,6 +241,7 @@ LoadedScene load_thermal_scene(const SceneOptions& options, HeatOptions heat, bo
     if (heat.table) {
         add_table(*heat.table, conditions, heat);
     }
+    options.imprint = options.imprint && (!input.factors || is_own(*input.factors));
     LoadedScene loaded = load_scene(options, terminal);
     Scene& scene = loaded.scene;
     if (!scene.thermal) {
