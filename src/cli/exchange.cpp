@@ -58,7 +58,7 @@ ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     const Outputs outputs = check_outputs(arguments);
     Seconds seconds({"load", "factors", "estimate", "repair", "solve"});
     const LoadedScene loaded =
-        load_thermal_scene(arguments.scene, arguments.heat, arguments.input, false, terminal);
+        load_thermal_scene(arguments.scene, arguments.input, arguments.heat, false, terminal);
     seconds["load"] = loaded.seconds;
     TerminalObserver observer(terminal);
     const HeatProblem problem =

@@ -154,7 +154,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
         lines = read_series(*arguments.series);
     }
     Seconds seconds({"load", "factors", "estimate", "repair", "solve", "series"});
-    LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.heat, arguments.input, true, terminal);
+    LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.input, arguments.heat, true, terminal);
     seconds["load"] = loaded.seconds;
     if (lines) {
         give_temperatures(loaded.scene, lines->schedule);

@@ -232,9 +232,8 @@ FormFactors find_raw_rows(const CommonOptions& common, const RowOptions& rows, c
 
 } // namespace
 
-LoadedScene load_thermal_scene(SceneOptions options, HeatOptions heat, const FactorInput& input,
+LoadedScene load_thermal_scene(SceneOptions options, const FactorInput& input, HeatOptions heat,
                                bool conditions, const Terminal& terminal) {
-    options.imprint = options.imprint && (!input.factors || is_own(*input.factors));
     if (!io::is_scene_file(options.path)) {
         throw InvalidArgument(
             fmt::format("{}: heat needs a scene ({})", options.path.string(), io::scene_extensions()));
@@ -242,6 +241,7 @@ LoadedScene load_thermal_scene(SceneOptions options, HeatOptions heat, const Fac
     if (heat.table) {
         add_table(*heat.table, conditions, heat);
     }
+    options.imprint = options.imprint && (!input.factors || is_own(*input.factors));
     LoadedScene loaded = load_scene(options, terminal);
     Scene& scene = loaded.scene;
     if (!scene.thermal) {

@@ -13,9 +13,9 @@ namespace hemi::cli {
 
 /// The scene, with what the options say of its groups.
 /// @throws InputError, InvalidArgument; for unknown groups with the nearest
-/// @param input       rows of another program are those of the faces as they are
+/// @param input       rows of another program are those of the scene's faces as they are: none is cut
 /// @param conditions  whether temperatures and fluxes are of interest
-[[nodiscard]] LoadedScene load_thermal_scene(SceneOptions scene, HeatOptions heat, const FactorInput& input,
+[[nodiscard]] LoadedScene load_thermal_scene(SceneOptions scene, const FactorInput& input, HeatOptions heat,
                                              bool conditions, const Terminal& terminal);
 
 /// All rows, reciprocal: computed, or from a file.
