@@ -2,6 +2,7 @@
 #include "cli/loaded_scene.hpp"
 #include "cli/output_paths.hpp"
 #include "cli/report/diagnosis_report.hpp"
+#include "cli/report/factor_report.hpp"
 #include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
@@ -57,6 +58,7 @@ ExitStatus run(const CheckArguments& arguments, const Terminal& terminal) {
     if (arguments.common.json || !terminal.quiet()) {
         show(diagnosis_report(diagnosis, factors, names, limit, repair_seconds), arguments.common.json);
     }
+    report_no_fronts(diagnosis.sums, factors.matrix, terminal);
     if (diagnosis.enclosure == EnclosureVerdict::nearly_closed) {
         terminal.warn(
             fmt::format("nearly closed: {}; --enclosure closed makes that an error, --enclosure open "

@@ -40,7 +40,7 @@ void write(const fs::path& path, std::string_view text) {
 void read_as_scene(const fs::path& path) {
     Diagnostics diagnostics;
     (void)io::read_scene(path, {}, diagnostics);
-    (void)io::read_scene(path, {.skip_degenerate = true}, diagnostics);
+    (void)io::read_scene(path, {.strict = true}, diagnostics);
 }
 
 FormFactorMatrix small_matrix(bool visibility) {

@@ -71,15 +71,32 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
                    scene.subdivision.patches_per_face = to_index("--patches-per-face", text, 1, 100'000'000);
                })
         ->excludes(size);
-    options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
-    options.flag("--allow-outside", scene.allow_outside,
+    options.flag("--strict", scene.reader.strict,
+                 "refuse faces without area or out of plane, which are mended otherwise");
+    options.value(
+        "--planarity", "T",
+        "cut faces into triangles whose corners are off their planes by more than T of the longest "
+        "edge (1e-5)",
+        [&scene](const std::string& text) { scene.reader.planarity = parse_share("--planarity", text); });
+    options.flag("--allow-outside", scene.reader.allow_outside,
                  "open files outside the scene's folder that the scene names");
     options.flag("--imprint", scene.imprint, "cut faces where others touch them; leave out what is covered");
-    app.add_option("--two-sided", scene.two_sided,
-                   "faces of GROUP radiate on both sides (not for .json); repeatable")
-        ->allow_extra_args(false)
-        ->option_text("GROUP")
-        ->group("Scene");
+    options.groups("--two-sided", scene.reader.two_sided_groups,
+                   "faces of GROUP radiate on both sides (not for .json); * for all; repeatable");
+    options.groups("--one-sided-group", scene.reader.one_sided_groups,
+                   "only the fronts of GROUP's faces count, whatever the file says; * for all; repeatable");
+    options.choice<Orientation>(
+        "--orient", "in|out",
+        "turn faces: outermost bodies to their inside or outside, what is in them the "
+        "other way round",
+        scene.reader.orientation);
+    options.groups("--flip-group", scene.reader.flipped_groups,
+                   "turn the faces of GROUP round; * for all; repeatable");
+    app.add_flag_callback(
+           "--flip", [&scene] { scene.reader.flipped_groups = {"*"}; }, "turn all faces round")
+        ->option_text(" ")
+        ->group("Scene")
+        ->excludes(app.get_option("--flip-group"));
 }
 
 void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows, bool checks = true) {

@@ -3,6 +3,7 @@
 #include "cli/arguments/option_values.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/display/picture.hpp"
+#include "hemi/io/scene_reader.hpp"
 #include "hemi/matrix/repair.hpp"
 #include "hemi/pipeline/refinement.hpp"
 #include "hemi/pipeline/settings.hpp"
@@ -40,9 +41,7 @@ struct SceneOptions {
     std::optional<Enclosure> enclosure;
     std::vector<double>
         environment; ///< `--environment`: one value for all channels or one for each; empty: the scene's
-    std::vector<std::string> two_sided;
-    bool skip_degenerate = false;
-    bool allow_outside = false;
+    io::SceneReaderOptions reader;
     bool imprint = false; ///< cut faces where they touch
 };
 

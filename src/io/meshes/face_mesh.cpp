@@ -16,7 +16,7 @@ namespace {
 
 struct Reader {
     std::string_view extension;
-    FaceMesh (*read)(const std::filesystem::path&, bool, Diagnostics&);
+    FaceMesh (*read)(const std::filesystem::path&, const SceneReaderOptions&, Diagnostics&);
 };
 constexpr Reader readers[] = {
     {".obj", read_obj_mesh}, {".msh", read_msh_mesh}, {".ply", read_ply_mesh}, {".stl", read_stl_mesh}};
@@ -30,13 +30,14 @@ const Reader* reader_of(const std::filesystem::path& path) {
 
 } // namespace
 
-FaceMesh read_face_mesh(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics) {
+FaceMesh read_face_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
+                        Diagnostics& diagnostics) {
     const Reader* reader = reader_of(path);
     if (reader == nullptr) {
         throw InputError(
             fmt::format("{}: meshes are read from .obj, .msh, .ply and .stl files", path.string()));
     }
-    return reader->read(path, skip_degenerate, diagnostics);
+    return reader->read(path, options, diagnostics);
 }
 
 bool is_face_mesh(const std::filesystem::path& path) {

@@ -55,6 +55,9 @@ Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& op
                                          : std::string("no extension"),
                                      scene_extensions()));
     }
+    if (!(options.planarity > 0.0 && options.planarity < 1.0)) {
+        throw InvalidArgument(fmt::format("planarity {}; must be above 0 and below 1", options.planarity));
+    }
     Scene scene = reader->read(path, options, diagnostics);
     try {
         validate(scene);
