@@ -397,7 +397,7 @@ InvalidArgument, InputError
                py::arg("environment") = py::none(), py::arg("two_sided") = std::vector<std::string>(),
                py::arg("strict") = false, py::arg("planarity") = 1e-5, py::arg("allow_outside") = false,
                py::arg("imprint") = false, R"(
-Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .ply or .stl, by its extension.
+Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .inp, .ply or .stl, by its extension.
 
 Parameters
 ----------

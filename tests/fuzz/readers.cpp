@@ -138,6 +138,42 @@ constexpr std::string_view msh =
     "1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n2\n1 2 2 1 1 1 2 3\n2 3 2 1 1 1 2 3 4\n"
     "$EndElements\n";
 
+constexpr std::string_view msh_4 = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 9 "
+                                   "\"floor\"\n$EndPhysicalNames\n$Entities\n0 0 1 0\n"
+                                   "3 0 0 0 1 1 0 1 9 0\n$EndEntities\n$Nodes\n1 4 1 4\n2 3 1 "
+                                   "4\n1\n2\n3\n4\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n"
+                                   "$EndNodes\n$Elements\n1 2 1 2\n2 3 2 2\n1 1 2 3\n2 1 3 4\n$EndElements\n";
+
+/// Version 2.2: three nodes and a triangle.
+std::string binary_msh() {
+    std::string text = "$MeshFormat\n2.2 1 8\n";
+    const auto add = [&text](auto value) {
+        text.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    add(std::int32_t{1});
+    text += "\n$EndMeshFormat\n$Nodes\n3\n";
+    for (const std::int32_t number : {1, 2, 3}) {
+        add(number);
+        add(number == 2 ? 1.0 : 0.0);
+        add(number == 3 ? 1.0 : 0.0);
+        add(0.0);
+    }
+    text += "\n$EndNodes\n$Elements\n1\n";
+    for (const std::int32_t value : {2, 1, 2, 1, 7, 7, 1, 2, 3}) {
+        add(value);
+    }
+    return text + "\n$EndElements\n";
+}
+
+constexpr std::string_view inp =
+    "*HEADING\n a plate\n*PART, NAME=plate\n*NODE\n1, 0, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n*ELEMENT, "
+    "TYPE=S4R, ELSET=floor\n"
+    "1, 1, 2, 3, 4\n*ELEMENT, TYPE=S3\n2, 1, 2, 3\n*ELSET, ELSET=all, GENERATE\n1, 2, 1\n*SURFACE, "
+    "NAME=up\nall, SNEG\n"
+    "*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=p, PART=plate\n0, 0, 1\n0, 0, 0, 0, 0, 1, 90\n*END "
+    "INSTANCE\n"
+    "*ELSET, ELSET=one, INSTANCE=p\n1\n*SURFACE, NAME=down\none, SPOS\n*END ASSEMBLY\n";
+
 /// One triangle, 134 bytes.
 std::string binary_stl() {
     std::string text(80, ' ');
@@ -178,6 +214,9 @@ const std::map<std::string, Reader> readers{
       [](const fs::path& folder) {
           write(folder / "mesh.json", R"({"hemi":1,"materials":{"w":{"reflectance":0.5}},"surfaces":[
 {"mesh":"square.obj","material":"w","transform":{"scale":2,"rotate":[0,90,0],"translate":[1,2,3]}}]})");
+          write(folder / "holes.json",
+                R"({"hemi":1,"materials":{"w":{"reflectance":0.5}},"surfaces":[{"material":"w",
+"polygon":[[0,0,0],[4,0,0],[4,4,0],[3,1,0],[0,4,0]],"holes":[[[1,0,0],[2,0,0],[2,1,0]]],"flip":true}]})");
       }}},
     {"obj",
      {"fuzzed.obj", read_as_scene,
@@ -199,7 +238,14 @@ const std::map<std::string, Reader> readers{
           write(folder / "a.stl", stl);
           write(folder / "b.stl", binary_stl());
       }}},
-    {"msh", {"fuzzed.msh", read_as_scene, [](const fs::path& folder) { write(folder / "a.msh", msh); }}},
+    {"msh",
+     {"fuzzed.msh", read_as_scene,
+      [](const fs::path& folder) {
+          write(folder / "a.msh", msh);
+          write(folder / "b.msh", msh_4);
+          write(folder / "c.msh", binary_msh());
+      }}},
+    {"inp", {"fuzzed.inp", read_as_scene, [](const fs::path& folder) { write(folder / "a.inp", inp); }}},
     {"view3d-text",
      {"fuzzed.txt", [](const fs::path& path) { (void)io::read_view3d(path, io::View3dFormat::text); },
       [](const fs::path& folder) { seed_view3d(folder, "a.txt", io::View3dFormat::text); }}},

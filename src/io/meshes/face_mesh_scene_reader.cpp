@@ -57,6 +57,11 @@ Scene read_obj_scene(const std::filesystem::path& path, const SceneReaderOptions
     return make_scene(std::move(mesh), found, options, diagnostics);
 }
 
+Scene read_mesh_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                      Diagnostics& diagnostics) {
+    return without_materials(read_face_mesh(path, options, diagnostics), options, diagnostics);
+}
+
 Scene read_msh_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                      Diagnostics& diagnostics) {
     return without_materials(read_msh_mesh(path, options, diagnostics), options, diagnostics);

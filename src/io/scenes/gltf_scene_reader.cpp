@@ -351,6 +351,7 @@ private:
             primitive.fail(fmt::format("triangle {} (placed by nodes[{}]): {}", triangle, node, *defect));
         }
         if (!mender_.pieces().empty()) {
+            double_sided_ += surface.two_sided ? 1 : 0;
             scene_.surfaces.push_back(surface);
         }
     }
@@ -365,7 +366,6 @@ private:
             material.check_object();
             two_sided = material.has("doubleSided") && material.member("doubleSided").boolean();
         }
-        any_one_sided_ = any_one_sided_ || !two_sided;
         std::uint32_t& known = material_indices_[index];
         if (known == none) {
             known = static_cast<std::uint32_t>(scene_.materials.size());
@@ -465,9 +465,11 @@ private:
             warn(fmt::format("{} primitives of points or lines left out", without_faces_));
         }
         mender_.tell(file_, diagnostics_);
-        if (!any_one_sided_ && options_.one_sided_groups.empty()) {
-            warn("all faces are double-sided, as exporters mark them by default: backs count as surfaces of "
-                 "their own");
+        if (2 * double_sided_ > scene_.surfaces.size() && options_.one_sided_groups.empty()) {
+            warn(fmt::format(
+                "{} of {} triangles are double-sided, as exporters mark them by default: their backs count "
+                "as surfaces of their own (--one-sided-group makes groups one-sided)",
+                double_sided_, scene_.surfaces.size()));
         }
         if (has_morph_targets_) {
             warn("morph targets are not used");
@@ -503,7 +505,7 @@ private:
     std::size_t counted_ = 0; ///< primitives and triangles, as often as nodes place them
     std::size_t without_faces_ = 0;
     bool has_morph_targets_ = false;
-    bool any_one_sided_ = false;
+    std::size_t double_sided_ = 0; ///< triangles
     bool textures_ = false;
     bool transparent_ = false;
 };

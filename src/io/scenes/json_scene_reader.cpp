@@ -168,7 +168,7 @@ private:
             const JsonNode name = surface.member("mesh");
             const std::filesystem::path file = path_.parent_path() / name.text();
             if (!is_face_mesh(file)) {
-                name.expect("the path of a mesh: .obj, .msh, .ply or .stl");
+                name.expect("the path of a mesh: " + mesh_extensions());
             }
             if (!folder_.allows(file)) {
                 name.fail(SceneFolder::refusal(name.text()));
