@@ -165,6 +165,22 @@ std::string binary_msh() {
     return text + "\n$EndElements\n";
 }
 
+constexpr std::string_view vtk =
+    "# vtk DataFile Version 3.0\na sheet\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 "
+    "0\nPOLYGONS 1 5\n"
+    "4 0 1 2 3\nTRIANGLE_STRIPS 1 5\n4 0 1 3 2\nCELL_DATA 2\nSCALARS group int 1\nLOOKUP_TABLE default\n1 2\n"
+    "FIELD more 1\nx 1 2 float\n0 1\n";
+
+constexpr std::string_view vtu =
+    "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece><Points>"
+    "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 "
+    "0</DataArray></Points><Cells>"
+    "<DataArray type=\"Int32\" Name=\"connectivity\" "
+    "format=\"binary\">EAAAAAAAAAABAAAAAgAAAAMAAAA=</DataArray>"
+    "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
+    "<DataArray type=\"UInt8\" Name=\"types\" "
+    "format=\"ascii\">9</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
+
 constexpr std::string_view inp =
     "*HEADING\n a plate\n*PART, NAME=plate\n*NODE\n1, 0, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n*ELEMENT, "
     "TYPE=S4R, ELSET=floor\n"
@@ -245,6 +261,8 @@ const std::map<std::string, Reader> readers{
           write(folder / "b.msh", msh_4);
           write(folder / "c.msh", binary_msh());
       }}},
+    {"vtk", {"fuzzed.vtk", read_as_scene, [](const fs::path& folder) { write(folder / "a.vtk", vtk); }}},
+    {"vtk-xml", {"fuzzed.vtu", read_as_scene, [](const fs::path& folder) { write(folder / "a.vtu", vtu); }}},
     {"inp", {"fuzzed.inp", read_as_scene, [](const fs::path& folder) { write(folder / "a.inp", inp); }}},
     {"view3d-text",
      {"fuzzed.txt", [](const fs::path& path) { (void)io::read_view3d(path, io::View3dFormat::text); },
