@@ -72,7 +72,7 @@ private:
             read_cells(0);
         } else if (word == "CELL_TYPES") {
             for (const double type : array("int", number("cell types"), 1)) {
-                cells_.types.push_back(static_cast<int>(type));
+                cells_.types.push_back(static_cast<int>(index(type) % (1 << 30)));
             }
         } else if (word == "CELL_DATA" || word == "POINT_DATA") {
             of_cells_ = word == "CELL_DATA";
@@ -96,10 +96,10 @@ private:
                 fail("no CONNECTIVITY after OFFSETS");
             }
             for (const double node : array(next_word(), size, 1)) {
-                cells_.nodes.push_back(static_cast<std::int64_t>(node));
+                cells_.nodes.push_back(index(node));
             }
             for (std::size_t k = 1; k < ends.size(); ++k) {
-                cells_.ends.push_back(before + static_cast<std::int64_t>(ends[k]));
+                cells_.ends.push_back(before + index(ends[k]));
             }
         } else {
             at_ = mark;
@@ -113,7 +113,7 @@ private:
                 }
                 const auto end = place + 1 + static_cast<std::size_t>(points);
                 for (++place; place < end; ++place) {
-                    cells_.nodes.push_back(static_cast<std::int64_t>(values[place]));
+                    cells_.nodes.push_back(index(values[place]));
                 }
                 cells_.ends.push_back(static_cast<std::int64_t>(cells_.nodes.size()));
             }
@@ -206,6 +206,13 @@ private:
             }
         }
         return values;
+    }
+
+    std::int64_t index(double value) const {
+        if (!(std::abs(value) < 9e15) || value != std::floor(value)) {
+            fail(fmt::format("{}; must be a whole number", value));
+        }
+        return static_cast<std::int64_t>(value);
     }
 
     double text_value() {
