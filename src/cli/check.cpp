@@ -2,6 +2,7 @@
 #include "cli/loaded_scene.hpp"
 #include "cli/output_paths.hpp"
 #include "cli/report/diagnosis_report.hpp"
+#include "cli/report/factor_report.hpp"
 #include "cli/report/scene_report.hpp"
 #include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
@@ -61,6 +62,7 @@ ExitStatus run(const CheckArguments& arguments, const Terminal& terminal) {
         show(diagnosis_report(diagnosis, factors, names, limit, repair_seconds, mended),
              arguments.common.json);
     }
+    report_no_fronts(diagnosis.sums, factors.matrix, terminal);
     if (diagnosis.enclosure == EnclosureVerdict::nearly_closed) {
         terminal.warn(
             fmt::format("nearly closed: {}; --enclosure closed makes that an error, --enclosure open "

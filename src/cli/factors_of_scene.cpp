@@ -148,6 +148,7 @@ ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, c
         const Report rows = prepared_rows_report(factors, sums, enclosure, seconds["repair"]);
         show_summary(arguments, factors, loaded, rows, seconds, outputs, terminal);
     }
+    report_no_fronts(sums, factors.matrix, terminal);
     report_buried(sums, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;

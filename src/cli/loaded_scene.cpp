@@ -6,6 +6,7 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/scene/orientation.hpp"
 #include "hemi/scene/thermal_exitance.hpp"
 
 #include <fmt/format.h>
@@ -18,14 +19,14 @@ namespace hemi::cli {
 namespace {
 
 void check_two_sided_groups(const Scene& scene, const SceneOptions& options) {
-    if (options.two_sided.empty()) {
+    if (options.reader.two_sided_groups.empty()) {
         return;
     }
     if (io::extension_of(options.path) == ".json") {
         throw InvalidArgument("--two-sided is not for JSON scenes, which say \"two_sided\": true");
     }
-    for (const std::string& name : options.two_sided) {
-        if (std::find(scene.groups.begin(), scene.groups.end(), name) == scene.groups.end()) {
+    for (const std::string& name : options.reader.two_sided_groups) {
+        if (name != "*" && std::find(scene.groups.begin(), scene.groups.end(), name) == scene.groups.end()) {
             throw InvalidArgument(fmt::format("--two-sided {}: {} has no such group{}", name,
                                               options.path.string(), did_you_mean(name, scene.groups)));
         }
@@ -97,19 +98,28 @@ io::PatchPlaces places_left(const PatchMesh& as_read, const PatchMesh& mesh, con
     return left;
 }
 
+void warn_of_turned_faces(const Scene& scene, const Terminal& terminal) {
+    const std::vector<std::uint32_t> turned = turned_against_others(scene);
+    if (!turned.empty()) {
+        terminal.warn(fmt::format(
+            "{} turned against the others: face {} of {}{}; --orient in or out turns them",
+            plural(turned.size(), "face of a watertight body is", "faces of watertight bodies are"),
+            turned[0], scene.groups[scene.surfaces[turned[0]].group], turned.size() > 1 ? ", ..." : ""));
+    }
+}
+
 } // namespace
 
 LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     const Stopwatch watch;
     Diagnostics diagnostics;
-    Scene scene = io::read_scene(
-        options.path, {options.two_sided, options.skip_degenerate, options.allow_outside, options.adiabatic},
-        diagnostics);
-    if (!options.adiabatic) {
+    Scene scene = io::read_scene(options.path, options.reader, diagnostics);
+    if (!options.reader.adiabatic) {
         radiate_by_temperature(scene, diagnostics);
     }
     terminal.warn(diagnostics);
     check_two_sided_groups(scene, options);
+    warn_of_turned_faces(scene, terminal);
     scene.enclosure = options.enclosure.value_or(scene.enclosure);
     if (!options.environment.empty()) {
         replace_environment(scene, options.environment);

@@ -237,6 +237,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     const double max_row_error = arguments.rows.max_row_error;
     const RowSums sums = row_sums(factors.matrix);
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
+    report_no_fronts(sums, factors.matrix, terminal);
     report_buried(sums, terminal);
     if (arguments.patches) {
         loaded.write_patches(*arguments.patches);

@@ -198,15 +198,15 @@ ScenePointer scene_from_arrays(const Doubles& vertices, const py::object& faces,
 ScenePointer read_scene(const py::object& path, std::optional<double> patch_size,
                         std::optional<std::uint32_t> patches_per_face,
                         const std::optional<std::string>& enclosure, const py::object& environment,
-                        const std::vector<std::string>& two_sided, bool skip_degenerate, bool allow_outside,
-                        bool with_imprint) {
+                        const std::vector<std::string>& two_sided, bool strict, double planarity,
+                        bool allow_outside, bool with_imprint) {
     const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
     if (!two_sided.empty() && io::extension_of(file) == ".json") {
         throw InvalidArgument("two_sided is not for JSON scenes, which say \"two_sided\": true");
     }
     Diagnostics diagnostics;
     Scene scene = run([&] {
-        Scene read = io::read_scene(file, {two_sided, skip_degenerate, allow_outside}, diagnostics);
+        Scene read = io::read_scene(file, {two_sided, strict, allow_outside, planarity}, diagnostics);
         radiate_by_temperature(read, diagnostics);
         return read;
     });
@@ -398,9 +398,9 @@ InvalidArgument, InputError
     module.def("read_scene", &read_scene, py::arg("path"), py::kw_only(), py::arg("patch_size") = py::none(),
                py::arg("patches_per_face") = py::none(), py::arg("enclosure") = py::none(),
                py::arg("environment") = py::none(), py::arg("two_sided") = std::vector<std::string>(),
-               py::arg("skip_degenerate") = false, py::arg("allow_outside") = false,
+               py::arg("strict") = false, py::arg("planarity") = 1e-5, py::arg("allow_outside") = false,
                py::arg("imprint") = false, R"(
-Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .ply or .stl, by its extension.
+Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .inp, .ply or .stl, by its extension.
 
 Parameters
 ----------
@@ -416,8 +416,10 @@ environment : float or array_like, shape [channels], optional
     Exitance of the environment instead of the scene's own.
 two_sided : sequence of str
     Groups whose faces radiate on both sides. JSON scenes say so themselves.
-skip_degenerate : bool
-    Leave out faces of zero area, with a HemiWarning, instead of refusing them.
+strict : bool
+    Refuse faces without area or out of plane, instead of leaving those out and cutting these, with a HemiWarning.
+planarity : float
+    How far corners of a face may be off its plane, as a share of its longest edge, before it is cut.
 allow_outside : bool
     Open files outside the scene's folder that the scene names.
 imprint : bool

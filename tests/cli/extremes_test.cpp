@@ -67,15 +67,15 @@ TEST_CASE("extremes: where all is black, all patches have what they give, and no
     CHECK(solution["radiosity"][5][0] == 1.0);
 }
 
-TEST_CASE("extremes: a scene of faces without area is refused, even when they may be left out", "[cli]") {
+TEST_CASE("extremes: a scene of faces without area is refused", "[cli]") {
     const Directory directory;
     Json scene = square(0.5, 1.0, 0.0);
     scene["surfaces"][0]["polygon"] = Json::parse("[[0,0,0],[1,0,0],[2,0,0],[3,0,0]]");
     const std::string path = directory.write("flat.json", scene);
-    const Outcome refused = run_hemi({"solve", path});
+    const Outcome refused = run_hemi({"solve", path, "--strict"});
     CHECK(refused.status == 3);
     CHECK(refused.err_has("surfaces[0].polygon: zero area"));
-    const Outcome empty = run_hemi({"solve", path, "--skip-degenerate"});
+    const Outcome empty = run_hemi({"solve", path});
     CHECK(empty.status == 3);
     CHECK(empty.err_has("the scene has no surfaces"));
 }

@@ -239,20 +239,18 @@ TEST_CASE("info: a scene whose only patch sees nothing", "[cli]") {
     CHECK(run_hemi({"info", path, "--json"}).json()["estimate"]["entries_per_row"] == 0.0);
 }
 
-TEST_CASE("OBJ: --two-sided and --skip-degenerate", "[cli]") {
+TEST_CASE("OBJ: --two-sided and --strict", "[cli]") {
     const Directory directory;
     const std::string path = directory.write("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 0\n"
                                                       "o sheet\nf 1 2 3 4\no sliver\nf 1 2 5\n");
-    CHECK(run_hemi({"info", path}).status == 3);
-    const Outcome skipped = run_hemi({"info", path, "--skip-degenerate", "--json"});
+    CHECK(run_hemi({"info", path, "--strict"}).status == 3);
+    const Outcome skipped = run_hemi({"info", path, "--json"});
     CHECK(skipped.status == 0);
     CHECK(skipped.err_has("warning"));
     CHECK(skipped.json()["patches"] == 1);
-    CHECK(run_hemi({"info", path, "--skip-degenerate", "--two-sided", "sheet", "--json"}).json()["patches"] ==
-          2);
-    CHECK(run_hemi({"info", path, "--skip-degenerate", "--two-sided", "sheep"}).err_has("did you mean"));
-    CHECK(run_hemi({"info", path, "--skip-degenerate", "--patches-per-face", "5", "--json"})
-              .json()["patches"] == 9);
+    CHECK(run_hemi({"info", path, "--two-sided", "sheet", "--json"}).json()["patches"] == 2);
+    CHECK(run_hemi({"info", path, "--two-sided", "sheep"}).err_has("did you mean"));
+    CHECK(run_hemi({"info", path, "--patches-per-face", "5", "--json"}).json()["patches"] == 9);
     const std::string json = directory.write("cube.json", cube(2));
     CHECK(run_hemi({"info", json, "--two-sided", "floor"}).status == 2);
 }

@@ -41,7 +41,7 @@ void write(const fs::path& path, std::string_view text) {
 void read_as_scene(const fs::path& path) {
     Diagnostics diagnostics;
     (void)io::read_scene(path, {}, diagnostics);
-    (void)io::read_scene(path, {.skip_degenerate = true}, diagnostics);
+    (void)io::read_scene(path, {.strict = true}, diagnostics);
 }
 
 FormFactorMatrix small_matrix(bool visibility) {
@@ -139,6 +139,58 @@ constexpr std::string_view msh =
     "1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n$Elements\n2\n1 2 2 1 1 1 2 3\n2 3 2 1 1 1 2 3 4\n"
     "$EndElements\n";
 
+constexpr std::string_view msh_4 = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 9 "
+                                   "\"floor\"\n$EndPhysicalNames\n$Entities\n0 0 1 0\n"
+                                   "3 0 0 0 1 1 0 1 9 0\n$EndEntities\n$Nodes\n1 4 1 4\n2 3 1 "
+                                   "4\n1\n2\n3\n4\n0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n"
+                                   "$EndNodes\n$Elements\n1 2 1 2\n2 3 2 2\n1 1 2 3\n2 1 3 4\n$EndElements\n";
+
+/// Version 2.2: three nodes and a triangle.
+std::string binary_msh() {
+    std::string text = "$MeshFormat\n2.2 1 8\n";
+    const auto add = [&text](auto value) {
+        text.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    add(std::int32_t{1});
+    text += "\n$EndMeshFormat\n$Nodes\n3\n";
+    for (const std::int32_t number : {1, 2, 3}) {
+        add(number);
+        add(number == 2 ? 1.0 : 0.0);
+        add(number == 3 ? 1.0 : 0.0);
+        add(0.0);
+    }
+    text += "\n$EndNodes\n$Elements\n1\n";
+    for (const std::int32_t value : {2, 1, 2, 1, 7, 7, 1, 2, 3}) {
+        add(value);
+    }
+    return text + "\n$EndElements\n";
+}
+
+constexpr std::string_view vtk =
+    "# vtk DataFile Version 3.0\na sheet\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 "
+    "0\nPOLYGONS 1 5\n"
+    "4 0 1 2 3\nTRIANGLE_STRIPS 1 5\n4 0 1 3 2\nCELL_DATA 2\nSCALARS group int 1\nLOOKUP_TABLE default\n1 2\n"
+    "FIELD more 1\nx 1 2 float\n0 1\n";
+
+constexpr std::string_view vtu =
+    "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece><Points>"
+    "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 "
+    "0</DataArray></Points><Cells>"
+    "<DataArray type=\"Int32\" Name=\"connectivity\" "
+    "format=\"binary\">EAAAAAAAAAABAAAAAgAAAAMAAAA=</DataArray>"
+    "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
+    "<DataArray type=\"UInt8\" Name=\"types\" "
+    "format=\"ascii\">9</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
+
+constexpr std::string_view inp =
+    "*HEADING\n a plate\n*PART, NAME=plate\n*NODE\n1, 0, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n*ELEMENT, "
+    "TYPE=S4R, ELSET=floor\n"
+    "1, 1, 2, 3, 4\n*ELEMENT, TYPE=S3\n2, 1, 2, 3\n*ELSET, ELSET=all, GENERATE\n1, 2, 1\n*SURFACE, "
+    "NAME=up\nall, SNEG\n"
+    "*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=p, PART=plate\n0, 0, 1\n0, 0, 0, 0, 0, 1, 90\n*END "
+    "INSTANCE\n"
+    "*ELSET, ELSET=one, INSTANCE=p\n1\n*SURFACE, NAME=down\none, SPOS\n*END ASSEMBLY\n";
+
 /// One triangle, 134 bytes.
 std::string binary_stl() {
     std::string text(80, ' ');
@@ -179,6 +231,9 @@ const std::map<std::string, Reader> readers{
       [](const fs::path& folder) {
           write(folder / "mesh.json", R"({"hemi":1,"materials":{"w":{"reflectance":0.5}},"surfaces":[
 {"mesh":"square.obj","material":"w","transform":{"scale":2,"rotate":[0,90,0],"translate":[1,2,3]}}]})");
+          write(folder / "holes.json",
+                R"({"hemi":1,"materials":{"w":{"reflectance":0.5}},"surfaces":[{"material":"w",
+"polygon":[[0,0,0],[4,0,0],[4,4,0],[3,1,0],[0,4,0]],"holes":[[[1,0,0],[2,0,0],[2,1,0]]],"flip":true}]})");
       }}},
     {"obj",
      {"fuzzed.obj", read_as_scene,
@@ -200,7 +255,16 @@ const std::map<std::string, Reader> readers{
           write(folder / "a.stl", stl);
           write(folder / "b.stl", binary_stl());
       }}},
-    {"msh", {"fuzzed.msh", read_as_scene, [](const fs::path& folder) { write(folder / "a.msh", msh); }}},
+    {"msh",
+     {"fuzzed.msh", read_as_scene,
+      [](const fs::path& folder) {
+          write(folder / "a.msh", msh);
+          write(folder / "b.msh", msh_4);
+          write(folder / "c.msh", binary_msh());
+      }}},
+    {"vtk", {"fuzzed.vtk", read_as_scene, [](const fs::path& folder) { write(folder / "a.vtk", vtk); }}},
+    {"vtk-xml", {"fuzzed.vtu", read_as_scene, [](const fs::path& folder) { write(folder / "a.vtu", vtu); }}},
+    {"inp", {"fuzzed.inp", read_as_scene, [](const fs::path& folder) { write(folder / "a.inp", inp); }}},
     {"view3d-text",
      {"fuzzed.txt", [](const fs::path& path) { (void)io::read_view3d(path, io::View3dFormat::text); },
       [](const fs::path& folder) { seed_view3d(folder, "a.txt", io::View3dFormat::text); }}},

@@ -195,16 +195,14 @@ TEST_CASE("JSON reader: two meshes that mean different things by one material ar
                   {"a.mtl:1", "0.2, 0.3, 0.4", "1 channels (x)"});
 }
 
-TEST_CASE("JSON reader: surfaces without area are left out only when asked, with a warning", "[io]") {
+TEST_CASE("JSON reader: surfaces without area are left out with a warning, or refused by --strict", "[io]") {
     const Folder folder;
     const std::string text =
         scene(square + R"(, {"material": "white", "polygon": [[0,0,0],[1,0,0],[2,0,0]]})");
-    require_parts(message_of<InputError>([&] { read(folder, text); }),
+    require_parts(message_of<InputError>([&] { read(folder, text, nullptr, {.strict = true}); }),
                   {"room.json: surfaces[1].polygon: zero area"});
     Diagnostics diagnostics;
-    REQUIRE(
-        read(folder, text, &diagnostics, {.two_sided_groups = {}, .skip_degenerate = true}).surfaces.size() ==
-        1);
+    REQUIRE(read(folder, text, &diagnostics).surfaces.size() == 1);
     REQUIRE(diagnostics.warnings().size() == 1);
     require_parts(diagnostics.warnings()[0], {"room.json: 1 surfaces without area", "surfaces[1]"});
 }
@@ -251,17 +249,16 @@ TEST_CASE("JSON reader: what is wrong is named with its place, its value and wha
         {scene(square_with(R"("mesh": "cube.obj")")), {"surfaces[0]: both \"polygon\" and \"mesh\""}},
         {scene(square_with(R"("transform": {})")), {"surfaces[0]: \"transform\" belongs to a mesh"}},
         {scene(square + R"(, {"material": "white", "polygon": [[0,0,0],[1,0,0]]})"),
-         {"surfaces[1].polygon: 2 vertices; a patch needs 3 or 4"}},
-        {scene(R"({"material": "white", "polygon": [[0,0,0],[1,0,0],[2,1,0],[1,2,0],[0,1,0]]})"),
-         {"surfaces[0].polygon: 5 vertices"}},
+         {"surfaces[1].polygon: 2 vertices; a polygon needs 3 or more"}},
+        {scene(square_with(R"("holes": [[[0,0,0],[1,0,0]]])")), {"surfaces[0].holes[0]: 2 vertices"}},
+        {scene(square_with(R"("holes": 3)")), {"surfaces[0].holes: 3; must be an array"}},
+        {scene(square_with(R"("flip": 1)")), {"surfaces[0].flip: 1; must be true or false"}},
         {scene(R"({"material": "white", "polygon": [[0,0,0],[1,0],[1,1,0]]})"),
          {"surfaces[0].polygon[1]: an array of 2; must be three numbers [x, y, z]"}},
         {scene(R"({"material": "white", "polygon": [[0,0,0],[1,0,"x"],[1,1,0]]})"),
          {"surfaces[0].polygon[1][2]: \"x\"; must be a number"}},
-        {scene(R"({"material": "white", "polygon": [[0,0,0],[2,0,0],[0.5,0.5,0],[0,2,0]]})"),
-         {"surfaces[0].polygon: not convex"}},
-        {scene(R"({"material": "white", "polygon": [[0,0,0],[1,0,0],[1,1,0.3],[0,1,0]]})"),
-         {"surfaces[0].polygon: not planar"}},
+        {scene(R"({"material": "white", "polygon": [[0,0,0],[1,0,0],[0,1,0],[1,1,0]]})"),
+         {"surfaces[0].polygon: zero area, since its edges cross each other"}},
         {scene(R"({"material": "white", "polygon": [[0,0,0],[1,0,0],[1e200,1,0],[0,1,0]]})"),
          {"surfaces[0].polygon"}},
         {scene(R"({"polygon": [[0,0,0],[1,0,0],[1,1,0]]})"), {"surfaces[0]: \"material\" is missing"}},
@@ -311,7 +308,8 @@ TEST_CASE("JSON reader: what is wrong is named with its place, its value and wha
         {scene(square, white, R"(, "camera": {"eye": [0,0,0], "target": [0,1,0], "fov": 180})"),
          {"camera.fov: 180"}},
         {scene(R"({"material": "white", "mesh": "cube.3ds"})"),
-         {"surfaces[0].mesh: \"cube.3ds\"; must be the path of a mesh: .obj, .msh, .ply or .stl"}},
+         {"surfaces[0].mesh: \"cube.3ds\"; must be the path of a mesh: .obj, .msh, .ply, .stl, .inp, .vtk, "
+          ".vtp, .vtu"}},
         {scene(R"({"material": "white", "mesh": "cube.obj", "transform": {"scale": 0}})"),
          {"surfaces[0].transform.scale: 0 makes a mesh flat"}},
         {scene(R"({"material": "white", "mesh": "cube.obj", "transform": {"rotation": 0}})"),

@@ -114,7 +114,7 @@ TEST_CASE("PLY reader: text and binary of both byte orders give the same faces, 
         REQUIRE(scene.surfaces[1].vertices[2] == Vec3(0.1, 0.5, 3));
         REQUIRE(scene.surfaces[3].vertex_count == 3); // the rest of the pentagon
         REQUIRE(diagnostics.warnings().size() == 1);
-        require_parts(diagnostics.warnings()[0], {"a.ply: 1 faces of more than 4 vertices cut"});
+        require_parts(diagnostics.warnings()[0], {"1 faces of more than 4 vertices cut"});
     }
 }
 
@@ -136,21 +136,22 @@ TEST_CASE("PLY reader: line ends of CR LF, blank lines and elements of other kin
     REQUIRE(read(folder, "a.ply", binary).surfaces.size() == 1);
 }
 
-TEST_CASE("PLY reader: faces without area are left out only when asked, by line or by number", "[io]") {
+TEST_CASE("PLY reader: faces without area are left out, named by line or by number", "[io]") {
     const Folder folder;
     const std::string text = ascii_head + ascii_vertices + "3 0 1 2\n";
     std::string two = text + "3 0 1 1\n";
     two.replace(two.find("face 1"), 6, "face 2");
-    require_parts(message_of<ParseError>([&] { read(folder, "a.ply", two); }), {"a.ply:14: face: zero area"});
-    const io::SceneReaderOptions skip{.two_sided_groups = {}, .skip_degenerate = true};
+    const io::SceneReaderOptions strict{.strict = true};
+    require_parts(message_of<ParseError>([&] { read(folder, "a.ply", two, nullptr, strict); }),
+                  {"a.ply:14: face: zero area"});
     Diagnostics diagnostics;
-    REQUIRE(read(folder, "a.ply", two, &diagnostics, skip).surfaces.size() == 1);
+    REQUIRE(read(folder, "a.ply", two, &diagnostics).surfaces.size() == 1);
     require_parts(diagnostics.warnings().at(0), {"a.ply:14: 1 faces without area left out"});
     const std::string binary = binary_head("3", "2") + floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + '\3' + bytes(0) +
                                bytes(1) + bytes(2) + '\3' + bytes(0) + bytes(1) + bytes(1);
-    require_parts(message_of<InputError>([&] { read(folder, "a.ply", binary); }),
+    require_parts(message_of<InputError>([&] { read(folder, "a.ply", binary, nullptr, strict); }),
                   {"a.ply: face 1: zero area"});
-    REQUIRE(read(folder, "a.ply", binary, &diagnostics, skip).surfaces.size() == 1);
+    REQUIRE(read(folder, "a.ply", binary, &diagnostics).surfaces.size() == 1);
     require_parts(diagnostics.warnings().at(1),
                   {"a.ply: 1 faces without area left out, the first one is face 1"});
 }
@@ -222,7 +223,7 @@ TEST_CASE("PLY reader: what is wrong is named with its place, its value and what
         {binary_head("3", "1") + floats({0, 0, 0, 1}) + nan + floats({0, 0, 1, 0}) + '\3',
          {"a.ply: vertex 1: y nan; must be a finite number"}},
         {binary_head("3", "1") + floats({0, 0, 0, 1, 0, 0, 3, 0, 0}) + '\3' + bytes(0) + bytes(1) + bytes(2),
-         {"a.ply: face 0: zero area"}},
+         {"a.ply: no faces with an area"}},
     };
     const Folder folder;
     for (const Bad& bad : table) {
@@ -286,7 +287,7 @@ TEST_CASE("STL reader: what is wrong is named with its place, its value and what
         {binary_stl(4294967295u, {upwards}), {"its 4294967295 triangles need 214748364834"}},
         {binary_stl(0, {}), {"a.stl: no faces; a scene needs at least one (triangles)"}},
         {binary_stl(2, {upwards, far}), {"a.stl: face 1: coordinate inf; must be finite"}},
-        {binary_stl(2, {upwards, flat}), {"a.stl: face 1: zero area"}},
+        {binary_stl(1, {flat}), {"a.stl: no faces with an area; a scene needs at least one (triangles)"}},
         {"solid a", {":1: cut short: endsolid is missing"}},
         {"solid a\nendsolid\n", {"a.stl: no faces"}},
         {"solid a\nfacett\n", {":2: \"facett\"; must be facet or endsolid"}},
@@ -298,7 +299,6 @@ TEST_CASE("STL reader: what is wrong is named with its place, its value and what
         {"solid a\n" + facet("0 0 1", "0 1\n"), {":8: \"endloop\" in a vertex"}},
         {"solid a\n" + facet("0 0 1", "0 1 0\nvertex 0 0 0"), {":7: a fourth vertex; a facet has 3"}},
         {"solid a\n" + facet("0 0 1", "0 1 0 0"), {":6: \"0\"; must be endloop"}},
-        {"solid a\n" + facet("0 0 1", "0 0 0"), {":2: face: zero area"}},
         {"solid a\n" + facet("0 0 1", "0 1e80 0"),
          {":2: face: coordinate 1e+80; must be finite and below 1e+70"}},
         {"solid a\n" + facet() + facet(), {":15: cut short: endsolid is missing"}},

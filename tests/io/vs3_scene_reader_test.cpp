@@ -78,14 +78,15 @@ TEST_CASE("View3D reader: what changes a meaning is told as a warning", "[io]") 
     const Folder folder;
     Diagnostics diagnostics;
     const Scene scene = read(folder,
-                             "C emit=1 row=2\n" + square +
+                             "C emit=1 row=2 maxD=3\n" + square +
                                  "S 1 1 2 3 0 0 0 0 south wall\nS 2 1 3 4 0 0 0 1 b c\n"
                                  "S 3 1 1 2 0 0 0 1 line\nS 4 1 2 3 4 0 0 1 d\n",
-                             &diagnostics, {.two_sided_groups = {"b"}, .skip_degenerate = true});
-    REQUIRE(diagnostics.warnings().size() == 5);
+                             &diagnostics, {.two_sided_groups = {"b"}});
+    REQUIRE(diagnostics.warnings().size() == 6);
     const std::vector<std::vector<std::string>> parts{
         {"room.vs3:1: emit = 1", "form factors are without it"},
         {"room.vs3:1: row = 2 is not used"},
+        {"room.vs3:1: the control word \"maxD\" is not known and not used"},
         {"room.vs3:6: emissivity 0 taken as 0.001"},
         {"room.vs3:6: \"wall\" after the name is not used; a name is one word"},
         {"room.vs3:8: 1 surfaces without area left out"}};
@@ -136,19 +137,19 @@ TEST_CASE("View3D reader: what is wrong is named with its line, its value and wh
         {square + "S 1 1 2 3 4 0 0\n", {":5: surface 1: emissivity \"\""}},
         {square + "S 1 1 2 3 4 0 0 1.5 a\n", {":5: surface 1: emissivity \"1.5\"; must be a number from 0"}},
         {square + "S 1 1 2 3 4 0 0 name .9\n", {":5: surface 1: emissivity \"name\""}},
-        {square + "S 1 1 2 3 4 7 0 .9 a\n", {":5: surface 1: base 7: subsurfaces are not supported"}},
+        {square + "S 1 1 2 3 4 7 0 .9 a\n", {":5: surface 1: base 7; must be the number of another"}},
+        {square + "S 1 1 2 3 4 1 0 .9 a\n", {":5: surface 1: base 1; must be the number of another"}},
+        {square + "V 5 3 0 0\nS 1 1 2 3 4 0 0 .9 a\nS 2 1 5 3 0 1 0 .9 b\n",
+         {":6: surface 1: edges that cross each other, or a hole that does not lie in it"}},
         {square + "S 1 1 2 3 4 0 1 .9 a\n", {":5: surface 1: cmb 1; must be the number of an earlier"}},
         {square + "S 1 1 2 3 0 0 0 .9 a\nS 2 1 3 4 0 0 1 .9 b\nS 3 1 2 4 0 0 2 .9 c\n",
          {":7: surface 3: cmb 2, which is itself combined"}},
-        {square + "V 5 .9 .1 0\nS 1 1 2 3 5 0 0 .9 a\n", {":6: surface 1: not convex"}},
-        {square + "S 1 1 1 2 2 0 0 .9 a\n", {":5: surface 1: zero area"}},
-        {square + "V 5 0 0 1\nS 1 1 2 3 5 0 0 .9 a\n", {":6: surface 1: not planar"}},
-        {square + "S 1 1 2 3 4 0 0 .9 a\nO 2 1 2 2 0\n", {":6: obstruction 2: zero area"}},
+        {square + "S 1 1 1 2 2 0 0 .9 a\n", {"room.vs3: the scene has no surfaces"}},
+        {square + "S 1 1 2 4 3 0 0 .9 a\n", {":5: surface 1: zero area, since its edges cross"}},
         {square + "S 1 1 2 3 4 0 0 .9 a\nO 1 1 2 3 0\n", {":6: obstruction number \"1\"; must be 2"}},
         {square + "O 1 1 2 3 4\nS 2 1 2 3 4 0 0 .9 a\n", {":6: S after the first O"}},
         {"C encl\n", {":1: encl = \"\"; must be a number"}},
         {"C encl=yes\n", {":1: encl = \"yes\"; must be a number"}},
-        {"C enlc=1\n", {":1: unknown control word \"enlc\"; did you mean \"encl\"?"}},
     };
     const Folder folder;
     for (const Bad& bad : table) {

@@ -107,7 +107,7 @@ def test_warnings_of_readers_are_pythons(tmp_path):
     path = tmp_path / "square.obj"
     path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 1 1 2\n")
     with pytest.warns(hemi.HemiWarning):
-        assert len(hemi.read_scene(path, skip_degenerate=True)) == 1
+        assert len(hemi.read_scene(path, planarity=1e-4)) == 1
 
 
 def test_settings_of_reading_replace_the_scenes_own(scenes):

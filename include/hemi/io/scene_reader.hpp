@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/diagnostics.hpp"
+#include "hemi/scene/orientation.hpp"
 #include "hemi/scene/scene.hpp"
 
 #include <filesystem>
@@ -11,10 +12,16 @@ namespace hemi::io {
 
 /// What a reader does beyond what the file says.
 struct SceneReaderOptions {
-    std::vector<std::string> two_sided_groups; ///< groups whose faces radiate on both sides
-    bool skip_degenerate = false; ///< leave out faces of zero area, with a warning, instead of refusing
-    bool allow_outside = false;   ///< open files outside the scene's folder that the scene names
-    bool adiabatic = false;       ///< allow reflectances of 1 in .json, where heat is solved for
+    std::vector<std::string> two_sided_groups{}; ///< groups whose faces radiate on both sides; "*": all
+    bool strict = false;        ///< refuse faces without area or out of plane, which are mended otherwise
+    bool allow_outside = false; ///< open files outside the scene's folder that the scene names
+    /// How far corners of a face may be off its plane, as a share of its longest edge, before the face is cut
+    /// into triangles. Above 1e-5, corners that are off by less are moved into the plane.
+    double planarity = 1e-5;
+    std::vector<std::string> one_sided_groups{};    ///< groups of which only the front counts; "*": all
+    std::vector<std::string> flipped_groups{};      ///< groups whose faces are turned round; "*": all
+    Orientation orientation = Orientation::as_read; ///< before flipped_groups
+    bool adiabatic = false; ///< allow reflectances of 1 in .json, where heat is solved for
 };
 
 /// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3 (View3D),
@@ -47,9 +54,9 @@ struct SceneReaderOptions {
 [[nodiscard]] Scene read_vs3_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                    Diagnostics& diagnostics);
 
-/// Gmsh MSH 2.2, ASCII: every 3-node triangle and 4-node quadrilateral a surface, in the file's order; its
-/// group is its physical surface, and so is its material's name, reflectance 0.5, exitance 0. Points, lines
-/// and volumes are left out with a warning, curved elements refused.
+/// Gmsh MSH 4.1 and 2.2, ASCII and binary: every triangle and quadrilateral a surface, in the file's order;
+/// its group is its physical surface, and so is its material's name, reflectance 0.5, exitance 0. Points,
+/// lines and volumes are left out, and curved elements taken as plane between their corners, with warnings.
 [[nodiscard]] Scene read_msh_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                    Diagnostics& diagnostics);
 

@@ -2,6 +2,7 @@
 
 #include "cli/arguments/completion.hpp"
 #include "cli/arguments/options.hpp"
+#include "cli/arguments/scene_arguments.hpp"
 #include "cli/arguments/usage_errors.hpp"
 #include "cli/arguments/version.hpp"
 #include "hemi/core/error.hpp"
@@ -60,27 +61,7 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
                    stored.empty()
                        ? fmt::format("scene: {}", io::scene_extensions())
                        : fmt::format("scene ({}) or stored file ({})", io::scene_extensions(), stored));
-    Options options(app, "Scene");
-    auto* size = options.value("--patch-size", "S", "patch edges no longer than S scene units",
-                               [&scene](const std::string& text) {
-                                   scene.subdivision.patch_size = parse_positive("--patch-size", text);
-                               });
-    options
-        .value("--patches-per-face", "N", "about N patches a face (k x k, smallest k*k >= N)",
-               [&scene](const std::string& text) {
-                   scene.subdivision.patches_per_face = to_index("--patches-per-face", text, 1, 100'000'000);
-               })
-        ->excludes(size);
-    options.flag("--skip-degenerate", scene.skip_degenerate, "leave out faces of zero area, with a warning");
-    options.flag("--allow-outside", scene.allow_outside,
-                 "open files outside the scene's folder that the scene names");
-    options.flag("--no-imprint", scene.imprint, "leave faces as they are where others touch or cover them",
-                 false);
-    app.add_option("--two-sided", scene.two_sided,
-                   "faces of GROUP radiate on both sides (not for .json); repeatable")
-        ->allow_extra_args(false)
-        ->option_text("GROUP")
-        ->group("Scene");
+    add_scene_options(app, scene);
 }
 
 void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows, bool checks = true) {
@@ -343,7 +324,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
 }
 
 void add_factors(CLI::App& app, FactorsArguments& a) {
-    a.scene.adiabatic = true;
+    a.scene.reader.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
@@ -388,7 +369,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
 }
 
 void add_check(CLI::App& app, CheckArguments& a) {
-    a.scene.adiabatic = true;
+    a.scene.reader.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
@@ -421,7 +402,8 @@ void add_trade(CLI::App& app, TradeArguments& a) {
                [&a](const std::string& text) { a.budget = parse_duration("--budget", text); });
     add_common(app, a.common);
     app.footer(
-        "Solves the scene on patches of several sizes, uniform and refined, and compares the light with that\n"
+        "Solves the scene on patches of several sizes, uniform and refined, and compares the light with "
+        "that\n"
         "of a finer mesh; compares form factors by methods, presets, sample points and resolutions with the\n"
         "best rows that the budget affords. The last measurement may exceed the budget.\n\n"
         "Examples:\n"
@@ -431,7 +413,7 @@ void add_trade(CLI::App& app, TradeArguments& a) {
 
 /// What `heat` and `exchange` have in common.
 void add_rows_of_heat(CLI::App& app, SceneOptions& scene, RowOptions& rows, FactorInput& input) {
-    scene.adiabatic = true;
+    scene.reader.adiabatic = true;
     add_scene(app, scene);
     add_enclosure(app, scene, rows);
     add_rows(app, rows);
@@ -564,7 +546,7 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
 }
 
 void add_info(CLI::App& app, InfoArguments& a) {
-    a.scene.adiabatic = true;
+    a.scene.reader.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff, .hres, .mtx, .csv, .npz, .txt, .vf, .dat, .bin");
     add_rows(app, a.rows);
     add_common(app, a.common);

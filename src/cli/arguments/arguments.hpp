@@ -4,6 +4,7 @@
 #include "cli/arguments/option_values.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/display/picture.hpp"
+#include "hemi/io/scene_reader.hpp"
 #include "hemi/matrix/repair.hpp"
 #include "hemi/pipeline/refinement.hpp"
 #include "hemi/pipeline/settings.hpp"
@@ -41,11 +42,8 @@ struct SceneOptions {
     std::optional<Enclosure> enclosure;
     std::vector<double>
         environment; ///< `--environment`: one value for all channels or one for each; empty: the scene's
-    std::vector<std::string> two_sided;
-    bool skip_degenerate = false;
-    bool allow_outside = false;
-    bool imprint = true;    ///< cut faces where they touch
-    bool adiabatic = false; ///< reflectances of 1 are allowed, and temperatures stay what they are
+    io::SceneReaderOptions reader;
+    bool imprint = true; ///< cut faces where they touch
 };
 
 struct RowOptions {

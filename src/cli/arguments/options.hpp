@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace hemi::cli {
 
@@ -25,6 +26,11 @@ public:
                 name, [&target, value] { target = value; }, help)
             ->option_text(" ")
             ->group(group_);
+    }
+
+    /// Names of groups, one each time the option is given.
+    void groups(const std::string& name, std::vector<std::string>& target, const std::string& help) {
+        app_.add_option(name, target, help)->allow_extra_args(false)->option_text("GROUP")->group(group_);
     }
 
     CLI::Option* value(const std::string& name, const std::string& form, const std::string& help,

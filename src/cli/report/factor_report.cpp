@@ -187,6 +187,15 @@ void report_leaks(const EnclosureFinding& finding, const FormFactorMatrix& facto
     terminal.error(message);
 }
 
+void report_no_fronts(const RowSums& sums, const FormFactorMatrix& factors, const Terminal& terminal) {
+    if (factors.size() > 1 && sums.known == factors.size() && sums.max <= 0.0) {
+        terminal.warn(
+            "no patch sees the front of another: all factors are 0. If this is no lone convex body, its "
+            "faces "
+            "are the wrong way round: --flip turns all of them, --orient in each body to its inside");
+    }
+}
+
 void report_buried(const RowSums& sums, const Terminal& terminal) {
     if (sums.covered > 0) {
         terminal.warn(

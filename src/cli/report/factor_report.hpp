@@ -39,6 +39,9 @@ namespace hemi::cli {
 /// @param mesh  the patches; null: not known
 void report_leaks(const EnclosureFinding& finding, const FormFactorMatrix& factors, const PatchNames& names,
                   const PatchMesh* mesh, double max_row_error, const Terminal& terminal);
+/// A warning if no patch of several sees the front of another.
+/// @param sums  of all rows
+void report_no_fronts(const RowSums& sums, const FormFactorMatrix& factors, const Terminal& terminal);
 /// A warning if patches are buried.
 void report_buried(const RowSums& sums, const Terminal& terminal);
 

@@ -46,6 +46,9 @@ public:
     [[nodiscard]] std::vector<double> numbers() const;    ///< array of numbers
     [[nodiscard]] Vec3 point() const;                     ///< array of three numbers
 
+    /// Where it is in the document: `surfaces[3].polygon`.
+    [[nodiscard]] std::string path() const;
+
     /// @throws InputError "file: path: message"
     [[noreturn]] void fail(const std::string& message) const;
     /// @throws InputError "file: path: (what is there); must be (wanted)"
@@ -54,8 +57,6 @@ public:
 private:
     JsonNode(const Json& value, const JsonNode& parent, std::string_view key, std::size_t index)
         : value_(value), file_(parent.file_), parent_(&parent), key_(key), index_(index) {}
-
-    [[nodiscard]] std::string path() const;
 
     const Json& value_;
     const std::string& file_;

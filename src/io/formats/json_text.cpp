@@ -119,7 +119,10 @@ private:
 
 Json parse_json(std::string_view text, const std::string& file) {
     Builder builder(text, file);
-    Json::sax_parse(text.begin(), text.end(), &builder);
+    constexpr bool whole = true;
+    constexpr bool ignore_comments = true;
+    Json::sax_parse(text.begin(), text.end(), &builder, nlohmann::detail::input_format_t::json, whole,
+                    ignore_comments);
     return builder.take();
 }
 

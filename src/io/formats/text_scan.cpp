@@ -1,5 +1,8 @@
 #include "io/formats/text_scan.hpp"
 
+#include "hemi/core/error.hpp"
+#include "hemi/io/output_file.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,6 +47,16 @@ bool is_utf8(std::string_view text) {
 }
 
 } // namespace
+
+std::string read_text(const std::filesystem::path& path) {
+    std::string text = read_file(path);
+    if (text.starts_with("\xEF\xBB\xBF")) {
+        text.erase(0, 3);
+    } else if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+        throw InputError(fmt::format("{}: text in UTF-16; save it as UTF-8", path.string()));
+    }
+    return text;
+}
 
 bool Lines::next(std::string_view& line) {
     if (rest_.empty()) {

@@ -1,11 +1,10 @@
 #pragma once
 
 #include "hemi/core/diagnostics.hpp"
+#include "io/meshes/face_mender.hpp"
 #include "io/meshes/face_mesh.hpp"
-#include "io/meshes/polygon_pieces.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -19,11 +18,10 @@ struct FacePlace {
     std::uint64_t number = 0; ///< from 0
 };
 
-/// Makes surfaces of the faces of a mesh file. Faces keep their order; triangles and quadrilaterals stay what
-/// they are, faces of more corners are cut where they are planar and convex, and all others are refused.
+/// Makes surfaces of the faces of a mesh file, mended as FaceMender does it. Faces keep their order.
 class FaceBuilder {
 public:
-    FaceBuilder(const std::filesystem::path& path, bool skip_degenerate);
+    FaceBuilder(const std::filesystem::path& path, const SceneReaderOptions& options);
 
     /// Memory for that many faces. `most`: as many as the file can have by its size, whatever it claims.
     void reserve(std::uint64_t faces, std::uint64_t most);
@@ -33,9 +31,8 @@ public:
     /// The material of that name, made if it is new. @param line  where it is asked for
     std::uint32_t material(const std::string& name, std::size_t line);
 
-    /// Adds a face. Corners that are repeated in a row count once.
-    /// @throws ParseError or InputError for a face that is not planar, not convex or without area; where
-    ///   degenerate faces are to be skipped, those without area are left out instead.
+    /// Adds a face.
+    /// @throws ParseError or InputError for a face that cannot be mended
     void add(std::span<const Vec3> corners, std::uint32_t group, std::uint32_t material, FacePlace place);
 
     /// Faces added so far, those left out included.
@@ -45,21 +42,14 @@ public:
     [[nodiscard]] FaceMesh finish(const std::string& what, Diagnostics& diagnostics);
 
 private:
-    [[nodiscard]] bool accept(const std::optional<std::string>& defect, FacePlace place);
     [[noreturn]] void refuse(const std::string& defect, FacePlace place) const;
-    void add_surface(std::span<const Vec3> polygon, std::uint32_t group, std::uint32_t material);
 
     FaceMesh mesh_;
     std::string file_;
-    bool skip_degenerate_;
+    FaceMender mender_;
     std::unordered_map<std::string, std::uint32_t> groups_;
     std::unordered_map<std::string, std::uint32_t> materials_;
-    std::vector<Vec3> corners_; // kept between faces for their memory
-    std::vector<PolygonPiece> pieces_;
     std::uint64_t faces_ = 0;
-    std::uint64_t split_ = 0;
-    std::uint64_t skipped_ = 0;
-    FacePlace first_skipped_;
 };
 
 } // namespace hemi::io

@@ -16,10 +16,11 @@ namespace {
 
 struct Reader {
     std::string_view extension;
-    FaceMesh (*read)(const std::filesystem::path&, bool, Diagnostics&);
+    FaceMesh (*read)(const std::filesystem::path&, const SceneReaderOptions&, Diagnostics&);
 };
-constexpr Reader readers[] = {
-    {".obj", read_obj_mesh}, {".msh", read_msh_mesh}, {".ply", read_ply_mesh}, {".stl", read_stl_mesh}};
+constexpr Reader readers[] = {{".obj", read_obj_mesh}, {".msh", read_msh_mesh}, {".ply", read_ply_mesh},
+                              {".stl", read_stl_mesh}, {".inp", read_inp_mesh}, {".vtk", read_vtk_mesh},
+                              {".vtp", read_vtk_mesh}, {".vtu", read_vtk_mesh}};
 
 const Reader* reader_of(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
@@ -30,13 +31,22 @@ const Reader* reader_of(const std::filesystem::path& path) {
 
 } // namespace
 
-FaceMesh read_face_mesh(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics) {
+FaceMesh read_face_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
+                        Diagnostics& diagnostics) {
     const Reader* reader = reader_of(path);
     if (reader == nullptr) {
-        throw InputError(
-            fmt::format("{}: meshes are read from .obj, .msh, .ply and .stl files", path.string()));
+        throw InputError(fmt::format("{}: meshes are read from {} files", path.string(), mesh_extensions()));
     }
-    return reader->read(path, skip_degenerate, diagnostics);
+    return reader->read(path, options, diagnostics);
+}
+
+std::string mesh_extensions() {
+    std::string list;
+    for (const Reader& reader : readers) {
+        list += list.empty() ? "" : ", ";
+        list += reader.extension;
+    }
+    return list;
 }
 
 bool is_face_mesh(const std::filesystem::path& path) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/diagnostics.hpp"
+#include "hemi/io/scene_reader.hpp"
 #include "hemi/scene/scene.hpp"
 
 #include <cstddef>
@@ -30,25 +31,38 @@ struct FaceMesh {
     std::vector<Library> libraries;
 };
 
-/// Reads a mesh by its extension: .obj, .msh, .ply, .stl.
+/// Reads a mesh by its extension: see mesh_extensions().
 /// @throws ParseError or InputError with file, place, value and what would be right.
-[[nodiscard]] FaceMesh read_face_mesh(const std::filesystem::path& path, bool skip_degenerate,
+[[nodiscard]] FaceMesh read_face_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
                                       Diagnostics& diagnostics);
+
+/// The extensions that read_face_mesh reads, as a message lists them: ".msh, .obj".
+[[nodiscard]] std::string mesh_extensions();
+
+/// A mesh by itself as a scene: reflectance 0.5 and exitance 0, whatever materials it names.
+[[nodiscard]] Scene read_mesh_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                    Diagnostics& diagnostics);
 
 /// Whether the extension is one of those that read_face_mesh reads.
 [[nodiscard]] bool is_face_mesh(const std::filesystem::path& path);
 
 /// Wavefront OBJ: groups and materials as the file names them.
-[[nodiscard]] FaceMesh read_obj_mesh(const std::filesystem::path& path, bool skip_degenerate,
+[[nodiscard]] FaceMesh read_obj_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
                                      Diagnostics& diagnostics);
-/// Gmsh MSH 2.2, ASCII: groups are physical surfaces, and so are the names of materials.
-[[nodiscard]] FaceMesh read_msh_mesh(const std::filesystem::path& path, bool skip_degenerate,
+/// Gmsh MSH 4.1 and 2.2, ASCII and binary: groups are physical surfaces, and so are the names of materials.
+[[nodiscard]] FaceMesh read_msh_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                     Diagnostics& diagnostics);
+/// Abaqus input: groups are surfaces, else sets of elements, no material.
+[[nodiscard]] FaceMesh read_inp_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                     Diagnostics& diagnostics);
+/// VTK, legacy and XML, polygons and unstructured grids: groups are values of a cell array, no material.
+[[nodiscard]] FaceMesh read_vtk_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
                                      Diagnostics& diagnostics);
 /// PLY, ASCII or binary of either byte order: one group, no material.
-[[nodiscard]] FaceMesh read_ply_mesh(const std::filesystem::path& path, bool skip_degenerate,
+[[nodiscard]] FaceMesh read_ply_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
                                      Diagnostics& diagnostics);
 /// STL, ASCII or binary: groups are solids, no material.
-[[nodiscard]] FaceMesh read_stl_mesh(const std::filesystem::path& path, bool skip_degenerate,
+[[nodiscard]] FaceMesh read_stl_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
                                      Diagnostics& diagnostics);
 
 } // namespace hemi::io

@@ -2,7 +2,7 @@
 #include "io/formats/text_scan.hpp"
 #include "io/meshes/face_mesh.hpp"
 #include "io/scenes/obj_materials.hpp"
-#include "io/scenes/two_sided.hpp"
+#include "io/scenes/sides.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -24,7 +24,7 @@ Material scene_material(const FaceMesh::MaterialUse& use, const std::optional<Mt
 
 /// @param found  what is known of each of the mesh's materials
 Scene make_scene(FaceMesh mesh, const std::vector<std::optional<MtlMaterial>>& found,
-                 const SceneReaderOptions& options) {
+                 const SceneReaderOptions& options, Diagnostics& diagnostics) {
     const bool coloured =
         std::any_of(found.begin(), found.end(), [](const auto& m) { return m.has_value(); });
     Scene scene;
@@ -37,37 +37,44 @@ Scene make_scene(FaceMesh mesh, const std::vector<std::optional<MtlMaterial>>& f
     }
     scene.groups = std::move(mesh.groups);
     scene.surfaces = std::move(mesh.surfaces);
-    make_two_sided(scene, options.two_sided_groups, mesh.path.string());
+    set_sides(scene, options, mesh.path.string(), diagnostics);
     return scene;
 }
 
-Scene without_materials(FaceMesh mesh, const SceneReaderOptions& options) {
+Scene without_materials(FaceMesh mesh, const SceneReaderOptions& options, Diagnostics& diagnostics) {
     const std::size_t materials = mesh.materials.size();
-    return make_scene(std::move(mesh), std::vector<std::optional<MtlMaterial>>(materials), options);
+    return make_scene(std::move(mesh), std::vector<std::optional<MtlMaterial>>(materials), options,
+                      diagnostics);
 }
 
 } // namespace
 
 Scene read_obj_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                      Diagnostics& diagnostics) {
-    FaceMesh mesh = read_obj_mesh(path, options.skip_degenerate, diagnostics);
-    const auto found = find_obj_materials(mesh, {}, SceneFolder(path, options.allow_outside), diagnostics);
-    return make_scene(std::move(mesh), found, options);
+    FaceMesh mesh = read_obj_mesh(path, options, diagnostics);
+    const auto found =
+        find_obj_materials(mesh, {}, SceneFolder(path, options.allow_outside), options.strict, diagnostics);
+    return make_scene(std::move(mesh), found, options, diagnostics);
+}
+
+Scene read_mesh_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                      Diagnostics& diagnostics) {
+    return without_materials(read_face_mesh(path, options, diagnostics), options, diagnostics);
 }
 
 Scene read_msh_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                      Diagnostics& diagnostics) {
-    return without_materials(read_msh_mesh(path, options.skip_degenerate, diagnostics), options);
+    return without_materials(read_msh_mesh(path, options, diagnostics), options, diagnostics);
 }
 
 Scene read_ply_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                      Diagnostics& diagnostics) {
-    return without_materials(read_ply_mesh(path, options.skip_degenerate, diagnostics), options);
+    return without_materials(read_ply_mesh(path, options, diagnostics), options, diagnostics);
 }
 
 Scene read_stl_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                      Diagnostics& diagnostics) {
-    return without_materials(read_stl_mesh(path, options.skip_degenerate, diagnostics), options);
+    return without_materials(read_stl_mesh(path, options, diagnostics), options, diagnostics);
 }
 
 } // namespace hemi::io

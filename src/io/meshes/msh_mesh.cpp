@@ -1,16 +1,14 @@
 #include "hemi/core/error.hpp"
-#include "hemi/io/output_file.hpp"
 #include "io/formats/text_scan.hpp"
-#include "io/meshes/face_builder.hpp"
+#include "io/meshes/face_mesh.hpp"
+#include "io/meshes/msh_blocks.hpp"
+#include "io/meshes/msh_faces.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
-#include <unordered_map>
-#include <utility>
 
 namespace hemi::io {
 
@@ -18,82 +16,29 @@ namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-enum class Kind { triangle, quadrilateral, point, line, volume, curved };
-
-struct ElementType {
-    std::uint32_t number;
-    Kind kind;
-    const char* name;
-};
-
-/// Gmsh's numbers of the element types that it writes.
-constexpr std::array element_types{
-    ElementType{1, Kind::line, ""},
-    ElementType{2, Kind::triangle, ""},
-    ElementType{3, Kind::quadrilateral, ""},
-    ElementType{4, Kind::volume, ""},
-    ElementType{5, Kind::volume, ""},
-    ElementType{6, Kind::volume, ""},
-    ElementType{7, Kind::volume, ""},
-    ElementType{8, Kind::line, ""},
-    ElementType{9, Kind::curved, "6-node triangle"},
-    ElementType{10, Kind::curved, "9-node quadrilateral"},
-    ElementType{11, Kind::volume, ""},
-    ElementType{12, Kind::volume, ""},
-    ElementType{13, Kind::volume, ""},
-    ElementType{14, Kind::volume, ""},
-    ElementType{15, Kind::point, ""},
-    ElementType{16, Kind::curved, "8-node quadrilateral"},
-    ElementType{17, Kind::volume, ""},
-    ElementType{18, Kind::volume, ""},
-    ElementType{19, Kind::volume, ""},
-    ElementType{20, Kind::curved, "9-node triangle"},
-    ElementType{21, Kind::curved, "10-node triangle"},
-    ElementType{22, Kind::curved, "12-node triangle"},
-    ElementType{23, Kind::curved, "15-node triangle"},
-    ElementType{24, Kind::curved, "15-node triangle of incomplete order"},
-    ElementType{25, Kind::curved, "21-node triangle"},
-    ElementType{26, Kind::line, ""},
-    ElementType{27, Kind::line, ""},
-    ElementType{28, Kind::line, ""},
-    ElementType{29, Kind::volume, ""},
-    ElementType{30, Kind::volume, ""},
-    ElementType{31, Kind::volume, ""},
-    ElementType{36, Kind::curved, "16-node quadrilateral"},
-    ElementType{37, Kind::curved, "25-node quadrilateral"},
-    ElementType{92, Kind::volume, ""},
-    ElementType{93, Kind::volume, ""},
-};
-
-/// What of a kind was left out, for one warning.
-struct LeftOut {
-    std::uint64_t count = 0;
-    std::size_t first_line = 0;
-
-    void add(std::size_t line) {
-        first_line = count == 0 ? line : first_line;
-        ++count;
-    }
-};
-
-class MshReader {
+/// Version 2.2, ASCII: line by line.
+class MshTextReader {
 public:
-    MshReader(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics)
-        : file_(path.string()), text_(read_file(path)), lines_(text_), diagnostics_(diagnostics),
-          faces_(path, skip_degenerate) {}
+    /// @param text  must outlive this
+    MshTextReader(const std::filesystem::path& path, std::string_view text, const SceneReaderOptions& options,
+                  Diagnostics& diagnostics)
+        : file_(path.string()), text_(text), lines_(text_), diagnostics_(diagnostics), faces_(path, options) {
+    }
 
     FaceMesh read() {
-        read_format();
+        skip_section("$MeshFormat", false);
         while (next_line()) {
             const std::string_view name = trim(line_);
             if (name == "$PhysicalNames") {
                 read_names();
             } else if (name == "$Nodes") {
-                read_nodes();
+                read_nodes(false);
+            } else if (name == "$ParametricNodes") {
+                read_nodes(true);
             } else if (name == "$Elements") {
                 read_elements();
             } else if (name.starts_with('$') && !name.starts_with("$End")) {
-                skip_section(name);
+                skip_section(name, name != "$Comments");
             } else {
                 fail(fmt::format("{} between sections; a section begins with its name, such as $Elements",
                                  in_quotes(name)));
@@ -102,11 +47,7 @@ public:
         if (!has_elements_) {
             throw InputError(fmt::format("{}: no $Elements section; a scene needs faces", file_));
         }
-        refuse_twins();
-        warn_of(points_, "points");
-        warn_of(edges_, "lines");
-        warn_of(volumes_, "volume elements");
-        return faces_.finish("triangles or quadrilaterals in $Elements", diagnostics_);
+        return faces_.finish(diagnostics_);
     }
 
 private:
@@ -134,29 +75,6 @@ private:
         }
     }
 
-    void read_format() {
-        const bool any = next_line();
-        const std::string_view name = any ? trim(line_) : std::string_view();
-        if (name == "$NOD" || name == "$NOE") {
-            fail("MSH version 1; must be 2.2, ASCII (gmsh -format msh22)");
-        }
-        if (name != "$MeshFormat") {
-            fail(fmt::format("{}; a Gmsh file begins with $MeshFormat", in_quotes(name)));
-        }
-        need_line("$MeshFormat");
-        std::string_view rest = line_;
-        const std::string_view version = next_word(rest);
-        const std::string_view type = next_word(rest);
-        if (version != "2.2" && version != "2" && version != "2.1") {
-            fail(fmt::format("MSH version {}; must be 2.2, ASCII (gmsh -format msh22)", in_quotes(version)));
-        }
-        if (type != "0") {
-            fail(fmt::format("file type {}; must be 0, ASCII (gmsh -format msh22, without -bin)",
-                             in_quotes(type)));
-        }
-        end_section("$MeshFormat");
-    }
-
     /// The count that a section begins with. `bytes`: of the shortest line there can be for one item.
     std::uint64_t read_count(std::string_view section, std::uint64_t bytes) {
         need_line(section);
@@ -178,40 +96,25 @@ private:
         const std::uint64_t count = read_count("$PhysicalNames", 7); // 2 1 ""
         for (std::uint64_t k = 0; k < count; ++k) {
             need_line("$PhysicalNames");
-            std::string_view rest = line_;
-            const auto dimension = parse_integer<std::uint32_t>(next_word(rest));
-            const auto number = parse_integer<std::int64_t>(next_word(rest));
-            const std::string_view name = trim(rest);
-            if (!dimension || *dimension > 3 || !number || name.size() < 2 || !name.starts_with('"') ||
-                !name.ends_with('"')) {
-                fail(fmt::format("{}; must be dimension, number and the name in quotes",
-                                 in_quotes(trim(line_))));
-            }
-            if (*dimension != 2) {
-                continue;
-            }
-            const std::string text = to_utf8(name.substr(1, name.size() - 2));
-            if (text.empty()) {
-                fail(fmt::format("physical surface {} has an empty name", *number));
-            }
-            if (!names_.emplace(*number, text).second) {
-                fail(fmt::format("physical surface {} is named twice", *number));
+            if (const auto wrong = faces_.add_name(line_)) {
+                fail(*wrong);
             }
         }
         end_section("$PhysicalNames");
     }
 
-    void read_nodes() {
-        if (!nodes_.empty()) {
-            fail("a second $Nodes section");
+    void read_nodes(bool parametric) {
+        const char* const section = parametric ? "$ParametricNodes" : "$Nodes";
+        if (faces_.nodes() > 0) {
+            fail("a second section of nodes");
         }
-        const std::uint64_t count = read_count("$Nodes", 8); // 1 0 0 0
+        const std::uint64_t count = read_count(section, 8); // 1 0 0 0
         if (count >= none) {
             fail(fmt::format("{} nodes; there can be {}", count, none - 1));
         }
-        nodes_.reserve(count);
+        faces_.reserve_nodes(count);
         for (std::uint64_t k = 0; k < count; ++k) {
-            need_line("$Nodes");
+            need_line(section);
             std::string_view rest = line_;
             const std::string_view word = next_word(rest);
             const auto number = parse_integer<std::uint64_t>(word);
@@ -228,42 +131,25 @@ private:
                 }
                 point[axis] = *value;
             }
-            refuse_more(rest, "the coordinates");
-            // Gmsh mostly counts on from 1; only other numbers need a table.
-            if (*number != k + 1 || !numbers_.empty()) {
-                number_nodes_up_to(k);
-                if (!numbers_.emplace(*number, k).second) {
-                    fail(fmt::format("node {} is there twice", *number));
-                }
+            if (!parametric) { // else these are of a surface or line
+                refuse_more(rest, "the coordinates");
             }
-            nodes_.push_back(point);
-        }
-        end_section("$Nodes");
-    }
-
-    void number_nodes_up_to(std::uint64_t count) {
-        if (numbers_.empty()) {
-            for (std::uint64_t k = 0; k < count; ++k) {
-                numbers_.emplace(k + 1, k);
+            if (!faces_.add_node(*number, point)) {
+                fail(fmt::format("node {} is there twice", *number));
             }
         }
+        end_section(section);
     }
 
     /// Index of the node with that number.
     [[nodiscard]] std::uint32_t node(std::string_view word) const {
         const auto number = parse_integer<std::uint64_t>(word);
-        std::uint64_t index = nodes_.size();
-        if (number && numbers_.empty()) {
-            index = *number - 1; // 0 becomes too large
-        } else if (number) {
-            const auto found = numbers_.find(*number);
-            index = found == numbers_.end() ? index : found->second;
-        }
-        if (index >= nodes_.size()) {
+        const auto index = number ? faces_.find_node(*number) : std::nullopt;
+        if (!index) {
             fail(fmt::format("node {}; must be the number of one of the {} nodes", in_quotes(word),
-                             nodes_.size()));
+                             faces_.nodes()));
         }
-        return static_cast<std::uint32_t>(index);
+        return *index;
     }
 
     void read_elements() {
@@ -272,7 +158,7 @@ private:
         }
         has_elements_ = true;
         const std::uint64_t count = read_count("$Elements", 9); // 1 15 0 1
-        faces_.reserve(count, text_.size() / 11);               // 1 2 0 1 2 3
+        faces_.reserve_faces(count, text_.size() / 11);         // 1 2 0 1 2 3
         for (std::uint64_t k = 0; k < count; ++k) {
             need_line("$Elements");
             read_element();
@@ -291,65 +177,32 @@ private:
             fail(fmt::format("{}; an element is its number, type, number of tags, tags and nodes",
                              in_quotes(trim(line_))));
         }
-        const auto* const known = std::find_if(element_types.begin(), element_types.end(),
-                                               [&](const ElementType& t) { return t.number == *type; });
-        if (known == element_types.end()) {
-            fail(fmt::format("element {}: type {} is not supported; surfaces are 3-node triangles (2) and "
-                             "4-node quadrilaterals (3)",
-                             number, *type));
+        const MshElementType* const known = find_msh_element_type(*type);
+        if (known == nullptr) {
+            fail(fmt::format(
+                "element {}: type {} is not supported; surfaces are triangles and quadrilaterals, "
+                "such as 2 and 3",
+                number, *type));
         }
-        switch (known->kind) {
-        case Kind::point:
-            points_.add(lines_.number());
+        if (!known->is_face()) {
+            faces_.leave_out(*known, {lines_.number(), 0});
             return;
-        case Kind::line:
-            edges_.add(lines_.number());
-            return;
-        case Kind::volume:
-            volumes_.add(lines_.number());
-            return;
-        case Kind::curved:
-            fail(fmt::format("element {}: a {} (type {}) is curved; mesh with elements of first order "
-                             "(gmsh -order 1)",
-                             number, known->name, *type));
-        case Kind::triangle:
-        case Kind::quadrilateral:
-            break;
         }
-        const Tags of = read_tags(number, *tags, rest);
-        const std::size_t size = known->kind == Kind::triangle ? 3 : 4;
-        std::array<Vec3, 4> corners{};
-        Twin twin{{none, none, none, none}, lines_.number()};
+        const MshFaces::Tags of = read_tags(number, *tags, rest);
+        const std::size_t size = known->kind == MshElementType::Kind::triangle ? 3 : 4;
+        std::array<std::uint32_t, 4> corners{};
         for (std::size_t c = 0; c < size; ++c) {
-            twin.nodes[c] = node(next_word(rest));
-            corners[c] = nodes_[twin.nodes[c]];
+            corners[c] = node(next_word(rest));
+        }
+        for (std::size_t c = size; c < known->nodes; ++c) {
+            (void)node(next_word(rest));
         }
         refuse_more(rest, "the nodes");
-        std::rotate(twin.nodes.begin(), std::min_element(twin.nodes.begin(), twin.nodes.end()),
-                    twin.nodes.begin() + static_cast<std::ptrdiff_t>(size));
-        twins_.push_back(twin);
-        const Group& group = group_of(of);
-        faces_.add({corners.data(), size}, group.group, group.material, {lines_.number(), 0});
+        faces_.add_face(*known, of, {corners.data(), size}, {lines_.number(), 0});
     }
 
-    struct Tags {
-        std::int64_t physical = 0;
-        std::int64_t elementary = 0;
-        auto operator<=>(const Tags&) const = default;
-    };
-    /// Nodes of a face, the lowest first, to find faces that are there twice.
-    struct Twin {
-        std::array<std::uint32_t, 4> nodes;
-        std::size_t line;
-        auto operator<=>(const Twin&) const = default;
-    };
-    struct Group {
-        std::uint32_t group;
-        std::uint32_t material;
-    };
-
-    Tags read_tags(std::string_view number, std::uint32_t count, std::string_view& rest) const {
-        Tags tags;
+    MshFaces::Tags read_tags(std::string_view number, std::uint32_t count, std::string_view& rest) const {
+        MshFaces::Tags tags;
         for (std::uint32_t k = 0; k < count; ++k) {
             const std::string_view word = next_word(rest);
             const auto tag = parse_integer<std::int64_t>(word);
@@ -364,29 +217,9 @@ private:
         return tags;
     }
 
-    const Group& group_of(Tags tags) {
-        if (tags.physical != 0) {
-            tags.elementary = 0;
-        }
-        const auto found = groups_.find(tags);
-        if (found != groups_.end()) {
-            return found->second;
-        }
-        const auto named = names_.find(tags.physical);
-        const std::string name =
-            tags.physical != 0
-                ? (named != names_.end() ? named->second : fmt::format("physical_{}", tags.physical))
-            : tags.elementary != 0 ? fmt::format("surface_{}", tags.elementary)
-                                   : "default";
-        return groups_.emplace(tags, Group{faces_.group(name), faces_.material(name, 0)}).first->second;
-    }
-
-    void skip_section(std::string_view name) {
+    void skip_section(std::string_view name, bool tell) {
         const std::string section(name);
-        if (section == "$ParametricNodes") {
-            fail("$ParametricNodes are not supported; save without parametric coordinates");
-        }
-        if (section != "$Comments") {
+        if (tell) {
             diagnostics_.warn(
                 fmt::format("{}:{}: the section {} is not used", file_, lines_.number(), in_quotes(section)));
         }
@@ -394,26 +227,6 @@ private:
         do {
             need_line(section);
         } while (trim(line_) != end);
-    }
-
-    /// Gmsh writes a surface once for each physical surface that it belongs to.
-    void refuse_twins() {
-        std::sort(twins_.begin(), twins_.end());
-        const auto same = std::adjacent_find(twins_.begin(), twins_.end(),
-                                             [](const Twin& a, const Twin& b) { return a.nodes == b.nodes; });
-        if (same != twins_.end()) {
-            throw ParseError(
-                file_, std::next(same)->line, 0,
-                fmt::format("the face of line {} again; a face must be in one physical surface", same->line));
-        }
-    }
-
-    void warn_of(const LeftOut& left, const char* what) {
-        if (left.count > 0) {
-            diagnostics_.warn(fmt::format("{}:{}: {} {} left out, the first one here; surfaces are triangles "
-                                          "and quadrilaterals",
-                                          file_, left.first_line, left.count, what));
-        }
     }
 
     void refuse_more(std::string_view rest, const char* after) const {
@@ -427,26 +240,69 @@ private:
     }
 
     std::string file_;
-    std::string text_;
+    std::string_view text_;
     Lines lines_;
     std::string_view line_;
     Diagnostics& diagnostics_;
-    FaceBuilder faces_;
-    std::map<std::int64_t, std::string> names_;
-    std::vector<Vec3> nodes_;
-    std::unordered_map<std::uint64_t, std::uint64_t> numbers_; ///< empty while nodes count on from 1
-    std::map<Tags, Group> groups_;
-    std::vector<Twin> twins_;
+    MshFaces faces_;
     bool has_elements_ = false;
-    LeftOut points_;
-    LeftOut edges_;
-    LeftOut volumes_;
 };
+
+/// What $MeshFormat says, which every file begins with.
+MshFormat read_format(const std::string& text, const std::string& file) {
+    Lines lines(text);
+    std::string_view line;
+    const auto next = [&] {
+        while (lines.next(line)) {
+            line = trim(line);
+            if (!line.empty()) {
+                return true;
+            }
+        }
+        line = {};
+        return false;
+    };
+    const auto fail = [&](const std::string& message) {
+        throw ParseError(file, std::max<std::size_t>(lines.number(), 1), 0, message);
+    };
+    next();
+    if (line == "$NOD" || line == "$NOE") {
+        fail("MSH version 1; must be 4.1 or 2.2 (gmsh -format msh41)");
+    }
+    if (line != "$MeshFormat") {
+        fail(fmt::format("{}; a Gmsh file begins with $MeshFormat", in_quotes(line)));
+    }
+    if (!next()) {
+        fail("cut short: the end of $MeshFormat is missing");
+    }
+    const std::string_view version = next_word(line);
+    const std::string_view type = next_word(line);
+    const std::string_view size = next_word(line);
+    if (version != "4.1" && version != "2.2" && version != "2" && version != "2.1") {
+        fail(fmt::format("MSH version {}; must be 4.1 or 2.2 (gmsh -format msh41)", in_quotes(version)));
+    }
+    if (type != "0" && type != "1") {
+        fail(fmt::format("file type {}; must be 0 (ASCII) or 1 (binary)", in_quotes(type)));
+    }
+    if (type == "1" && size != "8") {
+        fail(fmt::format("data size {}; must be 8", in_quotes(size)));
+    }
+    MshFormat format{version == "4.1", type == "1", lines.number(), text.size() - lines.rest().size()};
+    if (!format.binary && (!next() || line != "$EndMeshFormat")) {
+        fail(line.empty() ? "cut short: the end of $MeshFormat is missing"
+                          : fmt::format("{}; must be $EndMeshFormat", in_quotes(line)));
+    }
+    return format;
+}
 
 } // namespace
 
-FaceMesh read_msh_mesh(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics) {
-    return MshReader(path, skip_degenerate, diagnostics).read();
+FaceMesh read_msh_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
+                       Diagnostics& diagnostics) {
+    const std::string text = read_text(path);
+    const MshFormat format = read_format(text, path.string());
+    return format.version_4 || format.binary ? read_msh_blocks(path, text, format, options, diagnostics)
+                                             : MshTextReader(path, text, options, diagnostics).read();
 }
 
 } // namespace hemi::io

@@ -19,8 +19,8 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// Receives what the loader finds, in the file's order.
 class MeshBuilder {
 public:
-    MeshBuilder(const std::filesystem::path& path, const ObjLines& lines, bool skip_degenerate)
-        : lines_(lines), faces_(path, skip_degenerate) {}
+    MeshBuilder(const std::filesystem::path& path, const ObjLines& lines, const SceneReaderOptions& options)
+        : lines_(lines), faces_(path, options) {}
 
     void group(std::string_view name) {
         group_name_ = trim(name).empty() ? "default" : to_utf8(trim(name));
@@ -102,10 +102,11 @@ std::uint64_t count_faces(std::string_view text) {
 
 } // namespace
 
-FaceMesh read_obj_mesh(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics) {
-    const std::string text = read_file(path);
+FaceMesh read_obj_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
+                       Diagnostics& diagnostics) {
+    const std::string text = read_text(path);
     ObjLines lines(path.string(), text, diagnostics);
-    MeshBuilder mesh(path, lines, skip_degenerate);
+    MeshBuilder mesh(path, lines, options);
     mesh.reserve(count_faces(text), text.size() / 8); // f 1 2 3
     std::istream stream(&lines);
     stream.exceptions(std::ios::badbit); // lets errors of ObjLines through as they are

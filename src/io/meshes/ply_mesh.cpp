@@ -205,9 +205,9 @@ private:
 
 class PlyReader {
 public:
-    PlyReader(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics)
+    PlyReader(const std::filesystem::path& path, const SceneReaderOptions& options, Diagnostics& diagnostics)
         : file_(path.string()), bytes_(read_file(path)), header_(read_ply_header(bytes_, file_)),
-          diagnostics_(diagnostics), faces_(path, skip_degenerate) {}
+          diagnostics_(diagnostics), faces_(path, options) {}
 
     FaceMesh read() {
         find_faces();
@@ -353,8 +353,9 @@ private:
 
 } // namespace
 
-FaceMesh read_ply_mesh(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics) {
-    return PlyReader(path, skip_degenerate, diagnostics).read();
+FaceMesh read_ply_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
+                       Diagnostics& diagnostics) {
+    return PlyReader(path, options, diagnostics).read();
 }
 
 } // namespace hemi::io

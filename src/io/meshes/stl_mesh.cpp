@@ -42,12 +42,16 @@ bool is_text(std::string_view bytes) {
 
 class StlReader {
 public:
-    StlReader(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics)
+    StlReader(const std::filesystem::path& path, const SceneReaderOptions& options, Diagnostics& diagnostics)
         : file_(path.string()), bytes_(read_file(path)), lines_(bytes_), diagnostics_(diagnostics),
-          faces_(path, skip_degenerate) {}
+          faces_(path, options) {}
 
     FaceMesh read() {
         material_ = faces_.material("", 0);
+        if (bytes_.starts_with("\xEF\xBB\xBF") && is_text(std::string_view(bytes_).substr(3))) {
+            bytes_.erase(0, 3);
+            lines_ = Lines(bytes_);
+        }
         if (is_text(bytes_)) {
             read_text();
         } else {
@@ -203,8 +207,9 @@ private:
 
 } // namespace
 
-FaceMesh read_stl_mesh(const std::filesystem::path& path, bool skip_degenerate, Diagnostics& diagnostics) {
-    return StlReader(path, skip_degenerate, diagnostics).read();
+FaceMesh read_stl_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
+                       Diagnostics& diagnostics) {
+    return StlReader(path, options, diagnostics).read();
 }
 
 } // namespace hemi::io

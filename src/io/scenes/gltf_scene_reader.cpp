@@ -1,9 +1,10 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "io/formats/text_scan.hpp"
-#include "io/meshes/polygon_pieces.hpp"
+#include "io/meshes/face_mender.hpp"
 #include "io/scenes/gltf_file.hpp"
-#include "io/scenes/two_sided.hpp"
+#include "io/scenes/mtl_reader.hpp"
+#include "io/scenes/sides.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,7 +29,6 @@ namespace {
 
 using Matrix = glm::dmat4;
 
-constexpr double most_reflectance = 0.99;
 constexpr std::size_t most_faces = 10'000'000; // nodes share meshes: a small file can ask for any number
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
@@ -121,7 +121,7 @@ public:
         : file_(path.string()), gltf_(path, options.allow_outside), options_(options),
           diagnostics_(diagnostics), nodes_(gltf_.root(), "nodes"), meshes_(gltf_.root(), "meshes"),
           materials_(gltf_.root(), "materials"), cameras_(gltf_.root(), "cameras"),
-          material_indices_(materials_.size() + 1, none) {
+          mender_(options, "triangles"), material_indices_(materials_.size() + 1, none) {
         scene_.name = to_utf8(path.stem().string());
     }
 
@@ -133,7 +133,7 @@ public:
             throw InputError(fmt::format("{}: no triangles; a scene needs at least one", file_));
         }
         tell_left_out();
-        make_two_sided(scene_, options_.two_sided_groups, file_);
+        set_sides(scene_, options_, file_, diagnostics_);
         return std::move(scene_);
     }
 
@@ -276,11 +276,6 @@ private:
             ++without_faces_;
             return;
         }
-        if (mode != 4) {
-            primitive.member("mode").fail(
-                fmt::format("{} (a triangle {}) is not supported; must be 4 (triangles)", mode,
-                            mode == 5 ? "strip" : "fan"));
-        }
         if (primitive.has("targets")) {
             has_morph_targets_ = true;
         }
@@ -293,22 +288,31 @@ private:
         const bool indexed = primitive.has("indices");
         const std::size_t corners =
             indexed ? read_indices(primitive.member("indices"), points.count()) : points.count();
-        if (corners % 3 != 0) {
-            primitive.fail(fmt::format("{} {}; triangles need a multiple of 3", corners,
-                                       indexed ? "indices" : "positions"));
+        constexpr std::uint64_t list = 4;
+        constexpr std::uint64_t strip = 5;
+        if (mode == list ? corners % 3 != 0 : corners < 3) {
+            primitive.fail(fmt::format("{} {}; triangles need {}", corners, indexed ? "indices" : "positions",
+                                       mode == list ? "a multiple of 3" : "at least 3"));
         }
-        count(primitive, corners / 3);
+        const std::size_t triangles = mode == list ? corners / 3 : corners - 2;
+        count(primitive, triangles);
         const bool mirrors = glm::determinant(glm::dmat3(matrix)) < 0.0;
         Surface surface;
         surface.vertex_count = 3;
         surface.group = group;
         surface.material = material_of(primitive, surface.two_sided);
-        for (std::size_t first = 0; first < corners; first += 3) {
+        for (std::size_t t = 0; t < triangles; ++t) {
+            // Every other triangle of a strip runs along its edge the other way; those of a fan share corner
+            // 0.
+            const std::array<std::size_t, 3> of_triangle =
+                mode == list    ? std::array{3 * t, 3 * t + 1, 3 * t + 2}
+                : mode == strip ? std::array{t, t + 1 + t % 2, t + 2 - t % 2}
+                                : std::array{t + 1, t + 2, std::size_t{0}};
             for (std::size_t c = 0; c < 3; ++c) {
-                const std::size_t place = indexed ? indices_[first + c] : first + c;
+                const std::size_t place = indexed ? indices_[of_triangle[c]] : of_triangle[c];
                 surface.vertices[mirrors ? 2 - c : c] = Vec3(matrix * glm::dvec4(points.point(place), 1.0));
             }
-            add(surface, primitive, first / 3, node);
+            add(surface, primitive, t, node);
         }
     }
 
@@ -340,14 +344,16 @@ private:
     }
 
     void add(const Surface& surface, const JsonNode& primitive, std::size_t triangle, std::size_t node) {
-        if (const auto defect = polygon_defect(surface.polygon())) {
-            if (!options_.skip_degenerate || !has_no_area(surface.polygon())) {
-                primitive.fail(fmt::format("triangle {} (placed by nodes[{}]): {}", triangle, node, *defect));
-            }
-            ++skipped_;
-            return;
+        const auto defect = mender_.mend(surface.polygon(), [&] {
+            return FaceSpot{0, fmt::format("triangle {} of {}", triangle, primitive.path())};
+        });
+        if (defect) {
+            primitive.fail(fmt::format("triangle {} (placed by nodes[{}]): {}", triangle, node, *defect));
         }
-        scene_.surfaces.push_back(surface);
+        if (!mender_.pieces().empty()) {
+            double_sided_ += surface.two_sided ? 1 : 0;
+            scene_.surfaces.push_back(surface);
+        }
     }
 
     std::uint32_t material_of(const JsonNode& primitive, bool& two_sided) {
@@ -458,8 +464,12 @@ private:
         if (without_faces_ > 0) {
             warn(fmt::format("{} primitives of points or lines left out", without_faces_));
         }
-        if (skipped_ > 0) {
-            warn(fmt::format("{} triangles without area left out", skipped_));
+        mender_.tell(file_, diagnostics_);
+        if (2 * double_sided_ > scene_.surfaces.size() && options_.one_sided_groups.empty()) {
+            warn(fmt::format(
+                "{} of {} triangles are double-sided, as exporters mark them by default: their backs count "
+                "as surfaces of their own (--one-sided-group makes groups one-sided)",
+                double_sided_, scene_.surfaces.size()));
         }
         if (has_morph_targets_) {
             warn("morph targets are not used");
@@ -487,14 +497,15 @@ private:
     Elements materials_;
     Elements cameras_;
     Scene scene_;
+    FaceMender mender_;
     std::vector<std::uint32_t> material_indices_; ///< of glTF's materials and, last, of none; `none`: not yet
     std::unordered_map<std::string, std::uint32_t> groups_;
     std::vector<std::uint32_t> indices_; // kept between primitives for their memory
     std::set<std::string> limited_;
     std::size_t counted_ = 0; ///< primitives and triangles, as often as nodes place them
     std::size_t without_faces_ = 0;
-    std::size_t skipped_ = 0;
     bool has_morph_targets_ = false;
+    std::size_t double_sided_ = 0; ///< triangles
     bool textures_ = false;
     bool transparent_ = false;
 };

@@ -4,14 +4,14 @@
 #include "hemi/io/scene_reader.hpp"
 #include "io/formats/json_node.hpp"
 #include "io/formats/text_scan.hpp"
+#include "io/meshes/face_mender.hpp"
 #include "io/meshes/face_mesh.hpp"
-#include "io/meshes/polygon_pieces.hpp"
 #include "io/scenes/json_materials.hpp"
 #include "io/scenes/json_thermal.hpp"
 #include "io/scenes/obj_materials.hpp"
 #include "io/scenes/scene_folder.hpp"
+#include "io/scenes/sides.hpp"
 #include "io/scenes/transform.hpp"
-#include "io/scenes/two_sided.hpp"
 
 #include <fmt/format.h>
 
@@ -113,8 +113,8 @@ public:
     JsonSceneReader(const std::filesystem::path& path, const SceneReaderOptions& options,
                     Diagnostics& diagnostics)
         : path_(path), file_(path.string()), options_(options), diagnostics_(diagnostics),
-          document_(parse_json(read_file(path), file_)), root_(document_, file_),
-          folder_(path, options.allow_outside) {}
+          document_(parse_json(read_text(path), file_)), root_(document_, file_),
+          folder_(path, options.allow_outside), mender_(options, "surfaces") {}
 
     Scene read() {
         check_version();
@@ -128,17 +128,13 @@ public:
         for (std::size_t s = 0; s < surfaces.size(); ++s) {
             read_surface(surfaces.element(s), s, materials);
         }
-        if (skipped_ > 0) {
-            diagnostics_.warn(
-                fmt::format("{}: {} surfaces without area left out, the first one is surfaces[{}]", file_,
-                            skipped_, first_skipped_));
-        }
+        mender_.tell(file_, diagnostics_);
         scene_.materials = materials.take();
         read_settings();
         if (root_.has("groups")) {
             read_heat_of_groups(root_.member("groups"), scene_);
         }
-        make_two_sided(scene_, options_.two_sided_groups, file_);
+        set_sides(scene_, options_, file_, diagnostics_);
         return std::move(scene_);
     }
 
@@ -176,7 +172,7 @@ private:
             const JsonNode name = surface.member("mesh");
             const std::filesystem::path file = path_.parent_path() / name.text();
             if (!is_face_mesh(file)) {
-                name.expect("the path of a mesh: .obj, .msh, .ply or .stl");
+                name.expect("the path of a mesh: " + mesh_extensions());
             }
             if (!folder_.allows(file)) {
                 name.fail(SceneFolder::refusal(name.text()));
@@ -184,11 +180,12 @@ private:
             auto [entry, is_new] = meshes_.try_emplace(file.string());
             LoadedMesh& loaded = entry->second;
             if (is_new) {
-                loaded.mesh = read_face_mesh(file, options_.skip_degenerate, diagnostics_);
+                loaded.mesh = read_face_mesh(file, options_, diagnostics_);
                 loaded.materials.resize(loaded.mesh.materials.size());
             }
             if (!surface.has("material") && !loaded.looked_up && extension_of(file) == ".obj") {
-                loaded.materials = find_obj_materials(loaded.mesh, own, folder_, diagnostics_);
+                loaded.materials =
+                    find_obj_materials(loaded.mesh, own, folder_, options_.strict, diagnostics_);
                 loaded.looked_up = true;
             }
         }
@@ -248,8 +245,8 @@ private:
     }
 
     void read_surface(const JsonNode& node, std::size_t index, JsonMaterials& materials) {
-        node.check_keys({"name", "material", "polygon", "mesh", "transform", "patches", "two_sided",
-                         "temperature", "heat_flux", "power", "isothermal"});
+        node.check_keys({"name", "material", "polygon", "holes", "mesh", "transform", "patches", "two_sided",
+                         "flip", "temperature", "heat_flux", "power", "isothermal"});
         if (node.has("polygon") == node.has("mesh")) {
             node.fail(node.has("mesh") ? "both \"polygon\" and \"mesh\"; must have one of them"
                                        : "neither \"polygon\" nor \"mesh\"; must have one of them");
@@ -265,6 +262,9 @@ private:
             thermal.conditions.push_back(*heat);
         }
         if (node.has("mesh")) {
+            if (node.has("holes")) {
+                node.fail("\"holes\" belong to a polygon");
+            }
             add_mesh(node, common, materials);
         } else {
             add_polygon(node, index, common, materials);
@@ -277,28 +277,55 @@ private:
             node.fail("\"transform\" belongs to a mesh; a polygon's vertices are in the scene's coordinates");
         }
         const JsonNode polygon = node.member("polygon");
-        if (polygon.size() < 3 || polygon.size() > 4) {
-            polygon.fail(fmt::format("{} vertices; a patch needs 3 or 4", polygon.size()));
-        }
-        surface.vertex_count = static_cast<std::uint32_t>(polygon.size());
-        for (std::size_t k = 0; k < polygon.size(); ++k) {
-            surface.vertices[k] = polygon.element(k).point();
+        const std::vector<Vec3> outline = read_polygon(polygon);
+        std::vector<std::vector<Vec3>> holes;
+        if (node.has("holes")) {
+            const JsonNode list = node.member("holes");
+            for (std::size_t k = 0; k < list.size(); ++k) {
+                holes.push_back(read_polygon(list.element(k)));
+            }
         }
         surface.material = materials.index(node.member("material"));
         const std::string name =
             node.has("name") ? node.member("name").text() : fmt::format("surface_{}", index);
-        if (const auto defect = polygon_defect(surface.polygon())) {
-            if (!options_.skip_degenerate || !has_no_area(surface.polygon())) {
-                polygon.fail(node.has("name") ? fmt::format("{} (surface \"{}\")", *defect, name) : *defect);
-            }
-            first_skipped_ = skipped_ == 0 ? index : first_skipped_;
-            ++skipped_;
+        const auto defect = mender_.mend(outline, holes, [index] {
+            return FaceSpot{0, fmt::format("surfaces[{}]", index)};
+        });
+        if (defect) {
+            polygon.fail(node.has("name") ? fmt::format("{} (surface \"{}\")", *defect, name) : *defect);
+        }
+        if (mender_.pieces().empty()) {
             return;
         }
+        surface.vertex_count = outline.size() == 3 ? 3 : 4;
         check_grid(node, surface);
         surface.group = group(name);
-        scene_.surfaces.push_back(surface);
+        for (const PolygonPiece& piece : mender_.pieces()) {
+            Surface part = surface;
+            part.vertices = piece.points;
+            part.vertex_count = piece.count;
+            if (part.patches && part.vertex_count == 3) {
+                part.patches->u = part.patches->v = std::max(part.patches->u, part.patches->v);
+            }
+            if (flips(node)) {
+                turn_round(part);
+            }
+            scene_.surfaces.push_back(part);
+        }
     }
+
+    static std::vector<Vec3> read_polygon(const JsonNode& node) {
+        if (node.size() < 3) {
+            node.fail(fmt::format("{} vertices; a polygon needs 3 or more", node.size()));
+        }
+        std::vector<Vec3> points;
+        for (std::size_t k = 0; k < node.size(); ++k) {
+            points.push_back(node.element(k).point());
+        }
+        return points;
+    }
+
+    static bool flips(const JsonNode& node) { return node.has("flip") && node.member("flip").boolean(); }
 
     void add_mesh(const JsonNode& node, const Surface& common, JsonMaterials& materials) {
         const std::filesystem::path file = path_.parent_path() / node.member("mesh").text();
@@ -319,18 +346,10 @@ private:
             surface.material = mesh_materials[face.material];
             std::transform(face.vertices.begin(), face.vertices.end(), surface.vertices.begin(), place);
             check_grid(node, surface);
-            if (transform.mirrors()) {
-                mirror(surface);
+            if (transform.mirrors() != flips(node)) {
+                turn_round(surface);
             }
             scene_.surfaces.push_back(surface);
-        }
-    }
-
-    /// Keeps vertex 0, and the grid where it was on the face.
-    static void mirror(Surface& surface) {
-        std::reverse(surface.vertices.begin() + 1, surface.vertices.begin() + surface.vertex_count);
-        if (surface.patches) {
-            std::swap(surface.patches->u, surface.patches->v);
         }
     }
 
@@ -411,11 +430,10 @@ private:
     Json document_;
     JsonNode root_;
     SceneFolder folder_;
+    FaceMender mender_;
     Scene scene_;
     std::map<std::string, LoadedMesh> meshes_;
     std::unordered_map<std::string, std::uint32_t> groups_;
-    std::size_t skipped_ = 0;
-    std::size_t first_skipped_ = 0;
 };
 
 } // namespace

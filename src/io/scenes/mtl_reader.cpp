@@ -17,7 +17,7 @@ namespace {
 class MtlReader {
 public:
     MtlReader(const std::filesystem::path& path, Diagnostics& diagnostics)
-        : file_(path.string()), text_(read_file(path)), lines_(text_), diagnostics_(diagnostics) {}
+        : file_(path.string()), text_(read_text(path)), lines_(text_), diagnostics_(diagnostics) {}
 
     std::vector<MtlMaterial> read() {
         std::string_view line;
@@ -98,6 +98,15 @@ void read_mtl(const std::filesystem::path& path, std::vector<MtlMaterial>& mater
                             material.place, material.name, same->place));
         }
     }
+}
+
+bool limit_reflectance(MtlMaterial& material) {
+    bool limited = false;
+    for (double& value : material.reflectance) {
+        limited = limited || value == 1.0;
+        value = value == 1.0 ? most_reflectance : value;
+    }
+    return limited;
 }
 
 void check_range(const MtlMaterial& material) {

@@ -27,6 +27,12 @@ struct MtlMaterial {
 void read_mtl(const std::filesystem::path& path, std::vector<MtlMaterial>& materials,
               Diagnostics& diagnostics);
 
+/// What stands for a reflectance of 1, at which light never dies away.
+constexpr double most_reflectance = 0.99;
+
+/// Takes most_reflectance for 1. @return whether there was one
+[[nodiscard]] bool limit_reflectance(MtlMaterial& material);
+
 /// @throws InputError naming the material, where it is defined, the value and the range.
 void check_range(const MtlMaterial& material);
 

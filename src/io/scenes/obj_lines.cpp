@@ -12,8 +12,7 @@
 namespace hemi::io {
 
 ObjLines::ObjLines(std::string file, std::string_view text, Diagnostics& diagnostics)
-    : file_(std::move(file)), lines_(text.substr(text.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0)),
-      diagnostics_(diagnostics) {}
+    : file_(std::move(file)), lines_(text), diagnostics_(diagnostics) {}
 
 ObjLines::int_type ObjLines::underflow() {
     while (next_logical_line()) {

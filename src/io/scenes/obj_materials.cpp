@@ -5,6 +5,7 @@
 #include "io/formats/text_scan.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <system_error>
@@ -18,7 +19,17 @@ namespace {
 /// False if one is missing.
 bool read_library(const FaceMesh& mesh, const FaceMesh::Library& library, const SceneFolder& folder,
                   std::vector<MtlMaterial>& materials, Diagnostics& diagnostics) {
-    const auto path_of = [&](std::string_view name) { return mesh.path.parent_path() / name; };
+    // Backslashes part folders where the file comes from, unless there is a file of such a name.
+    const auto path_of = [&](std::string_view name) {
+        const std::filesystem::path as_written = mesh.path.parent_path() / name;
+        std::error_code ignored;
+        if (name.find('\\') == std::string_view::npos || std::filesystem::exists(as_written, ignored)) {
+            return as_written;
+        }
+        std::string slashes(name);
+        std::replace(slashes.begin(), slashes.end(), '\\', '/');
+        return mesh.path.parent_path() / slashes;
+    };
     const auto exists = [&](std::string_view name) {
         std::error_code ignored; // a name that no file can have
         return std::filesystem::exists(path_of(name), ignored);
@@ -49,23 +60,27 @@ bool read_library(const FaceMesh& mesh, const FaceMesh::Library& library, const 
     return all;
 }
 
-[[noreturn]] void refuse_unknown(const FaceMesh& mesh, const FaceMesh::MaterialUse& use,
-                                 const std::vector<MtlMaterial>& known,
-                                 std::span<const std::string> elsewhere) {
+void tell_unknown(const FaceMesh& mesh, const FaceMesh::MaterialUse& use,
+                  const std::vector<MtlMaterial>& known, std::span<const std::string> elsewhere, bool strict,
+                  Diagnostics& diagnostics) {
     std::vector<std::string> names(elsewhere.begin(), elsewhere.end());
     for (const MtlMaterial& material : known) {
         names.push_back(material.name);
     }
-    throw ParseError(
-        mesh.path.string(), use.line, 0,
-        fmt::format("unknown material {}{}", in_quotes(use.name), did_you_mean_or_list(use.name, names)));
+    const std::string message =
+        fmt::format("unknown material {}{}", in_quotes(use.name), did_you_mean_or_list(use.name, names));
+    if (strict) {
+        throw ParseError(mesh.path.string(), use.line, 0, message);
+    }
+    diagnostics.warn(fmt::format("{}:{}: {}; reflectance 0.5 and exitance 0 are used", mesh.path.string(),
+                                 use.line, message));
 }
 
 } // namespace
 
 std::vector<std::optional<MtlMaterial>> find_obj_materials(const FaceMesh& mesh,
                                                            std::span<const std::string> defined_elsewhere,
-                                                           const SceneFolder& folder,
+                                                           const SceneFolder& folder, bool strict,
                                                            Diagnostics& diagnostics) {
     const auto wanted = [&](const FaceMesh::MaterialUse& use) {
         return !use.name.empty() && std::find(defined_elsewhere.begin(), defined_elsewhere.end(), use.name) ==
@@ -82,6 +97,7 @@ std::vector<std::optional<MtlMaterial>> find_obj_materials(const FaceMesh& mesh,
         return found;
     }
     std::vector<MtlMaterial> known;
+    std::vector<std::string> limited;
     bool complete = true;
     for (const FaceMesh::Library& library : mesh.libraries) {
         complete = read_library(mesh, library, folder, known, diagnostics) && complete;
@@ -94,11 +110,19 @@ std::vector<std::optional<MtlMaterial>> find_obj_materials(const FaceMesh& mesh,
             continue;
         }
         if (same != known.end()) {
-            check_range(*same);
             found[k] = *same;
+            if (!strict && limit_reflectance(*found[k])) {
+                limited.push_back(same->name);
+            }
+            check_range(*found[k]);
         } else if (complete) {
-            refuse_unknown(mesh, use, known, defined_elsewhere);
+            tell_unknown(mesh, use, known, defined_elsewhere, strict, diagnostics);
         }
+    }
+    if (!limited.empty()) {
+        diagnostics.warn(
+            fmt::format("{}: reflectance {} instead of Kd 1 in {} (no surface reflects all it receives)",
+                        mesh.path.string(), most_reflectance, fmt::join(limited, ", ")));
     }
     return found;
 }

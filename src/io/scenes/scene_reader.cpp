@@ -3,6 +3,7 @@
 
 #include "hemi/core/error.hpp"
 #include "io/formats/text_scan.hpp"
+#include "io/meshes/face_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -18,10 +19,11 @@ struct Reader {
     std::string_view extension;
     Scene (*read)(const std::filesystem::path&, const SceneReaderOptions&, Diagnostics&);
 };
-constexpr Reader readers[] = {{".json", read_json_scene}, {".obj", read_obj_scene},
-                              {".gltf", read_gltf_scene}, {".glb", read_gltf_scene},
-                              {".vs3", read_vs3_scene},   {".msh", read_msh_scene},
-                              {".ply", read_ply_scene},   {".stl", read_stl_scene}};
+constexpr Reader readers[] = {
+    {".json", read_json_scene}, {".obj", read_obj_scene},  {".gltf", read_gltf_scene},
+    {".glb", read_gltf_scene},  {".vs3", read_vs3_scene},  {".msh", read_msh_scene},
+    {".ply", read_ply_scene},   {".stl", read_stl_scene},  {".inp", read_mesh_scene},
+    {".vtk", read_mesh_scene},  {".vtp", read_mesh_scene}, {".vtu", read_mesh_scene}};
 
 const Reader* reader_of(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
@@ -54,6 +56,9 @@ Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& op
                                          ? fmt::format("unknown extension \"{}\"", extension_of(path))
                                          : std::string("no extension"),
                                      scene_extensions()));
+    }
+    if (!(options.planarity > 0.0 && options.planarity < 1.0)) {
+        throw InvalidArgument(fmt::format("planarity {}; must be above 0 and below 1", options.planarity));
     }
     Scene scene = reader->read(path, options, diagnostics);
     try {

@@ -3,8 +3,8 @@
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "io/formats/text_scan.hpp"
-#include "io/meshes/polygon_pieces.hpp"
-#include "io/scenes/two_sided.hpp"
+#include "io/meshes/face_mender.hpp"
+#include "io/scenes/sides.hpp"
 
 #include <fmt/format.h>
 
@@ -43,8 +43,8 @@ private:
 class Vs3Reader {
 public:
     Vs3Reader(const std::filesystem::path& path, const SceneReaderOptions& options, Diagnostics& diagnostics)
-        : file_(path.string()), text_(read_file(path)), lines_(text_), options_(options),
-          diagnostics_(diagnostics) {
+        : file_(path.string()), text_(read_text(path)), lines_(text_), options_(options),
+          diagnostics_(diagnostics), mender_(options, "surfaces") {
         scene_.name = to_utf8(path.stem().string());
         scene_.environment = {0.0};
     }
@@ -57,11 +57,12 @@ public:
         if (numbered_ == 0) {
             throw InputError(fmt::format("{}: no surfaces; a scene needs at least one (S lines)", file_));
         }
-        if (skipped_ > 0) {
-            diagnostics_.warn(fmt::format("{}:{}: {} surfaces without area left out, the first one here",
-                                          file_, first_skipped_, skipped_));
+        cut_out_subsurfaces();
+        for (const Numbered& numbered : numbered_surfaces_) {
+            add(numbered);
         }
-        make_two_sided(scene_, options_.two_sided_groups, file_);
+        mender_.tell(file_, diagnostics_);
+        set_sides(scene_, options_, file_, diagnostics_);
         return std::move(scene_);
     }
 
@@ -143,11 +144,7 @@ private:
             fail("S after the first O; obstructions must come last");
         }
         Surface surface = read_polygon(words, "surface");
-        if (const auto base = whole(words, "base"); base != 0) {
-            fail(fmt::format("surface {}: base {}: subsurfaces are not supported; cut surface {} around this "
-                             "one and set its base to 0",
-                             numbered_, base, base));
-        }
+        const std::uint64_t base = whole(words, "base");
         const std::uint64_t combined = whole(words, "cmb");
         surface.material = material(words.next());
         const std::string_view name = words.next();
@@ -161,7 +158,7 @@ private:
                                        : group(to_utf8(name));
         groups_.push_back(surface.group);
         is_combined_.push_back(combined != 0);
-        add(surface, "surface");
+        numbered_surfaces_.push_back({surface, "surface", lines_.number(), base, {}});
     }
 
     /// Two-sided, so that what meets it from either side counts as arrived and not as blocked by a back.
@@ -171,7 +168,7 @@ private:
         surface.two_sided = true;
         surface.material = material_index({"obstruction", {0.0}, {0.0}});
         surface.group = group("obstruction");
-        add(surface, "obstruction");
+        numbered_surfaces_.push_back({surface, "obstruction", lines_.number(), 0, {}});
     }
 
     Surface read_polygon(Words& words, std::string_view kind) {
@@ -195,16 +192,49 @@ private:
         return surface;
     }
 
-    void add(const Surface& surface, std::string_view kind) {
-        if (const auto defect = polygon_defect(surface.polygon())) {
-            if (!options_.skip_degenerate || !has_no_area(surface.polygon())) {
-                fail(fmt::format("{} {}: {}", kind, numbered_, *defect));
+    /// A line S or O; the index is its number less one.
+    struct Numbered {
+        Surface surface;
+        const char* kind;
+        std::size_t line;
+        std::uint64_t base;                   ///< number of the surface that it is cut out of; 0: none
+        std::vector<std::vector<Vec3>> holes; ///< what is cut out of it
+    };
+
+    void cut_out_subsurfaces() {
+        for (std::size_t k = 0; k < numbered_surfaces_.size(); ++k) {
+            const Numbered& part = numbered_surfaces_[k];
+            if (part.base == 0) {
+                continue;
             }
-            first_skipped_ = skipped_ == 0 ? lines_.number() : first_skipped_;
-            ++skipped_;
-            return;
+            if (part.base > groups_.size() || part.base == k + 1) {
+                fail(part, k,
+                     fmt::format("base {}; must be the number of another surface, from 1 to {}", part.base,
+                                 groups_.size()));
+            }
+            const std::span<const Vec3> outline = part.surface.polygon();
+            numbered_surfaces_[part.base - 1].holes.emplace_back(outline.begin(), outline.end());
         }
-        scene_.surfaces.push_back(surface);
+    }
+
+    [[noreturn]] void fail(const Numbered& part, std::size_t index, const std::string& message) const {
+        throw ParseError(file_, part.line, 0, fmt::format("{} {}: {}", part.kind, index + 1, message));
+    }
+
+    void add(const Numbered& numbered) {
+        const Surface& surface = numbered.surface;
+        const auto defect = mender_.mend(surface.polygon(), numbered.holes, [&numbered] {
+            return FaceSpot{numbered.line, {}};
+        });
+        if (defect) {
+            fail(numbered, static_cast<std::size_t>(&numbered - numbered_surfaces_.data()), *defect);
+        }
+        for (const PolygonPiece& piece : mender_.pieces()) {
+            Surface part = surface;
+            part.vertices = piece.points;
+            part.vertex_count = piece.count;
+            scene_.surfaces.push_back(part);
+        }
     }
 
     std::uint32_t combined_group(std::uint64_t with) const {
@@ -276,8 +306,8 @@ private:
             });
         };
         if (std::none_of(known.begin(), known.end(), [&](const auto& word) { return same(word, name); })) {
-            fail(
-                fmt::format("unknown control word {}{}", in_quotes(name), did_you_mean_or_list(name, known)));
+            diagnostics_.warn(fmt::format("{}:{}: the control word {} is not known and not used{}", file_,
+                                          lines_.number(), in_quotes(name), did_you_mean(name, known)));
         }
         if (same(name, "encl")) {
             scene_.enclosure = value != 0.0 ? Enclosure::closed : Enclosure::open;
@@ -318,10 +348,12 @@ private:
     Lines lines_;
     const SceneReaderOptions& options_;
     Diagnostics& diagnostics_;
+    FaceMender mender_;
     Scene scene_;
     std::vector<Vec3> vertices_;
     std::vector<std::uint32_t> groups_; ///< of every S
     std::vector<bool> is_combined_;     ///< for every S
+    std::vector<Numbered> numbered_surfaces_;
     std::unordered_map<std::string, std::uint32_t> materials_;
     std::unordered_map<std::string, std::uint32_t> group_indices_;
     std::size_t numbered_ = 0; ///< S and O so far
@@ -329,8 +361,6 @@ private:
     bool ended_ = false;
     bool warned_of_name_ = false;
     bool warned_of_emissivity_ = false;
-    std::size_t skipped_ = 0;
-    std::size_t first_skipped_ = 0;
 };
 
 } // namespace

@@ -231,7 +231,8 @@ def read_scene(
     enclosure: _Enclosure | None = None,
     environment: ArrayLike | None = None,
     two_sided: Sequence[str] = (),
-    skip_degenerate: bool = False,
+    strict: bool = False,
+    planarity: float = 1e-5,
     allow_outside: bool = False,
     imprint: bool = False,
 ) -> Scene: ...

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+/// How the command line says that a scene is read and cut into patches.
+namespace hemi::cli {
+
+struct SceneOptions;
+
+/// Subdivision, what is done to faces as people have them, and which way they look.
+void add_scene_options(CLI::App& app, SceneOptions& scene);
+
+} // namespace hemi::cli

@@ -1,0 +1,55 @@
+#include "io/scenes/sides.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/core/nearest_word.hpp"
+#include "io/formats/text_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hemi::io {
+
+namespace {
+
+/// Which groups are named; "*" names all.
+std::vector<bool> named_groups(const Scene& scene, const std::vector<std::string>& names, const char* purpose,
+                               const std::string& file) {
+    std::vector<bool> named(scene.groups.size(), false);
+    for (const std::string& name : names) {
+        const auto found = std::find(scene.groups.begin(), scene.groups.end(), name);
+        if (found != scene.groups.end()) {
+            named[static_cast<std::size_t>(found - scene.groups.begin())] = true;
+        } else if (name == "*") {
+            named.assign(scene.groups.size(), true);
+        } else {
+            throw InputError(fmt::format("{}: no group {} to {}{}", file, in_quotes(name), purpose,
+                                         did_you_mean_or_list(name, scene.groups)));
+        }
+    }
+    return named;
+}
+
+} // namespace
+
+void set_sides(Scene& scene, const SceneReaderOptions& options, const std::string& file,
+               Diagnostics& diagnostics) {
+    const auto one_sided = named_groups(scene, options.one_sided_groups, "make one-sided", file);
+    const auto two_sided = named_groups(scene, options.two_sided_groups, "make two-sided", file);
+    const auto flipped = named_groups(scene, options.flipped_groups, "turn round", file);
+    for (Surface& surface : scene.surfaces) {
+        surface.two_sided = two_sided[surface.group] || (surface.two_sided && !one_sided[surface.group]);
+    }
+    const OrientedFaces oriented = orient(scene, options.orientation);
+    if (oriented.undecided > 0) {
+        diagnostics.warn(
+            fmt::format("{}: {} faces enclose no volume and are not turned", file, oriented.undecided));
+    }
+    for (Surface& surface : scene.surfaces) {
+        if (flipped[surface.group]) {
+            turn_round(surface);
+        }
+    }
+}
+
+} // namespace hemi::io
