@@ -8,7 +8,15 @@ using hemi::test::run_command;
 
 TEST_CASE("Python: the module reads what hemi writes, and the example draws a row", "[cli]") {
     const Directory directory;
-    const std::string scene = directory.write("cube.json", cube(4));
+    Json room = cube(4);
+    if (GENERATE(false, true)) { // a sheet that cuts patches of the floor in two
+        room["surfaces"].push_back(
+            {{"name", "sheet"},
+             {"material", "white"},
+             {"two_sided", true},
+             {"polygon", Json::parse("[[0.4,0.1,0],[0.4,0.6,0],[0.4,0.6,0.5],[0.4,0.1,0.5]]")}});
+    }
+    const std::string scene = directory.write("cube.json", room);
     const std::string hff = directory.path("a.hff");
     REQUIRE(
         run_hemi(quick({"factors", scene, "-o", hff, "--patches", directory.path("patches.csv")})).status ==

@@ -39,6 +39,10 @@ class Factors:
     groups       names
     group_of     uint32, N: index into groups
     settings     dict: preset, method, resolution, eye_points, seed, renderer, enclosure, geometry, error ...
+    patch_of     uint32, N: where faces that touch were cut, rows are those of parts, and this is the patch of the scene
+                 that each is part of, as tables of patches number them; None where rows are the patches'
+
+    The factors of the scene's patches are `by_patch()`.
     """
 
     factors: scipy.sparse.csr_matrix
@@ -50,6 +54,20 @@ class Factors:
     groups: list
     group_of: numpy.ndarray
     settings: dict
+    patch_of: numpy.ndarray = None
+
+    def by_patch(self):
+        """F between the scene's patches: sums over parts where light arrives, means by area where it leaves."""
+        if self.patch_of is None:
+            return self.factors
+        count = self.settings["patches"]
+        parts = scipy.sparse.csr_matrix(
+            (numpy.ones(len(self.areas)), (self.patch_of, numpy.arange(len(self.areas)))),
+            shape=(count, len(self.areas)))
+        areas = parts @ self.areas
+        share = scipy.sparse.diags(1.0 / numpy.where(areas > 0.0, areas, 1.0))
+        return (share @ parts.multiply(self.areas[numpy.newaxis, :]) @ self.factors.astype(numpy.float64)
+                @ parts.T).tocsr()
 
     def by_group(self):
         """F between groups, area-weighted: [g, h] is the share of what leaves g that arrives at h."""
@@ -110,7 +128,7 @@ def _take_rows(path, payload):
 
 def read_hff(path):
     """The Factors in a `.hff`. Raises FileError if it is none."""
-    head, areas, group_of, blocks = None, None, None, []
+    head, areas, group_of, patch_of, blocks = None, None, None, None, []
     for tag, payload in _chunks(path, b"HEMIFF\r\n", 4):
         if tag == b"HEAD":
             head = json.loads(payload)
@@ -118,6 +136,8 @@ def read_hff(path):
             areas = _Payload(path, payload).take("<f8", head["size"])
         elif tag == b"GRUP":
             group_of = _Payload(path, payload).take("<u4", head["size"])
+        elif tag == b"PART":
+            patch_of = _Payload(path, payload).take("<u4", head["size"])
         elif tag == b"ROWS":
             blocks.append(_take_rows(path, payload))
     size = head["size"]
@@ -135,14 +155,15 @@ def read_hff(path):
         visibility=visibility if len(visibility) == len(values) else None,
         known=joined("known", bool), environment=joined("environment", "<f8"), blocked=joined("blocked", "<f8"),
         areas=areas, groups=head["groups"], group_of=group_of,
-        settings={name: value for name, value in head.items() if name not in ("size", "groups", "block_rows")})
+        settings={name: value for name, value in head.items() if name not in ("size", "groups", "block_rows")},
+        patch_of=patch_of)
 
 
 def read_factors(path):
-    """F as a scipy.sparse.csr_matrix, from `.hff` (as computed), `.npz`, `.mtx` or `.csv` (all repaired)."""
+    """F of patches, a scipy.sparse.csr_matrix, from `.hff` (as computed), `.npz`, `.mtx` or `.csv` (all repaired)."""
     extension = str(path).rsplit(".", 1)[-1].lower()
     if extension == "hff":
-        return read_hff(path).factors
+        return read_hff(path).by_patch()
     if extension == "npz":
         return scipy.sparse.load_npz(path)
     if extension == "mtx":
