@@ -205,7 +205,7 @@ TEST_CASE("Gmsh reader: blocks cut anywhere, and with any byte changed, are read
     const Folder folder;
     for (const std::string& text : {version_4(Output::Kind::text), version_4(Output::Kind::little),
                                     binary_version_2(Output::Kind::big)}) {
-        for (std::size_t at = 0; at < text.size(); ++at) {
+        for (std::size_t at = 0; at < text.size(); at += 23) {
             for (const std::string& bad :
                  {text.substr(0, at), text.substr(0, at) + "\377" + text.substr(at + 1),
                   text.substr(0, at) + "9" + text.substr(at + 1)}) {
