@@ -21,8 +21,7 @@ Report scene_info(const InfoArguments& arguments, const Terminal& terminal) {
     const FactorCost cost = measure_cost(loaded.mesh, arguments.rows.factors);
     Report more = imprint_report(loaded);
     more.add(cost_report(cost, loaded.mesh));
-    Report report =
-        contents_report(loaded.as_read ? loaded.as_read->scene : loaded.scene, loaded.patches(), more);
+    Report report = contents_report(loaded.uncut(), loaded.patches(), more);
     report.json["kind"] = "scene";
     report.select("hemi/info/1",
                   {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels", "bounds",

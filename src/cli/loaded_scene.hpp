@@ -38,6 +38,8 @@ struct LoadedScene {
     /// Takes another mesh of the scene, whose patches are what results are about.
     void adopt(PatchMesh other);
 
+    /// The scene as it was read.
+    [[nodiscard]] const Scene& uncut() const { return as_read ? as_read->scene : scene; }
     /// Patches that results are about: those of the scene as it was read.
     [[nodiscard]] const PatchMesh& patches() const { return as_read ? as_read->mesh : mesh; }
     /// What patches of the mesh are parts of.

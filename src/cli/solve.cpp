@@ -130,10 +130,9 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
     goal.seconds = arguments.budget;
     goal.gather = arguments.picture.flat && !arguments.result ? Gather::off : arguments.gather;
     const bool own_size = arguments.scene.subdivision != Subdivision{}; // asked for on the command line
-    const Scene& as_read = loaded.as_read ? loaded.as_read->scene : loaded.scene;
-    Refinement found =
-        solve_refined(loaded.scene, own_size ? loaded.mesh : coarse_mesh(as_read, arguments.scene.imprint),
-                      arguments.rows.factors, arguments.solver, goal, arguments.with_irradiance(), observer);
+    Refinement found = solve_refined(
+        loaded.scene, own_size ? loaded.mesh : coarse_mesh(loaded.uncut(), arguments.scene.imprint),
+        arguments.rows.factors, arguments.solver, goal, arguments.with_irradiance(), observer);
     loaded.adopt(std::move(found.mesh));
     seconds["solve"] = found.solution.seconds;
     seconds["refine"] = watch.seconds() - found.solution.seconds;

@@ -34,8 +34,8 @@ ExitStatus run(const TradeArguments& arguments, const Terminal& terminal) {
     }
     TerminalObserver observer(terminal);
     const Trade trade =
-        measure_trade(loaded.as_read.value_or(loaded.scene), loaded.mesh, arguments.scene.subdivision,
-                      arguments.scene.imprint, arguments.rows.factors, arguments.budget, observer);
+        measure_trade(loaded.uncut(), loaded.mesh, arguments.scene.subdivision, arguments.scene.imprint,
+                      arguments.rows.factors, arguments.budget, observer);
     if (arguments.output && !(trade.by_time().empty() && trade.answers.empty())) {
         io::OutputFile file(*arguments.output);
         file.write(trade_drawing(trade, loaded));
