@@ -39,7 +39,8 @@ Material read_material(const JsonNode& node, const std::string& name,
         const JsonNode emissivity = node.member("emissivity");
         if (is_emissivity_table(emissivity.value())) {
             material.emissivity_table = read_emissivity_table(emissivity);
-            material.reflectance.assign(channels.size(), 1.0 - emissivity_at(material.emissivity_table, room_temperature));
+            material.reflectance.assign(channels.size(),
+                                        1.0 - emissivity_at(material.emissivity_table, room_temperature));
         } else {
             for (const double value : read_emissivity(emissivity, channels)) {
                 material.reflectance.push_back(1.0 - value);
