@@ -131,8 +131,8 @@ TEST_CASE("repair: rows that were not needed stay out of it", "[cli]") {
     Json scene = cube(3); // nothing leaves the black floor: its rows are not computed
     scene["materials"]["black"] = {{"reflectance", 0.0}};
     scene["surfaces"][0]["material"] = "black";
-    const Json solution = run_hemi(quick({"solve", directory.write("cube.json", scene), "--json",
-                                          "--repair", "closure", "--solver", "cg"}))
+    const Json solution = run_hemi(quick({"solve", directory.write("cube.json", scene), "--json", "--repair",
+                                          "closure", "--solver", "cg"}))
                               .json();
     CHECK(solution["reciprocity"].is_null());
     CHECK(solution["repair"]["after"]["row_error"]["max"] < 1e-7);

@@ -365,7 +365,7 @@ TEST_CASE("solve --gather: vertices have light of their own, in pictures, stored
     CHECK(wrong.err.find("auto, on or off") != std::string::npos);
 }
 
-TEST_CASE("solve --error-target: patches are cut until the estimate meets it", "[cli]") {
+TEST_CASE("solve --error-target: patches are cut until the estimate meets it", "[cli][slow]") {
     const Directory directory;
     const std::string scene = directory.write("cube.json", coloured(2));
     const auto solve = [&](Words more) {
