@@ -36,9 +36,10 @@ struct HeatProblem {
 /// @param mesh      its patches
 /// @param observer  gets warnings: of groups of which nothing is known, of temperatures that look like °C, of
 ///   lengths that look like millimetres
-/// @throws InputError where channels are neither the bands nor equal
+/// @param conditions  whether temperatures and fluxes are of interest, and warnings of them
+/// @throws InputError where channels are neither the bands nor equal, in materials that surfaces use
 [[nodiscard]] HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh,
-                                       Observer& observer = no_observer());
+                                       Observer& observer = no_observer(), bool conditions = true);
 
 /// How far a problem is solved.
 struct HeatSettings {
