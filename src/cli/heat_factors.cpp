@@ -54,14 +54,43 @@ void refuse_repeat(Once& once, std::string_view option, const std::string& name,
     }
 }
 
+[[noreturn]] void fail_covered(const std::string& name, double power) {
+    throw InputError(
+        fmt::format("group {}: a power of {:.6g} W cannot leave: other faces cover all of it", name, power));
+}
+
 /// A condition for all of a group in place of those that it has.
 void set_condition(Scene& scene, std::string_view option, const std::string& name,
                    const HeatCondition& condition) {
     const std::uint32_t group = group_of_option(scene, option, name);
     const auto index = static_cast<std::uint32_t>(scene.thermal->conditions.size());
     scene.thermal->conditions.push_back(condition);
+    bool covered = true;
     for (Surface& surface : scene.surfaces) {
         surface.heat = surface.group == group ? index : surface.heat;
+        covered = covered && surface.group != group;
+    }
+    if (covered && condition.power.value_or(0.0) != 0.0) {
+        fail_covered(name, *condition.power);
+    }
+}
+
+/// Refuses powers of faces of which nothing is left where others touch them.
+/// @param others  groups of which a table or an option says something else
+void refuse_covered_powers(const LoadedScene& loaded, const std::set<std::string>& others) {
+    std::set<std::uint32_t> left;
+    for (const Surface& surface : loaded.scene.surfaces) {
+        left.insert(surface.heat);
+    }
+    for (const Surface& surface : loaded.uncut().surfaces) {
+        if (surface.heat == no_heat || left.contains(surface.heat)) {
+            continue;
+        }
+        const double power = loaded.scene.thermal->conditions[surface.heat].power.value_or(0.0);
+        const std::string& name = loaded.uncut().groups[surface.group];
+        if (power != 0.0 && !others.contains(name)) {
+            fail_covered(name, power);
+        }
     }
 }
 
@@ -310,6 +339,17 @@ LoadedScene load_thermal_scene(std::string_view command, SceneOptions options, c
                              fmt::format("{}: the scene has no such group{}", name,
                                          did_you_mean_or_list(name, scene.groups)));
         }
+    }
+    if (conditions) {
+        std::set<std::string> others;
+        for (const HeatOptions* said : {&std::as_const(table.heat), &heat}) {
+            for (const auto* values : {&said->temperature, &said->heat_flux, &said->power}) {
+                for (const auto& [name, value] : *values) {
+                    others.insert(name);
+                }
+            }
+        }
+        refuse_covered_powers(loaded, others);
     }
     set_properties(scene, table.heat);
     set_properties(scene, heat); // over those of the table

@@ -585,7 +585,7 @@ std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem&
             heat.*mean = exposed[g] > 0.0 ? heat.*mean / area : not_known;
         }
         if (exposed[g] == 0.0) {
-            heat.emissivity = covered[g] / heat.area;
+            heat.emissivity = heat.area > 0.0 ? covered[g] / heat.area : not_known;
         }
         if (power[g] > 0.0) { // not where it is not a number
             heat.emissivity = by_heat[g] / power[g];

@@ -246,6 +246,34 @@ TEST_CASE("hemi heat: black surfaces have no error by the patches' size", "[cli]
     }
 }
 
+TEST_CASE("hemi heat: a power cannot leave a group that is covered", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(4, 4, 4, 4);
+    // On the floor, without its bottom; "under" is there in its place.
+    for (const char* points : {"[[1,1,2],[3,1,2],[3,3,2],[1,3,2]]", "[[1,1,0],[3,1,0],[3,1,2],[1,1,2]]",
+                               "[[1,3,0],[1,3,2],[3,3,2],[3,3,0]]", "[[1,1,0],[1,1,2],[1,3,2],[1,3,0]]",
+                               "[[3,1,0],[3,3,0],[3,3,2],[3,1,2]]"}) {
+        scene["surfaces"].push_back(face("block", "top", Json::parse(points), 1));
+    }
+    scene["surfaces"].push_back(face("under", "top", Json::parse("[[1,1,0],[1,3,0],[3,3,0],[3,1,0]]"), 1));
+    scene["groups"]["block"] = {{"heat_flux", 0}};
+    scene["groups"]["under"] = {{"power", 500}};
+    const std::string file = directory.write("block.json", scene);
+    for (const Words& words : {Words{"heat", file}, Words{"heat", file, "--no-imprint"}}) {
+        const Outcome run = run_hemi(on_cpu(words));
+        INFO(run.err);
+        CHECK(run.status == 3);
+        CHECK(run.err_has("group under: a power of 500 W cannot leave"));
+        Words other = words;
+        other.insert(other.end(), {"--power", "under=5"});
+        CHECK(run_hemi(on_cpu(other)).err_has("5 W cannot leave"));
+        other.back() = "under=0";
+        const Outcome none = run_hemi(on_cpu(other));
+        CHECK(none.status == 0);
+        CHECK_FALSE(none.out_has("nan"));
+    }
+}
+
 TEST_CASE("hemi heat: MOOSE's cavity by factors from a file", "[cli][heat]") {
     const Directory directory;
     const std::string scene = directory.write("cavity.json", cavity());

@@ -89,7 +89,7 @@ struct HeatSolution {
                                       const HeatSettings& settings = {}, Observer& observer = no_observer());
 
 /// What is known of a group: means over the area that is not buried; not a number where all is, but for the
-/// emissivity.
+/// emissivity, which is none of a group without patches.
 struct GroupHeat {
     double area = 0.0;       ///< m², all of it
     double emissivity = 0.0; ///< of all bands: emitted by the temperature over sigma T⁴; mean where T is
