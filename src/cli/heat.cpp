@@ -68,6 +68,7 @@ HeatSchedule schedule_of(const std::filesystem::path& path, const io::TextTable&
     const std::vector<HeatQuantity> quantities =
         check_heat_schedule(loaded.mesh.groups(), loaded.group_of, problem, schedule);
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        schedule.labels.push_back(table.rows[row][0]);
         for (std::size_t c = 1; c < table.columns.size(); ++c) {
             schedule.values.push_back(
                 parse_cell(path, table, row, c, quantities[c - 1] == HeatQuantity::temperature));
@@ -197,12 +198,8 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     Report tables = heat_report(factors, problem, solution, errors);
     tables.json["series"] = nullptr;
     if (lines) {
-        std::vector<std::string> labels;
-        for (const std::vector<std::string>& row : lines->rows) {
-            labels.push_back(row[0]);
-        }
         tables.text += "\n";
-        tables.add(series_report(factors.groups, labels, series));
+        tables.add(series_report(factors.groups, schedule.labels, series));
     }
     Report report = scene_size_report(loaded);
     report.add(rows_report(factors, sums, enclosure));

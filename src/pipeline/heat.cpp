@@ -106,6 +106,7 @@ private:
     [[nodiscard]] bool is_flux_source(std::uint32_t i) const {
         return problem_.bands == 1 && has_flux(problem_, i);
     }
+
     /// sigma T⁴ of patches whose temperature is given; not a number of others.
     void find_given() {
         for (std::uint32_t i = 0; i < size(); ++i) {

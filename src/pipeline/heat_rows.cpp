@@ -199,7 +199,7 @@ ExchangeNetwork make_network(const FormFactors& factors, const HeatProblem& prob
 void refuse_singular(const FormFactors& factors, const HeatProblem& problem, const ExchangeNetwork& network,
                      const std::vector<std::uint8_t>& buried) {
     std::vector<std::uint32_t> enclosure = network.enclosures();
-    // Patches of one unknown temperature are connected by it.
+    // Patches of one unknown temperature are connected by it, unless they take nothing of it.
     std::map<std::uint32_t, std::uint32_t> merged;
     const auto root = [&merged](std::uint32_t e) {
         for (auto found = merged.find(e); found != merged.end(); found = merged.find(e)) {
@@ -209,7 +209,7 @@ void refuse_singular(const FormFactors& factors, const HeatProblem& problem, con
     };
     std::vector<std::uint32_t> of_condition(problem.conditions.size(), no_heat);
     for (std::uint32_t i = 0; i < network.size(); ++i) {
-        if (buried[i] == 0 && is_isothermal(problem, i)) {
+        if (buried[i] == 0 && is_isothermal(problem, i) && !reflects_all(problem, i)) {
             std::uint32_t& first = of_condition[problem.condition_of[i]];
             if (first == no_heat) {
                 first = enclosure[i];

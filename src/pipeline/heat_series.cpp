@@ -87,6 +87,12 @@ std::uint32_t condition_of(const std::vector<std::string>& groups, std::span<con
     return index;
 }
 
+/// A line, from 1, for messages.
+std::string line_text(const HeatSchedule& schedule, std::size_t line) {
+    return line < schedule.labels.size() ? fmt::format("line {} (\"{}\")", line + 1, schedule.labels[line])
+                                         : fmt::format("line {}", line + 1);
+}
+
 /// The conditions that the columns change, in the problem.
 std::vector<std::uint32_t> conditions_of(const std::vector<std::string>& groups,
                                          std::span<const std::uint32_t> group_of, HeatProblem& problem,
@@ -106,8 +112,9 @@ std::vector<std::uint32_t> conditions_of(const std::vector<std::string>& groups,
     for (std::size_t k = 0; k < schedule.values.size(); ++k) {
         const std::uint32_t c = conditions[k % columns];
         if ((c == of_environment || problem.conditions[c].temperature) && !(schedule.values[k] >= 0.0)) {
-            throw InputError(fmt::format("series: line {}, {}: {} K; must not be below 0 K", k / columns + 1,
-                                         schedule.columns[k % columns], schedule.values[k]));
+            throw InputError(fmt::format("series: {}, {}: {} K; must not be below 0 K",
+                                         line_text(schedule, k / columns), schedule.columns[k % columns],
+                                         schedule.values[k]));
         }
     }
     return conditions;
@@ -175,9 +182,9 @@ private:
 
     /// Says of which line an error is.
     template <class Work>
-    static void with_line(std::size_t l, const Work& work) {
-        const auto text = [l](const Error& error) {
-            return fmt::format("series: line {}: {}", l + 1, error.what());
+    void with_line(std::size_t l, const Work& work) const {
+        const auto text = [&](const Error& error) {
+            return fmt::format("series: {}: {}", line_text(schedule_, l), error.what());
         };
         try {
             work();
@@ -239,9 +246,9 @@ private:
                 for (std::uint32_t i = 0; i < network.size(); ++i) {
                     const std::size_t at = std::size_t{i} * sources + s;
                     const double area = factors_.areas[i] * problem_.unit * problem_.unit;
-                    response.environment +=
-                        area * network.environment()[i] * (columns.environment[s] - fluxes.radiosity[at]);
                     if (buried[i] == 0) {
+                        response.environment +=
+                            area * network.environment()[i] * (columns.environment[s] - fluxes.radiosity[at]);
                         response.net[factors_.group_of[i]] +=
                             area * (columns.source[at] - columns.emissivity[at] * fluxes.irradiation[at]);
                     }

@@ -272,6 +272,14 @@ TEST_CASE("hemi heat: a power cannot leave a group that is covered", "[cli][heat
         CHECK(none.status == 0);
         CHECK_FALSE(none.out_has("nan"));
     }
+    // Of its patches nothing is known but that they have no flux.
+    const std::string fluxes = directory.path("fluxes.csv");
+    CHECK(run_hemi(on_cpu({"heat", file, "--no-imprint", "--power", "under=0", "--fluxes", fluxes})).status ==
+          0);
+    const std::string table = directory.read("fluxes.csv");
+    const std::size_t under = table.find(",under,");
+    REQUIRE(under != std::string::npos);
+    CHECK(table.substr(under, table.find('\n', under) - under).ends_with(",,0,,,,"));
 }
 
 TEST_CASE("hemi heat: MOOSE's cavity by factors from a file", "[cli][heat]") {
@@ -491,7 +499,7 @@ TEST_CASE("hemi heat: a series of temperatures", "[cli][heat]") {
     refused("time,left\n0,0\n1,20C\n", "a number");
     refused("time,back\n0,20C\n", "a number");
     refused("time,botom\n0,300\n", "\"bottom\"");
-    refused("time,left\n0,0\n1,-50000\n", "line 2: group left");
+    refused("time,left\n0 h,0\n1 h,-50000\n", "line 2 (\"1 h\"): group left");
 }
 
 TEST_CASE("hemi exchange: conductances are reciprocal and balance", "[cli][heat]") {

@@ -153,6 +153,10 @@ TEST_CASE("heat: plates, spheres, a shield", "[heat]") {
     CHECK(shield.temperature[1] == shield.temperature[2]);
     CHECK(shield.net_flux[1] == Approx(-shield.net_flux[0]).epsilon(1e-8));
     CHECK(shield.relative_balance < 1e-8);
+    // One that takes nothing in does not tell the other side of the hot one.
+    problem.emissivity = {0.8, 0.0, 0.0, 0.3};
+    problem.conditions[3] = with_flux(0.0);
+    CHECK_THROWS_WITH(solve_heat(shielded, problem), Contains("cold") && Contains("any temperature"));
 }
 
 TEST_CASE("heat: a given flux makes the temperature that makes the flux", "[heat]") {
@@ -309,7 +313,8 @@ TEST_CASE("heat: an environment, and none", "[heat]") {
     // A series says nothing of it again, line by line.
     problem.tables = {{{300.0, 0.4}, {1300.0, 0.9}}};
     problem.table_of[0] = 0;
-    CHECK_FALSE(solve_heat_series(factors, problem, {{"floor"}, {300.0, 400.0}}, {}, warnings).superposed);
+    CHECK_FALSE(
+        solve_heat_series(factors, problem, {{"floor"}, {300.0, 400.0}, {}}, {}, warnings).superposed);
     CHECK(warnings.all.size() == 1);
     // Nothing sees it in a closed scene.
     HeatProblem closed = grey({0.8, 0.3}, {at(800.0), at(300.0)});
@@ -471,7 +476,8 @@ TEST_CASE("heat: a series is as many single runs", "[heat]") {
         HeatProblem several = problem;
         several.conditions[3] = at(900.0); // beside the 300 K of the other one
         several.condition_of[1] = no_heat;
-        const HeatSeries series = solve_heat_series(joined, several, {{"walls", "right"}, {500.0, 350.0}});
+        const HeatSeries series =
+            solve_heat_series(joined, several, {{"walls", "right"}, {500.0, 350.0}, {}});
         HeatProblem single = problem;
         single.conditions = {at(1500.0), at(350.0), at(500.0), at(500.0)};
         const HeatSolution solution = solve_heat(joined, single);
@@ -480,10 +486,10 @@ TEST_CASE("heat: a series is as many single runs", "[heat]") {
             CHECK(series.net_power[g] == Approx(groups[g].net_power).epsilon(1e-9));
         }
         several.conditions[3] = with_flux(0.0);
-        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}}),
+        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}, {}}),
                           Contains("walls") && Contains("several kinds"));
         several.condition_of[3] = no_heat;
-        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}}),
+        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}, {}}),
                           Contains("parts without"));
     }
     SECTION("unknown groups are refused with the nearest") {
@@ -502,7 +508,7 @@ TEST_CASE("heat: a series in bands by superposition", "[heat]") {
     const HeatProblem problem =
         banded(grey({0.5, 0.5, 0.5, 0.5}, {at(1500.0), at(700.0), at(300.0), at(900.0)}), {2.5, 6.0},
                {{0.9, 0.7, 0.2}, {0.3, 0.5, 0.8}, {0.75, 0.6, 1.0}, {0.4, 0.4, 0.1}});
-    const HeatSchedule schedule{{"right"}, {700.0, 1200.0}};
+    const HeatSchedule schedule{{"right"}, {700.0, 1200.0}, {}};
     const HeatSeries series = solve_heat_series(factors, problem, schedule);
     CHECK(series.superposed);
     HeatProblem later = problem;

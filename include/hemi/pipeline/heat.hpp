@@ -131,6 +131,7 @@ struct HeatSchedule {
     /// Line l, column c at [l·columns + c]: temperatures, K; of groups with a heat flux that, W/m²; of groups
     /// with a power that, W.
     std::vector<double> values;
+    std::vector<std::string> labels; ///< of lines, for messages; none: they have their numbers only
 };
 /// What a column of a schedule gives.
 enum class HeatQuantity { temperature, heat_flux, power };
