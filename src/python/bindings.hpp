@@ -5,6 +5,7 @@
 #include "hemi/core/nearest_word.hpp"
 #include "hemi/matrix/form_factors.hpp"
 #include "hemi/pipeline/settings.hpp"
+#include "hemi/scene/imprint.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/solver/solution.hpp"
 
@@ -15,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace hemi::python {
 
@@ -25,9 +27,14 @@ struct PatchedScene {
     Scene scene;
     Subdivision subdivision;
     PatchMesh mesh;
+    std::vector<std::uint32_t> face_of;    ///< of its surfaces, the faces as they were read; none: the same
+    std::vector<Surface> surfaces_as_read; ///< as io::ResultFile has them
+    PatchParts parts;                      ///< as well
 
     /// @throws as PatchMesh's constructor
     PatchedScene(Scene the_scene, Subdivision the_subdivision);
+    /// What is left of a scene's faces.
+    PatchedScene(const Scene& as_read, const Subdivision& the_subdivision, Imprint cut);
 };
 using ScenePointer = std::shared_ptr<PatchedScene>;
 

@@ -76,7 +76,11 @@ std::optional<Repair> repair_argument(const std::optional<std::string>& word) {
 FactorsPointer prepared(ScenePointer scene, FormFactors raw, const FactorSettings& settings) {
     auto result = std::make_shared<FactorsOfScene>();
     result->settings = settings;
+    const PatchParts scene_parts = scene ? scene->parts : PatchParts();
     result->scene = std::move(scene);
+    if (scene_parts.any()) {
+        raw.parts = scene_parts;
+    }
     result->factors = raw;
     result->raw = std::move(raw);
     prepare_form_factors(result->factors, settings.repair);
@@ -184,7 +188,7 @@ void save(FactorsOfScene& self, const py::object& path) {
             if (!self.raw) {
                 throw InvalidArgument(
                     fmt::format("{}: holds rows as they were computed, which are not known of "
-                                "form factors from a file of another kind",
+                                "form factors of patches, or from a file of another kind",
                                 file));
             }
             estimate_error(*self.raw);
@@ -409,6 +413,27 @@ IndexError, InvalidArgument
         return fmt::format("<hemi.FormFactors of {} patches, {} entries>", self.factors.matrix.size(),
                            self.factors.matrix.entries());
     });
+    type.def(
+        "by_patch",
+        [](const FactorsOfScene& self) {
+            auto result = std::make_shared<FactorsOfScene>(self);
+            if (self.factors.parts.any()) {
+                result->scene = nullptr;
+                result->raw.reset();
+                result->csr.reset();
+                result->visibility.reset();
+                result->factors = run([&] { return merge_parts(self.factors); });
+            }
+            return result;
+        },
+        R"(
+F of the patches of the scene as it was read, where faces were cut because others touch them.
+
+Returns
+-------
+FormFactors
+    Sums over the parts where light arrives, means by area where it leaves. These, where nothing was cut.
+)");
     type.def(
         "by_group", [](const FactorsOfScene& self) { return by_group(self.factors); }, R"(
 F summed over groups, weighted by area on the leaving side.

@@ -198,15 +198,24 @@ ScenePointer scene_from_arrays(const Doubles& vertices, const py::object& faces,
 ScenePointer read_scene(const py::object& path, std::optional<double> patch_size,
                         std::optional<std::uint32_t> patches_per_face,
                         const std::optional<std::string>& enclosure, const py::object& environment,
-                        const std::vector<std::string>& two_sided, bool strict, double planarity,
-                        bool allow_outside, bool with_imprint) {
+                        const std::vector<std::string>& two_sided, const std::vector<std::string>& one_sided,
+                        const std::vector<std::string>& flip, const std::string& orient, bool strict,
+                        double planarity, bool allow_outside, bool with_imprint) {
     const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
     if (!two_sided.empty() && io::extension_of(file) == ".json") {
         throw InvalidArgument("two_sided is not for JSON scenes, which say \"two_sided\": true");
     }
+    io::SceneReaderOptions options;
+    options.two_sided_groups = two_sided;
+    options.one_sided_groups = one_sided;
+    options.flipped_groups = flip;
+    options.orientation = argument_word<Orientation>("orient", orient);
+    options.strict = strict;
+    options.allow_outside = allow_outside;
+    options.planarity = planarity;
     Diagnostics diagnostics;
     Scene scene = run([&] {
-        Scene read = io::read_scene(file, {two_sided, strict, allow_outside, planarity}, diagnostics);
+        Scene read = io::read_scene(file, options, diagnostics);
         radiate_by_temperature(read, diagnostics);
         return read;
     });
@@ -220,7 +229,7 @@ ScenePointer read_scene(const py::object& path, std::optional<double> patch_size
     return run([&] {
         const Subdivision subdivision{patch_size, patches_per_face};
         std::optional<Imprint> cut = with_imprint ? imprint(scene, subdivision) : std::nullopt;
-        return cut ? std::make_shared<PatchedScene>(std::move(cut->scene), Subdivision{})
+        return cut ? std::make_shared<PatchedScene>(scene, subdivision, std::move(*cut))
                    : std::make_shared<PatchedScene>(std::move(scene), subdivision);
     });
 }
@@ -278,6 +287,15 @@ py::array_t<double> factors_of_point(const PatchedScene& scene, const std::array
 
 PatchedScene::PatchedScene(Scene the_scene, Subdivision the_subdivision)
     : scene(std::move(the_scene)), subdivision(the_subdivision), mesh(scene, subdivision) {}
+
+PatchedScene::PatchedScene(const Scene& as_read, const Subdivision& the_subdivision, Imprint cut)
+    : scene(std::move(cut.scene)), mesh(scene), face_of(std::move(cut.face_of)),
+      surfaces_as_read(as_read.surfaces), parts(std::move(cut.parts)) {
+    const PatchMesh patches(as_read, the_subdivision);
+    for (std::uint32_t s = 0; s < surfaces_as_read.size(); ++s) {
+        surfaces_as_read[s].patches = patches.grid(s);
+    }
+}
 
 void bind_scene(py::module_& module) {
     py::class_<PatchedScene, std::shared_ptr<PatchedScene>> type(module, "Scene", R"(
@@ -383,11 +401,22 @@ InvalidArgument, InputError
         "ndarray of uint32, [N] : index into groups.");
     type.def_property_readonly(
         "face_of",
-        [](const py::object& self) {
-            return view(py::cast<const PatchedScene&>(self).mesh.surface_of(), self);
+        [](const PatchedScene& scene) {
+            std::vector<std::uint32_t> faces(scene.mesh.surface_of().begin(), scene.mesh.surface_of().end());
+            for (std::uint32_t& face : faces) {
+                face = scene.face_of.empty() ? face : scene.face_of[face];
+            }
+            return owned(std::move(faces));
         },
         "ndarray of uint32, [N] : index of the face that a patch is part of, in the order of the file or the "
-        "array. Read-only.");
+        "array.");
+    type.def_property_readonly(
+        "patch_of",
+        [](const PatchedScene& scene) -> py::object {
+            return scene.parts.any() ? py::object(owned(std::vector(scene.parts.patch_of))) : py::none();
+        },
+        "ndarray of uint32, [N], or None : where faces were cut because others touch them, the patch of the "
+        "scene as it was read that each patch is part of; FormFactors.by_patch() gives F of those.");
     type.def_property_readonly(
         "reflectance", [](const PatchedScene& scene) { return values_of(scene, &Material::reflectance); },
         "ndarray, [N, channels] : share that a patch reflects.");
@@ -398,9 +427,11 @@ InvalidArgument, InputError
     module.def("read_scene", &read_scene, py::arg("path"), py::kw_only(), py::arg("patch_size") = py::none(),
                py::arg("patches_per_face") = py::none(), py::arg("enclosure") = py::none(),
                py::arg("environment") = py::none(), py::arg("two_sided") = std::vector<std::string>(),
+               py::arg("one_sided") = std::vector<std::string>(),
+               py::arg("flip") = std::vector<std::string>(), py::arg("orient") = "as-read",
                py::arg("strict") = false, py::arg("planarity") = 1e-5, py::arg("allow_outside") = false,
-               py::arg("imprint") = false, R"(
-Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .inp, .ply or .stl, by its extension.
+               py::arg("imprint") = true, R"(
+Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .inp, .vtk, .vtp, .vtu, .ply or .stl, by its extension.
 
 Parameters
 ----------
@@ -415,7 +446,13 @@ enclosure : {"auto", "closed", "open"}, optional
 environment : float or array_like, shape [channels], optional
     Exitance of the environment instead of the scene's own.
 two_sided : sequence of str
-    Groups whose faces radiate on both sides. JSON scenes say so themselves.
+    Groups whose faces radiate on both sides, "*": all. JSON scenes say so themselves.
+one_sided : sequence of str
+    Groups of which only the front radiates, whatever the file says, "*": all.
+flip : sequence of str
+    Groups whose faces are turned round, "*": all.
+orient : {"as-read", "in", "out"}
+    Turn the faces of every watertight body inwards or outwards.
 strict : bool
     Refuse faces without area or out of plane, instead of leaving those out and cutting these, with a HemiWarning.
 planarity : float
@@ -423,7 +460,8 @@ planarity : float
 allow_outside : bool
     Open files outside the scene's folder that the scene names.
 imprint : bool
-    Cut faces where others stand on them, lie on them or pass through them, and leave out what is covered.
+    Cut faces where others stand on them, lie on them or pass through them, and leave out what is covered. The
+    patches are then parts of those of the faces: see Scene.patch_of and Scene.face_of.
 
 Returns
 -------

@@ -84,6 +84,10 @@ PatchValues given_values(const FactorsOfScene& factors, const py::object& reflec
     return values;
 }
 
+io::ResultFile result_file(const PatchedScene& scene, const Solution& solution) {
+    return {scene.scene, scene.subdivision, solution, scene.surfaces_as_read, scene.parts};
+}
+
 void save(const SolutionOfScene& self, const py::object& path) {
     const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
     const std::string extension = io::extension_of(file);
@@ -91,8 +95,9 @@ void save(const SolutionOfScene& self, const py::object& path) {
     const Solution& solution = self.solution;
     run([&] {
         if (extension == ".csv") {
-            io::write_radiosity_csv(file, scene.mesh, channels_of(self), solution.exitance,
-                                    solution.irradiance, solution.radiosity, radiosity_errors(solution));
+            io::ResultFile result = result_file(scene, solution);
+            result.scene.channels = channels_of(self);
+            io::write_radiosity_csv(file, result);
             return;
         }
         if (extension != ".hres" && extension != ".vtp") {
@@ -105,10 +110,9 @@ void save(const SolutionOfScene& self, const py::object& path) {
                             file));
         }
         if (extension == ".hres") {
-            io::write_hres(file, {scene.scene, scene.subdivision, solution});
+            io::write_hres(file, result_file(scene, solution));
         } else {
-            io::write_vtp(file, scene.mesh,
-                          io::solution_arrays({scene.scene, scene.subdivision, solution}, scene.mesh));
+            io::write_vtp(file, scene.mesh, io::solution_arrays(result_file(scene, solution), scene.mesh));
         }
     });
 }
@@ -237,7 +241,10 @@ SolutionOfScene read_solution(const std::string& path) {
     return run([&] {
         io::ResultFile file = io::read_hres(path);
         SolutionOfScene result;
-        result.scene = std::make_shared<PatchedScene>(std::move(file.scene), file.subdivision);
+        const auto scene = std::make_shared<PatchedScene>(std::move(file.scene), file.subdivision);
+        scene->surfaces_as_read = std::move(file.surfaces_as_read);
+        scene->parts = std::move(file.parts);
+        result.scene = scene;
         result.solution = std::move(file.solution);
         result.solution.exitance =
             patch_values(result.scene->mesh, result.scene->scene.materials, &Material::exitance);

@@ -132,13 +132,43 @@ def test_factors_from_a_point_above_a_square():
         hemi.point_factors(scene, [0, 0, 0], [0, 0, 0])
 
 
-def test_faces_are_cut_where_others_touch_them_if_asked(tmp_path):
+def test_faces_are_cut_where_others_touch_them(tmp_path):
     path = tmp_path / "rug.obj"
     path.write_text(
         "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 3 1 0\nv 3 3 0\nv 1 3 0\n"
         "g floor\nf 1 2 3 4\ng rug\nf 5 6 7 8\n"
     )
-    assert hemi.read_scene(path).areas.sum() == pytest.approx(20)
-    cut = hemi.read_scene(path, imprint=True)
+    whole = hemi.read_scene(path, imprint=False)
+    assert whole.areas.sum() == pytest.approx(20)
+    assert whole.patch_of is None
+    cut = hemi.read_scene(path)
     assert cut.areas.sum() == pytest.approx(16)
     assert cut.groups == ["floor", "rug"]
+    assert set(cut.face_of[:-1]) == {0} and cut.face_of[-1] == 1
+    assert list(cut.patch_of) == list(cut.face_of)
+
+    lid = "v 0 0 2\nv 4 0 2\nv 4 4 2\nv 0 4 2\ng lid\nf 12 11 10 9\n"
+    path.write_text(path.read_text() + lid)
+    scene = hemi.read_scene(path)
+    parts = hemi.form_factors(scene, device="cpu")
+    patches = parts.by_patch()
+    assert len(parts) == len(scene) > len(patches) == 3
+    f = patches.matrix.toarray()
+    # As two plates, and the lid sees both of their parts: closed form of parallel plates.
+    assert f[2, 0] + f[2, 1] == pytest.approx(0.4152532, abs=1e-3)
+    assert 12 * f[0, 2] == pytest.approx(16 * f[2, 0], rel=1e-3)
+    solution = parts.solve(exitance=1.0)
+    solution.save(tmp_path / "a.csv")
+    assert len((tmp_path / "a.csv").read_text().splitlines()) == 4
+    parts.solve().save(tmp_path / "a.hres")
+    assert list(hemi.load(tmp_path / "a.hres").scene.patch_of) == list(scene.patch_of)
+
+
+def test_faces_can_be_turned(tmp_path):
+    path = tmp_path / "plate.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng floor\nf 1 2 3 4\n")
+    assert hemi.read_scene(path).normals[0, 2] == 1
+    assert hemi.read_scene(path, flip=["floor"]).normals[0, 2] == -1
+    assert len(hemi.read_scene(path, two_sided=["*"])) == 2
+    with pytest.raises(ValueError, match="orient"):
+        hemi.read_scene(path, orient="inside")

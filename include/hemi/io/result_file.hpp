@@ -20,7 +20,7 @@ namespace hemi::io {
 struct ResultFile {
     Scene scene;             ///< geometry, materials, camera, channels: all but file names
     Subdivision subdivision; ///< how surfaces were cut, for write_hres()
-    Solution solution;       ///< all but the exitance, which the scene's materials have: patch_values()
+    Solution solution; ///< in a file all but the exitance, which the scene's materials have: patch_values()
     /// The surfaces as they were read, each with its own grid, where those of the scene are what is left of
     /// them (imprint()); else none.
     std::vector<Surface> surfaces_as_read = {};

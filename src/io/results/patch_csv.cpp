@@ -149,7 +149,9 @@ void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& re
     const PatchMesh mesh(result.scene, result.subdivision);
     const std::vector<std::string>& channels = result.scene.channels;
     const Solution& solution = result.solution;
-    const std::vector<double> exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+    const std::vector<double> exitance = solution.exitance.empty()
+                                             ? patch_values(mesh, result.scene.materials, &Material::exitance)
+                                             : solution.exitance;
     const std::vector<double> errors = radiosity_errors(solution);
     if (!result.parts.any()) {
         write_radiosity_csv(path, mesh, channels, exitance, solution.irradiance, solution.radiosity, errors);
