@@ -139,7 +139,6 @@ TEST_CASE(
     const RadiosityReference reference = find_radiosity_reference(fine, mesh, coarser, settings_of(), 1500);
     CHECK(reference.points.size() > 1400);
     CHECK(reference.points.size() < 1600);
-    CHECK(reference.own_error < 1e-4); // the lamp does not depend on patches
     double squares = 0.0;
     double light = 0.0;
     double area = 0.0;
@@ -151,8 +150,12 @@ TEST_CASE(
         CHECK(reference.reflected[k] == reference.radiosity[k]);
     }
     CHECK(area == Approx(4.0).epsilon(0.02)); // only the floor reflects
-    INFO("reference: " << std::sqrt(squares / light));
-    CHECK(std::sqrt(squares / light) < 0.01);
+    const double off = std::sqrt(squares / light);
+    INFO("reference: " << off << ", by its own estimate " << reference.own_error);
+    CHECK(off < 0.01);
+    // The lamp does not depend on patches: what it errs by is chance.
+    CHECK(reference.own_error > 0.5 * off);
+    CHECK(reference.own_error < 2.0 * off);
 
     for (const Gather gather : {Gather::on, Gather::off}) {
         double last_vertices = 1.0;
@@ -160,7 +163,7 @@ TEST_CASE(
         for (const std::uint32_t cells : {4u, 8u, 16u}) {
             const Solved coarse = solved(lamp_and_sheet(cells, 1), Preset::standard, gather);
             const RadiosityError truth = true_error(coarse);
-            const RadiosityError error = judge_radiosity(coarse.mesh, coarse.solution, reference);
+            const RadiosityError error = judge_radiosity(coarse.mesh, coarse.solution, reference).value();
             INFO(cells << " cells: vertices " << error.vertices.rms << ", true " << truth.vertices.rms
                        << "; field " << error.field.rms << ", true " << truth.field.rms);
             CHECK(error.vertices.rms == Approx(truth.vertices.rms).epsilon(0.15));
@@ -189,7 +192,7 @@ TEST_CASE("reference: nothing errs in a furnace, and nothing is found where noth
         CHECK(light == Approx(2.0).epsilon(1e-4));
     }
     const Solved coarse = solved(scene, Preset::fast, Gather::off);
-    CHECK(judge_radiosity(mesh, coarse.solution, reference).vertices.rms < 1e-3);
+    CHECK(judge_radiosity(mesh, coarse.solution, reference)->vertices.rms < 1e-3);
     CHECK(reference.own_error < 1e-5);
     scene.materials[0].reflectance = {0.0};
     CHECK_THROWS_AS(find_radiosity_reference(scene, mesh, mesh, settings_of(), 200), InvalidArgument);
