@@ -286,6 +286,7 @@ void Answers::solve_uniform(const TryOwn& try_own) {
         const PatchMesh mesh = cut_mesh(subject_.scene, {size, {}, {}}, subject_.with_imprint);
         const auto finer = affordable(mesh, false);
         if (finer.empty()) {
+            limit_ = Limit::none; // what is left out there needs no reason
             return;
         }
         if (solve_size(size, mesh, finer)) {
@@ -468,11 +469,14 @@ void Answers::judge_by(RadiosityReference reference, Trade& trade) {
     }
     for (Solved& solved : solved_) {
         Trade::Answer& answer = solved.answer;
-        const auto error = judge_radiosity(solved.mesh, solved.solution, reference);
+        const auto error = answer.patches < reference.patches
+                               ? judge_radiosity(solved.mesh, solved.solution, reference)
+                               : std::nullopt;
         const std::string label =
             plural(answer.patches, "patch", "patches") + ", " + answer.candidate.label();
         if (!error) {
-            omit(label, "its patches have no lit point of the reference");
+            omit(label, answer.patches < reference.patches ? "its patches have no lit point of the reference"
+                                                           : "there was no time for a finer reference");
             continue;
         }
         answer.error = *error;
@@ -481,7 +485,7 @@ void Answers::judge_by(RadiosityReference reference, Trade& trade) {
         trade.answers.push_back(std::move(answer));
     }
     if (trade.answers.empty()) {
-        trade.unanswered = "no solution has a lit point of the reference";
+        trade.unanswered = "the reference can judge no solution, see below";
         return;
     }
     trade.answer_reference = std::move(reference);

@@ -54,7 +54,7 @@ struct Reference {
 };
 /// Reference rows of as many of `patches`, spread over all, as fit into about `seconds`: 8 to 32; with more
 /// sample points than any preset has.
-/// @throws Cancelled if the observer stops it
+/// @throws Cancelled if the observer stops it; as make_visibility_provider()
 [[nodiscard]] Reference find_reference(const PatchMesh& mesh, std::span<const std::uint32_t> patches,
                                        const FactorSettings& base, double seconds,
                                        Observer& observer = no_observer());
