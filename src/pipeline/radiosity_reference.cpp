@@ -237,8 +237,9 @@ RadiosityReference find_radiosity_reference(const Scene& scene, const PatchMesh&
         }
         return area / of.size();
     };
-    // Errors like h²: those of the fine patches from the difference to those of the coarse ones.
-    const double ratio = std::min(mean_area(mesh) / mean_area(coarser), 0.75);
+    // Errors like h^1.5 where walls touch (in smooth light h²): those of the fine patches from the difference
+    // to those of the coarse ones.
+    const double ratio = std::pow(std::min(mean_area(mesh) / mean_area(coarser), 0.75), 0.75);
     const double own = ratio / (1.0 - ratio);
 
     const Points spread = spread_points(scene, mesh, solution, count);

@@ -237,6 +237,28 @@ TEST_CASE("reference: nothing errs in a furnace, and nothing is found where noth
     CHECK_THROWS_AS(find_radiosity_reference(scene, mesh, mesh, settings_of(), 200), InvalidArgument);
 }
 
+TEST_CASE("reference: its own error has that of its patches, which light between walls errs by",
+          "[pipeline][gl]") {
+    const auto box = [](std::uint32_t cells) {
+        Scene scene = tapered_box(cells);
+        scene.enclosure = Enclosure::closed;
+        scene.materials[0].reflectance = {0.7};
+        scene.materials.push_back({"lamp", {0.0}, {1.0}});
+        scene.surfaces[0].material = 1;
+        return scene;
+    };
+    const Solved fine = solved(box(12), Preset::fast, Gather::on);
+    for (const std::uint32_t cells : {2u, 4u}) {
+        const Scene scene = box(cells);
+        const RadiosityReference reference =
+            find_radiosity_reference(scene, PatchMesh(scene), PatchMesh(box(cells / 2)), settings_of(), 400);
+        const double off = judge_radiosity(fine.mesh, fine.solution, reference)->vertices.rms;
+        INFO(cells << " cells: " << off << ", by its own estimate " << reference.own_error);
+        CHECK(reference.own_error > 0.6 * off);
+        CHECK(reference.own_error < 1.6 * off);
+    }
+}
+
 TEST_CASE("trade: smaller patches are slower and better, and the front is what nothing beats",
           "[pipeline][gl][slow]") {
     const Scene scene = lamp_and_sheet(16, 1);

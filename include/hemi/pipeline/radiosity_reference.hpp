@@ -33,7 +33,8 @@ struct RadiosityReference {
 /// points, by which most light comes, have three times the texels of `default` along an edge and four times
 /// its shadow rays. Rotations and rays are others than those of the settings. The reference's own error has
 /// two parts: of the patches' size, from what the gathered light changes by when the radiosity is averaged
-/// over the coarser patches, which goes like the square of that size; and of the points' rows, from what the
+/// over the coarser patches, taken to go like that size to the power of 1.5, as it does where walls touch (in
+/// smooth light, the square); and of the points' rows, from what the
 /// light changes by at one point in four when it is gathered again with other rotations and rays.
 /// @param scene     materials, environment, enclosure
 /// @param mesh      finer than those that are to be judged
