@@ -68,11 +68,8 @@ void convert_result(const ConvertArguments& arguments, const Terminal& terminal)
     if (to_paraview) {
         write_cells(arguments, result, mesh);
     } else {
-        io::write_radiosity_csv(arguments.output, mesh, result.scene.channels,
-                                patch_values(mesh, result.scene.materials, &Material::exitance),
-                                result.solution.irradiance, result.solution.radiosity,
-                                radiosity_errors(result.solution));
-        report(arguments, {{"patches", mesh.size()}});
+        io::write_radiosity_csv(arguments.output, result);
+        report(arguments, {{"patches", result.parts.any() ? result.parts.patches() : mesh.size()}});
     }
     terminal.note(fmt::format(
         "not in {}: names of materials, subdivision, environment, camera, solver{}", output_name(arguments),

@@ -58,13 +58,16 @@ ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     const Outputs outputs = check_outputs(arguments);
     Seconds seconds({"load", "factors", "estimate", "repair", "solve"});
     const LoadedScene loaded =
-        load_thermal_scene(arguments.scene, arguments.input, arguments.heat, false, terminal);
+        load_thermal_scene("exchange", arguments.scene, arguments.input, arguments.heat, false, terminal);
     seconds["load"] = loaded.seconds;
     TerminalObserver observer(terminal);
-    const HeatProblem problem =
-        heat_problem(loaded.scene, loaded.mesh); // nothing need be known of temperatures
-    const FormFactors factors = find_heat_rows(arguments.common, arguments.rows, arguments.input, loaded,
-                                               observer, terminal, seconds);
+    const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer, false);
+    RowOptions rows = arguments.rows;
+    if (!arguments.input.factors) {
+        rows.factors.estimate_error = false; // only a file would show it
+    }
+    const FormFactors factors =
+        find_heat_rows(arguments.common, rows, arguments.input, loaded, observer, terminal, seconds);
     const double max_row_error = arguments.rows.max_row_error;
     const RowSums sums = row_sums(factors.matrix);
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);

@@ -23,44 +23,27 @@ namespace hemi::cli {
 
 namespace {
 
-/// A schedule and the names of its lines.
-struct Lines {
-    HeatSchedule schedule;
-    std::vector<std::string> labels;
-};
-
-Lines read_series(const std::filesystem::path& path) {
-    const io::TextTable table = io::read_table(path);
+io::TextTable read_series(const std::filesystem::path& path) {
+    io::TextTable table = io::read_table(path);
     if (table.columns.size() < 2 || table.rows.empty()) {
         throw InputError(fmt::format("{}: {} of {}; a series has a column of times, then one for every group "
                                      "that changes, and a line for each time",
                                      path.string(), plural(table.rows.size(), "line", "lines"),
                                      plural(table.columns.size(), "column", "columns")));
     }
-    Lines lines;
-    lines.schedule.columns.assign(table.columns.begin() + 1, table.columns.end());
-    for (std::size_t row = 0; row < table.rows.size(); ++row) {
-        lines.labels.push_back(table.rows[row][0]);
-        for (std::size_t c = 1; c < table.columns.size(); ++c) {
-            const auto value = parse_temperature(table.rows[row][c]);
-            if (!value) {
-                throw ParseError(path.string(), table.lines[row], 0,
-                                 fmt::format("{} '{}'; must be a number, or a temperature such as 20C",
-                                             table.columns[c], table.rows[row][c]));
-            }
-            lines.schedule.values.push_back(*value);
-        }
-    }
-    return lines;
+    return table;
 }
 
 /// What the scene says nothing of has the temperatures of the first line.
-void give_temperatures(Scene& scene, const HeatSchedule& schedule) {
-    for (std::size_t c = 0; c < schedule.columns.size(); ++c) {
-        const auto found = std::find(scene.groups.begin(), scene.groups.end(), schedule.columns[c]);
+void give_temperatures(Scene& scene, const std::filesystem::path& path, const io::TextTable& table) {
+    for (std::size_t c = 1; c < table.columns.size(); ++c) {
+        const auto found = std::find(scene.groups.begin(), scene.groups.end(), table.columns[c]);
         auto& environment = scene.thermal->environment_temperature;
-        if (found == scene.groups.end() && schedule.columns[c] == "environment" && !environment) {
-            environment = schedule.values[c];
+        if (found == scene.groups.end()) {
+            if (table.columns[c] == "environment" && !environment) {
+                environment = parse_cell(path, table, 0, c, true);
+            }
+            continue;
         }
         const auto group = static_cast<std::uint32_t>(found - scene.groups.begin());
         const auto is_known = [group](const Surface& surface) {
@@ -70,11 +53,28 @@ void give_temperatures(Scene& scene, const HeatSchedule& schedule) {
             continue;
         }
         const auto index = static_cast<std::uint32_t>(scene.thermal->conditions.size());
-        scene.thermal->conditions.emplace_back().temperature = schedule.values[c];
+        scene.thermal->conditions.emplace_back().temperature = parse_cell(path, table, 0, c, true);
         for (Surface& surface : scene.surfaces) {
             surface.heat = surface.group == group ? index : surface.heat;
         }
     }
+}
+
+/// The table as a schedule, whose names and values can be used.
+HeatSchedule schedule_of(const std::filesystem::path& path, const io::TextTable& table,
+                         const LoadedScene& loaded, const HeatProblem& problem) {
+    HeatSchedule schedule;
+    schedule.columns.assign(table.columns.begin() + 1, table.columns.end());
+    const std::vector<HeatQuantity> quantities =
+        check_heat_schedule(loaded.mesh.groups(), loaded.group_of, problem, schedule);
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        schedule.labels.push_back(table.rows[row][0]);
+        for (std::size_t c = 1; c < table.columns.size(); ++c) {
+            schedule.values.push_back(
+                parse_cell(path, table, row, c, quantities[c - 1] == HeatQuantity::temperature));
+        }
+    }
+    return schedule;
 }
 
 Outputs check_outputs(const HeatArguments& arguments) {
@@ -97,25 +97,26 @@ Outputs check_outputs(const HeatArguments& arguments) {
     return outputs;
 }
 
-/// What is known of the mesh's patches, for those that results are about: means by area, of temperatures that
-/// of the fourth power; nothing of those of which nothing is left.
+/// What is known of the mesh's patches, for those that results are about: means by area over parts of which
+/// it is known, of temperatures that of the fourth power; nothing of those of which nothing is left.
 std::vector<io::CellArray> of_patches(std::vector<io::CellArray> arrays, const LoadedScene& loaded) {
     if (!loaded.as_read) {
         return arrays;
     }
     for (io::CellArray& array : arrays) {
         const bool is_temperature = array.name == "temperature";
+        std::vector<double> known;
         for (double& value : array.values) {
-            value = is_temperature ? std::pow(value, 4.0) : value;
+            known.push_back(std::isfinite(value) ? 1.0 : 0.0);
+            value = known.back() == 0.0 ? 0.0 : is_temperature ? std::pow(value, 4.0) : value;
         }
         const std::size_t components = std::max<std::size_t>(array.components.size(), 1);
         array.values = loaded.means(array.values, components);
+        known = loaded.means(known, components);
         for (std::size_t k = 0; k < array.values.size(); ++k) {
             double& value = array.values[k];
+            value /= known[k]; // not a number where nothing is
             value = is_temperature ? std::sqrt(std::sqrt(value)) : value;
-            value = loaded.as_read->left.areas[k / components] > 0.0
-                        ? value
-                        : std::numeric_limits<double>::quiet_NaN();
         }
     }
     return arrays;
@@ -138,8 +139,10 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
                               loaded.as_read ? loaded.as_read->left : io::PatchPlaces());
     }
     if (arguments.output) {
-        for (double& kelvin : arrays[0].values) {
-            kelvin = std::isfinite(kelvin) ? kelvin : 0.0; // the format has numbers only
+        for (io::CellArray& array : arrays) {
+            for (double& value : array.values) {
+                value = std::isfinite(value) ? value : 0.0; // the format has numbers only
+            }
         }
         io::write_vtp(*arguments.output, loaded.mesh, arrays);
     }
@@ -149,18 +152,23 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
 
 ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     const Outputs outputs = check_outputs(arguments);
-    std::optional<Lines> lines;
+    std::optional<io::TextTable> lines;
     if (arguments.series) {
         lines = read_series(*arguments.series);
     }
     Seconds seconds({"load", "factors", "estimate", "repair", "solve", "series"});
-    LoadedScene loaded = load_thermal_scene(arguments.scene, arguments.input, arguments.heat, true, terminal);
+    LoadedScene loaded =
+        load_thermal_scene("heat", arguments.scene, arguments.input, arguments.heat, true, terminal);
     seconds["load"] = loaded.seconds;
     if (lines) {
-        give_temperatures(loaded.scene, lines->schedule);
+        give_temperatures(loaded.scene, *arguments.series, *lines);
     }
     TerminalObserver observer(terminal);
     const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);
+    HeatSchedule schedule;
+    if (lines) {
+        schedule = schedule_of(*arguments.series, *lines, loaded, problem);
+    }
     const FormFactors factors = find_heat_rows(arguments.common, arguments.rows, arguments.input, loaded,
                                                observer, terminal, seconds);
     const double max_row_error = arguments.rows.max_row_error;
@@ -170,6 +178,15 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     const Stopwatch watch;
     const HeatSolution solution = solve_heat(factors, problem, {}, observer);
     seconds["solve"] = watch.seconds();
+    HeatSeries series;
+    if (lines) {
+        const Stopwatch series_watch;
+        series = solve_heat_series(factors, problem, schedule, {}, observer);
+        seconds["series"] = series_watch.seconds();
+        terminal.detail(fmt::format("{} lines {}", lines->rows.size(),
+                                    series.superposed ? "by superposition of one solve a column"
+                                                      : "solved one by one: the problem is not linear"));
+    }
     write_patches(arguments, loaded, problem, solution);
     std::vector<double> errors(factors.groups.size(), std::numeric_limits<double>::quiet_NaN());
     if (arguments.rows.factors.estimate_error && factors.error) {
@@ -181,14 +198,8 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     Report tables = heat_report(factors, problem, solution, errors);
     tables.json["series"] = nullptr;
     if (lines) {
-        const Stopwatch series_watch;
-        const HeatSeries series = solve_heat_series(factors, problem, lines->schedule, {}, observer);
-        seconds["series"] = series_watch.seconds();
-        terminal.detail(fmt::format("{} lines {}", lines->labels.size(),
-                                    series.superposed ? "by superposition of one solve a column"
-                                                      : "solved one by one: the problem is not linear"));
         tables.text += "\n";
-        tables.add(series_report(factors.groups, lines->labels, series));
+        tables.add(series_report(factors.groups, schedule.labels, series));
     }
     Report report = scene_size_report(loaded);
     report.add(rows_report(factors, sums, enclosure));

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace hemi::cli {
 
@@ -33,20 +34,63 @@ std::uint32_t group_of_option(const Scene& scene, std::string_view option, const
     return static_cast<std::uint32_t>(found - scene.groups.begin());
 }
 
+/// Names, each of which can be given once.
+class Once {
+public:
+    /// Whether it is the first time.
+    [[nodiscard]] bool add(const std::string& name) { return names_.insert(name).second; }
+
+private:
+    std::set<std::string> names_;
+};
+
+constexpr const char* repeated_condition =
+    "this group is given a temperature, heat flux or power already; one follows from the other";
+constexpr const char* repeated_emissivity = "this group is given an emissivity already";
+
+void refuse_repeat(Once& once, std::string_view option, const std::string& name, const char* message) {
+    if (!once.add(name)) {
+        throw InvalidArgument(fmt::format("{} {}: {}", option, name, message));
+    }
+}
+
+[[noreturn]] void fail_covered(const std::string& name, double power) {
+    throw InputError(
+        fmt::format("group {}: a power of {:.6g} W cannot leave: other faces cover all of it", name, power));
+}
+
 /// A condition for all of a group in place of those that it has.
 void set_condition(Scene& scene, std::string_view option, const std::string& name,
-                   const HeatCondition& condition, std::vector<std::string>& set) {
+                   const HeatCondition& condition) {
     const std::uint32_t group = group_of_option(scene, option, name);
-    if (std::find(set.begin(), set.end(), name) != set.end()) {
-        throw InvalidArgument(fmt::format("{} {}: this group is given a temperature, heat flux or power "
-                                          "already; one follows from the other",
-                                          option, name));
-    }
-    set.push_back(name);
     const auto index = static_cast<std::uint32_t>(scene.thermal->conditions.size());
     scene.thermal->conditions.push_back(condition);
+    bool covered = true;
     for (Surface& surface : scene.surfaces) {
         surface.heat = surface.group == group ? index : surface.heat;
+        covered = covered && surface.group != group;
+    }
+    if (covered && condition.power.value_or(0.0) != 0.0) {
+        fail_covered(name, *condition.power);
+    }
+}
+
+/// Refuses powers of faces of which nothing is left where others touch them.
+/// @param others  groups of which a table or an option says something else
+void refuse_covered_powers(const LoadedScene& loaded, const std::set<std::string>& others) {
+    std::set<std::uint32_t> left;
+    for (const Surface& surface : loaded.scene.surfaces) {
+        left.insert(surface.heat);
+    }
+    for (const Surface& surface : loaded.uncut().surfaces) {
+        if (surface.heat == no_heat || left.contains(surface.heat)) {
+            continue;
+        }
+        const double power = loaded.scene.thermal->conditions[surface.heat].power.value_or(0.0);
+        const std::string& name = loaded.uncut().groups[surface.group];
+        if (power != 0.0 && !others.contains(name)) {
+            fail_covered(name, power);
+        }
     }
 }
 
@@ -69,29 +113,20 @@ void set_emissivity(Scene& scene, const std::string& name, double emissivity) {
     }
 }
 
-/// A number, or a temperature with its unit, of a cell.
-double parse_cell(const std::filesystem::path& path, const io::TextTable& table, std::size_t row,
-                  std::size_t column, bool temperature) {
-    const std::string& text = table.rows[row][column];
-    const auto fail = [&](const char* wanted) {
-        throw ParseError(path.string(), table.lines[row], 0,
-                         fmt::format("{} '{}'; must be {}", table.columns[column], text, wanted));
-    };
-    const std::optional<double> value = parse_temperature(text);
-    const bool bare = text.find_first_of("KC") == std::string::npos;
-    if (!value || !(temperature || bare)) {
-        fail(temperature ? "kelvin, or with a unit such as 20C" : "a number");
-    }
-    if (temperature && *value < 0.0) {
-        fail("at least 0 K");
-    }
-    return *value;
-}
+/// What a table says of groups.
+struct GroupTable {
+    HeatOptions heat;
+    std::vector<std::pair<std::string, std::size_t>> names; // with their lines
+};
 
-/// Adds what a table says of groups.
 /// @param conditions  whether it may say something of temperatures and fluxes
-void add_table(const std::filesystem::path& path, bool conditions, HeatOptions& heat) {
+GroupTable read_groups(const std::filesystem::path& path, bool conditions) {
     const io::TextTable table = io::read_table(path);
+    GroupTable groups;
+    HeatOptions& heat = groups.heat;
+    Once columns;
+    Once with_condition;
+    Once with_emissivity;
     std::vector<std::string> known{"group", "emissivity"};
     if (conditions) {
         known.insert(known.end(), {"temperature", "heat_flux", "power"});
@@ -101,6 +136,9 @@ void add_table(const std::filesystem::path& path, bool conditions, HeatOptions& 
             throw InputError(fmt::format("{}: unknown column \"{}\"{}", path.string(), column,
                                          did_you_mean_or_list(column, known)));
         }
+        if (!columns.add(column)) {
+            throw InputError(fmt::format("{}: two columns \"{}\"", path.string(), column));
+        }
     }
     const auto group = table.column("group");
     if (!group) {
@@ -108,6 +146,7 @@ void add_table(const std::filesystem::path& path, bool conditions, HeatOptions& 
     }
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
         const std::string& name = table.rows[row][*group];
+        groups.names.emplace_back(name, table.lines[row]);
         for (std::size_t c = 0; c < table.columns.size(); ++c) {
             const std::string& column = table.columns[c];
             if (c == *group || table.rows[row][c].empty()) {
@@ -118,12 +157,40 @@ void add_table(const std::filesystem::path& path, bool conditions, HeatOptions& 
                 throw ParseError(path.string(), table.lines[row], 0,
                                  fmt::format("emissivity {}; must be above 0 and at most 1", value));
             }
+            const bool of_emissivity = column == "emissivity";
+            if (!(of_emissivity ? with_emissivity : with_condition).add(name)) {
+                throw ParseError(
+                    path.string(), table.lines[row], 0,
+                    fmt::format("{}: {}", name, of_emissivity ? repeated_emissivity : repeated_condition));
+            }
             (column == "temperature"  ? heat.temperature
              : column == "emissivity" ? heat.emissivity
              : column == "power"      ? heat.power
                                       : heat.heat_flux)
                 .emplace_back(name, value);
         }
+    }
+    return groups;
+}
+
+/// What a table or the command line says, in place of what the scene has.
+void set_properties(Scene& scene, const HeatOptions& heat) {
+    Once with_condition;
+    Once with_emissivity;
+    const auto set = [&](const char* option, const auto& values, auto HeatCondition::*member) {
+        for (const auto& [name, value] : values) {
+            HeatCondition condition;
+            condition.*member = value;
+            refuse_repeat(with_condition, option, name, repeated_condition);
+            set_condition(scene, option, name, condition);
+        }
+    };
+    set("--temperature", heat.temperature, &HeatCondition::temperature);
+    set("--heat-flux", heat.heat_flux, &HeatCondition::heat_flux);
+    set("--power", heat.power, &HeatCondition::power);
+    for (const auto& [name, value] : heat.emissivity) {
+        refuse_repeat(with_emissivity, "--emissivity", name, repeated_emissivity);
+        set_emissivity(scene, name, value);
     }
 }
 
@@ -225,21 +292,40 @@ FormFactors find_raw_rows(const CommonOptions& common, const RowOptions& rows, c
         });
     if (!factors.matrix.all_known()) {
         throw InputError(
-            fmt::format("{}: rows are missing; heat needs those of all patches", input.factors->string()));
+            fmt::format("{}: rows are missing; those of all patches are needed", input.factors->string()));
     }
     return factors;
 }
 
 } // namespace
 
-LoadedScene load_thermal_scene(SceneOptions options, const FactorInput& input, HeatOptions heat,
-                               bool conditions, const Terminal& terminal) {
+double parse_cell(const std::filesystem::path& path, const io::TextTable& table, std::size_t row,
+                  std::size_t column, bool temperature) {
+    const std::string& text = table.rows[row][column];
+    const auto fail = [&](const char* wanted) {
+        throw ParseError(path.string(), table.lines[row], 0,
+                         fmt::format("{} '{}'; must be {}", table.columns[column], text, wanted));
+    };
+    const std::optional<double> value = parse_temperature(text);
+    const bool bare = text.find_first_of("KC") == std::string::npos;
+    if (!value || !(temperature || bare)) {
+        fail(temperature ? "kelvin, or with a unit such as 20C" : "a number");
+    }
+    if (temperature && *value < 0.0) {
+        fail("at least 0 K");
+    }
+    return *value;
+}
+
+LoadedScene load_thermal_scene(std::string_view command, SceneOptions options, const FactorInput& input,
+                               const HeatOptions& heat, bool conditions, const Terminal& terminal) {
     if (!io::is_scene_file(options.path)) {
         throw InvalidArgument(
-            fmt::format("{}: heat needs a scene ({})", options.path.string(), io::scene_extensions()));
+            fmt::format("{}: {} needs a scene ({})", options.path.string(), command, io::scene_extensions()));
     }
+    GroupTable table;
     if (heat.table) {
-        add_table(*heat.table, conditions, heat);
+        table = read_groups(*heat.table, conditions);
     }
     options.imprint = options.imprint && (!input.factors || is_own(*input.factors));
     LoadedScene loaded = load_scene(options, terminal);
@@ -247,25 +333,26 @@ LoadedScene load_thermal_scene(SceneOptions options, const FactorInput& input, H
     if (!scene.thermal) {
         scene.thermal.emplace();
     }
-    std::vector<std::string> set;
-    for (const auto& [name, value] : heat.temperature) {
-        HeatCondition condition;
-        condition.temperature = value;
-        set_condition(scene, "--temperature", name, condition, set);
+    for (const auto& [name, line] : table.names) {
+        if (std::find(scene.groups.begin(), scene.groups.end(), name) == scene.groups.end()) {
+            throw ParseError(heat.table->string(), line, 0,
+                             fmt::format("{}: the scene has no such group{}", name,
+                                         did_you_mean_or_list(name, scene.groups)));
+        }
     }
-    for (const auto& [name, value] : heat.heat_flux) {
-        HeatCondition condition;
-        condition.heat_flux = value;
-        set_condition(scene, "--heat-flux", name, condition, set);
+    if (conditions) {
+        std::set<std::string> others;
+        for (const HeatOptions* said : {&std::as_const(table.heat), &heat}) {
+            for (const auto* values : {&said->temperature, &said->heat_flux, &said->power}) {
+                for (const auto& [name, value] : *values) {
+                    others.insert(name);
+                }
+            }
+        }
+        refuse_covered_powers(loaded, others);
     }
-    for (const auto& [name, value] : heat.power) {
-        HeatCondition condition;
-        condition.power = value;
-        set_condition(scene, "--power", name, condition, set);
-    }
-    for (const auto& [name, value] : heat.emissivity) {
-        set_emissivity(scene, name, value);
-    }
+    set_properties(scene, table.heat);
+    set_properties(scene, heat); // over those of the table
     if (heat.environment) {
         scene.thermal->environment_temperature = heat.environment;
     }

@@ -6,6 +6,7 @@
 #include "cli/report/report.hpp"
 #include "cli/report/seconds.hpp"
 #include "cli/terminal.hpp"
+#include "hemi/io/table_file.hpp"
 #include "hemi/pipeline/heat.hpp"
 
 /// What `heat` and `exchange` have in common.
@@ -13,10 +14,17 @@ namespace hemi::cli {
 
 /// The scene, with what the options say of its groups.
 /// @throws InputError, InvalidArgument; for unknown groups with the nearest
+/// @param command     that needs it
 /// @param input       rows of another program are those of the scene's faces as they are: none is cut
 /// @param conditions  whether temperatures and fluxes are of interest
-[[nodiscard]] LoadedScene load_thermal_scene(SceneOptions scene, const FactorInput& input, HeatOptions heat,
+[[nodiscard]] LoadedScene load_thermal_scene(std::string_view command, SceneOptions scene,
+                                             const FactorInput& input, const HeatOptions& heat,
                                              bool conditions, const Terminal& terminal);
+
+/// A number, or a temperature with or without its unit, in a cell of a table.
+/// @throws ParseError with the place, for numbers with units, and temperatures below 0 K
+[[nodiscard]] double parse_cell(const std::filesystem::path& path, const io::TextTable& table,
+                                std::size_t row, std::size_t column, bool temperature);
 
 /// All rows, reciprocal: computed, or from a file.
 /// @param seconds  gets "factors", "estimate" and "repair"

@@ -84,20 +84,6 @@ void warn_of_overlaps(const Imprint& cut, const Scene& as_read, const Terminal& 
          "faces are cut, where others lie on them in their planes");
 }
 
-io::PatchPlaces places_left(const PatchMesh& as_read, const PatchMesh& mesh, const PatchParts& parts) {
-    std::vector<double> coordinates;
-    for (const Vec3& centre : mesh.centres()) {
-        coordinates.insert(coordinates.end(), {centre.x, centre.y, centre.z});
-    }
-    const std::vector<double> means = means_of_patches(parts, mesh.areas(), coordinates, 3);
-    io::PatchPlaces left{areas_of_patches(parts, mesh.areas()), {}};
-    for (std::size_t i = 0; i < left.areas.size(); ++i) {
-        left.centres.push_back(left.areas[i] > 0.0 ? Vec3(means[3 * i], means[3 * i + 1], means[3 * i + 2])
-                                                   : as_read.centres()[i]);
-    }
-    return left;
-}
-
 void warn_of_turned_faces(const Scene& scene, const Terminal& terminal) {
     const std::vector<std::uint32_t> turned = turned_against_others(scene);
     if (!turned.empty()) {
@@ -130,7 +116,7 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     if (auto cut = options.imprint ? imprint(scene, subdivision) : std::nullopt) {
         warn_of_overlaps(*cut, scene, terminal);
         PatchMesh parts(cut->scene);
-        io::PatchPlaces left = places_left(mesh, parts, cut->parts);
+        io::PatchPlaces left = io::places_left(mesh, parts, cut->parts);
         as_read = {std::exchange(scene, std::move(cut->scene)),
                    std::exchange(mesh, std::move(parts)),
                    std::move(cut->parts),
@@ -161,6 +147,18 @@ void LoadedScene::adopt(PatchMesh other) {
 std::vector<double> LoadedScene::means(std::span<const double> values, std::size_t channels) const {
     return as_read ? means_of_patches(as_read->parts, mesh.areas(), values, channels)
                    : std::vector<double>(values.begin(), values.end());
+}
+
+io::ResultFile LoadedScene::result(Solution solution) const {
+    io::ResultFile file{scene, subdivision, std::move(solution)};
+    if (as_read) {
+        file.surfaces_as_read = as_read->scene.surfaces;
+        for (std::uint32_t s = 0; s < file.surfaces_as_read.size(); ++s) {
+            file.surfaces_as_read[s].patches = as_read->mesh.grid(s);
+        }
+        file.parts = as_read->parts;
+    }
+    return file;
 }
 
 void LoadedScene::write_patches(const std::filesystem::path& path) const {

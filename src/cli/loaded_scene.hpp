@@ -56,6 +56,8 @@ struct LoadedScene {
     /// Values of the mesh's patches, as means over those that results are about.
     /// @param channels  of the values
     [[nodiscard]] std::vector<double> means(std::span<const double> values, std::size_t channels) const;
+    /// What a `.hres` holds of a solution of the mesh.
+    [[nodiscard]] io::ResultFile result(Solution solution) const;
     /// --patches
     void write_patches(const std::filesystem::path& path) const;
 };

@@ -159,17 +159,15 @@ void write_solution(const SolveArguments& arguments, const LoadedScene& loaded, 
     const auto wanted = [only_replaced](const std::optional<std::filesystem::path>& path) {
         return path && (!only_replaced || is_replaced(*path));
     };
+    if (!wanted(arguments.result) && !wanted(arguments.radiosity)) {
+        return;
+    }
+    const io::ResultFile result = loaded.result(solution);
     if (wanted(arguments.result)) {
-        io::write_hres(*arguments.result, {loaded.scene, loaded.subdivision, solution});
+        io::write_hres(*arguments.result, result);
     }
     if (wanted(arguments.radiosity)) {
-        const auto means = [&](std::span<const double> values) {
-            return values.empty() ? std::vector<double>() : loaded.means(values, solution.channels);
-        };
-        io::write_radiosity_csv(*arguments.radiosity, loaded.patches(), loaded.scene.channels,
-                                means(solution.exitance), means(solution.irradiance),
-                                means(solution.radiosity), means(radiosity_errors(solution)),
-                                loaded.as_read ? loaded.as_read->left : io::PatchPlaces());
+        io::write_radiosity_csv(*arguments.radiosity, result);
     }
 }
 

@@ -110,7 +110,10 @@ private:
                      std::shared_ptr<const PatchMesh>(loaded, &loaded->mesh), std::move(lamps));
         input.solution.radiosity = input.solution.exitance;
         input.command = "hemi solve " + viewer::quoted(path.string()) + given_options(arguments_.common);
-        input.subdivision = options.subdivision;
+        io::ResultFile stored = loaded->result({});
+        input.subdivision = loaded->subdivision;
+        input.surfaces_as_read = std::move(stored.surfaces_as_read);
+        input.parts = std::move(stored.parts);
         input.factor_settings = arguments_.rows.factors;
         input.solver = arguments_.solver;
         input.gather = arguments_.gather;

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
+#include <optional>
 
 namespace hemi {
 
@@ -18,9 +20,10 @@ namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
-/// The x >= 0 with excess(x) = 0, excess being increasing and hardly curved; 0 where it is positive there.
+/// The x >= 0 with excess(x) = 0, excess being increasing and hardly curved; 0 where it is positive there;
+/// nothing where it never gets there.
 /// @param guess  about where
-double root_of(const std::function<double(double)>& excess, double guess) {
+std::optional<double> root_of(const std::function<double(double)>& excess, double guess) {
     double low = 0.0;
     double at_low = excess(low);
     if (at_low >= 0.0) {
@@ -33,6 +36,9 @@ double root_of(const std::function<double(double)>& excess, double guess) {
         at_low = at_high;
         high *= 2.0;
         at_high = excess(high);
+    }
+    if (!(at_high >= 0.0)) {
+        return std::nullopt;
     }
     // The Illinois rule: secants that halve the weight of an end which stays.
     int side = 0;
@@ -65,19 +71,18 @@ double root_of(const std::function<double(double)>& excess, double guess) {
 
 class HeatSolver {
 public:
-    HeatSolver(const FormFactors& factors, const HeatProblem& problem, const HeatSettings& settings,
-               Observer& observer)
-        : factors_(factors), problem_(problem), settings_(settings), observer_(observer),
-          network_(make_network(factors, problem)), buried_(buried_patches(network_)),
-          fluxes_(condition_fluxes(factors, problem, buried_)), unknown_of_(network_.size(), no_heat),
-          power_(network_.size(), 0.0) {
+    HeatSolver(const ExchangeNetwork& network, const FormFactors& factors, const HeatProblem& problem,
+               const HeatSettings& settings, Observer& observer)
+        : factors_(factors), problem_(problem), settings_(settings), observer_(observer), network_(network),
+          buried_(buried_patches(network_)), fluxes_(condition_fluxes(factors, problem, buried_)),
+          unknown_of_(network_.size(), no_heat), power_(network_.size(), 0.0) {
         refuse_singular(factors, problem, network_, buried_);
         find_given();
         find_unknowns();
+        set_aside();
     }
 
     HeatSolution solve() {
-        warn_of_dark_environment();
         std::vector<double> x(unknowns_.size(), first_guess());
         solve_field(x);
         if (!x.empty()) {
@@ -100,13 +105,6 @@ private:
     /// Whether the flux is a source of the linear system: in one band, emissivity does not matter then.
     [[nodiscard]] bool is_flux_source(std::uint32_t i) const {
         return problem_.bands == 1 && has_flux(problem_, i);
-    }
-    [[nodiscard]] double exitance(std::uint32_t i) const {
-        double sum = 0.0;
-        for (std::uint32_t k = 0; k < problem_.bands; ++k) {
-            sum += problem_.exitance[at(i, k)];
-        }
-        return sum;
     }
 
     /// sigma T⁴ of patches whose temperature is given; not a number of others.
@@ -138,6 +136,48 @@ private:
         }
     }
 
+    /// Takes out of the unknowns those that no balance tells: patches that are all buried, and perfect
+    /// reflectors, whose net flux is their exitance.
+    void set_aside() {
+        std::vector<Unknown> left;
+        for (Unknown& unknown : unknowns_) {
+            double area = 0.0;
+            double own = 0.0;
+            bool absorbs = false;
+            for (const std::uint32_t i : unknown.patches) {
+                if (buried_[i] == 0) {
+                    area += factors_.areas[i];
+                    own += factors_.areas[i] * exitance_of(problem_, i);
+                    absorbs = absorbs || !reflects_all(problem_, i);
+                }
+            }
+            const bool stays = area > 0.0 && absorbs;
+            for (const std::uint32_t i : unknown.patches) {
+                unknown_of_[i] = stays ? static_cast<std::uint32_t>(left.size()) : no_heat;
+            }
+            if (stays) {
+                left.push_back(std::move(unknown));
+            } else if (area > 0.0) {
+                refuse_flux_of_reflector(unknown, own / area);
+                reflectors_.push_back(std::move(unknown));
+            }
+        }
+        unknowns_ = std::move(left);
+    }
+
+    void refuse_flux_of_reflector(const Unknown& unknown, double exitance) const {
+        if (!is_exitance(unknown.flux, exitance)) {
+            throw InputError(
+                fmt::format("group {}: its emissivity is 0, so that its net flux is its exitance, {:.6g} "
+                            "W/m², and cannot be {:.6g} W/m²; give it an emissivity above 0",
+                            group_name(unknown.patches.front()), exitance, unknown.flux));
+        }
+    }
+
+    [[nodiscard]] const std::string& group_name(std::uint32_t i) const {
+        return factors_.groups[factors_.group_of[i]];
+    }
+
     [[nodiscard]] double first_guess() const {
         double sum = 0.0;
         double weight = 0.0;
@@ -157,27 +197,6 @@ private:
             sum += std::abs(flux);
         }
         return sum;
-    }
-
-    void warn_of_dark_environment() {
-        const std::vector<double> bright = environment_exitance(problem_);
-        if (problem_.environment_temperature ||
-            std::any_of(bright.begin(), bright.end(), [](double value) { return value > 0.0; })) {
-            return;
-        }
-        double lost = 0.0;
-        double area = 0.0;
-        for (std::uint32_t i = 0; i < size(); ++i) {
-            lost += factors_.areas[i] * network_.environment()[i];
-            area += factors_.areas[i];
-        }
-        if (lost > 0.0) {
-            observer_.warning(
-                fmt::format("the scene is open to an environment without temperature, which counts "
-                            "as 0 K ({:.3g} % of what leaves surfaces goes there)",
-                            100.0 * lost / area),
-                "environment-temperature");
-        }
     }
 
     void solve_field(const std::vector<double>& x) {
@@ -241,7 +260,13 @@ private:
             }
             return sum;
         };
-        return root_of(excess, guess);
+        const std::optional<double> root = root_of(excess, guess);
+        if (!root) {
+            throw InputError(fmt::format("group {}: no temperature makes a net flux of {:.6g} W/m², by its "
+                                         "emissivity; give it one that is above 0 where it radiates",
+                                         group_name(patches.front()), flux));
+        }
+        return *root;
     }
 
     void iterate(std::vector<double>& x) {
@@ -292,42 +317,55 @@ private:
             area += factors_.areas[patch] * (buried_[patch] == 0 ? 1.0 : 0.0);
         }
         if (area > 0.0 && sum > flux * area + 1e-9 * std::abs(sum)) {
-            fail_cold(i, flux);
+            throw InputError(too_cold_text(factors_, i, flux));
         }
     }
 
-    [[noreturn]] void fail_cold(std::uint32_t i, double flux) const {
-        throw InputError(
-            fmt::format("group {}: a net flux of {:.6g} W/m² would need a temperature below 0 K at "
-                        "patch {}: less than that arrives there",
-                        factors_.groups[factors_.group_of[i]], flux, i));
+    /// Over all bands.
+    [[nodiscard]] double arriving(std::uint32_t i) const {
+        const auto first = fluxes_found_.irradiation.begin() + static_cast<std::ptrdiff_t>(at(i, 0));
+        return std::accumulate(first, first + problem_.bands, 0.0);
     }
 
-    /// sigma T⁴ of a patch whose flux was a source.
-    [[nodiscard]] double power_of_flux(std::uint32_t i) const {
-        if (buried_[i] != 0) {
+    /// sigma T⁴ of a patch by the field that was found.
+    [[nodiscard]] double final_power(std::uint32_t i) const {
+        if (buried_[i] != 0 || std::isfinite(power_[i])) {
+            return power_[i];
+        }
+        const std::uint32_t c = problem_.condition_of[i];
+        const double flux = c == no_heat ? 0.0 : fluxes_[c];
+        if (follows_irradiation(problem_, i)) {
+            const double x = power_by_irradiation(problem_, i, flux, arriving(i));
+            if (x < -1e-9 * arriving(i)) {
+                throw InputError(too_cold_text(factors_, i, flux));
+            }
+            return x < 0.0 ? 0.0 : x; // or not a number
+        }
+        if (!is_flux_source(i)) {
             return not_known;
         }
-        const double flux = fluxes_[problem_.condition_of[i]];
-        const double arriving = fluxes_found_.irradiation[i];
-        if (problem_.table_of[i] != no_heat) {
-            const double x = balanced({i}, flux, arriving);
-            refuse_cold(i, x, flux);
-            return x;
+        const double x = balanced({i}, flux, arriving(i));
+        refuse_cold(i, x, flux);
+        return x;
+    }
+
+    /// Perfect reflectors of one temperature: as hot as what they see together.
+    void find_reflectors() {
+        for (const Unknown& reflector : reflectors_) {
+            double sum = 0.0;
+            double area = 0.0;
+            for (const std::uint32_t i : reflector.patches) {
+                sum += buried_[i] == 0 ? factors_.areas[i] * arriving(i) : 0.0;
+                area += buried_[i] == 0 ? factors_.areas[i] : 0.0;
+            }
+            for (const std::uint32_t i : reflector.patches) {
+                power_[i] = sum / area;
+            }
         }
-        const double eps = problem_.emissivity[i];
-        const double rest = flux - problem_.exitance[i];
-        if (eps == 0.0) {
-            return rest == 0.0 ? arriving : not_known;
-        }
-        const double x = arriving + rest / eps;
-        if (x < -1e-9 * arriving) {
-            fail_cold(i, flux);
-        }
-        return std::max(x, 0.0);
     }
 
     HeatSolution collect() {
+        find_reflectors();
         HeatSolution solution;
         solution.bands = problem_.bands;
         solution.radiosity = std::move(fluxes_found_.radiosity);
@@ -345,26 +383,23 @@ private:
     }
 
     void collect_patch(HeatSolution& solution, std::uint32_t i) const {
-        double x = is_flux_source(i) ? power_of_flux(i) : power_[i];
-        bool black = false; // emits nothing and reflects all: as hot as what it sees
-        if (problem_.condition_of[i] == no_heat && exitance(i) == 0.0) {
-            black = true;
-            double arriving = 0.0;
-            for (std::uint32_t k = 0; k < problem_.bands; ++k) {
-                black = black && problem_.emissivity[at(i, k)] == 0.0;
-                arriving += fluxes_found_.irradiation[at(i, k)];
-            }
-            x = black && buried_[i] == 0 ? arriving : x;
-        }
+        const double x = final_power(i);
         const double kelvin = std::isfinite(x) ? black_body_temperature(x) : not_known;
         double absorbed = 0.0;
         double net = 0.0;
         for (std::uint32_t k = 0; k < problem_.bands; ++k) {
             const double arriving = fluxes_found_.irradiation[at(i, k)];
-            absorbed += emissivity(problem_, i, k, kelvin) * arriving;
+            const double eps = emissivity(problem_, i, k, kelvin);
+            absorbed += eps * arriving;
             net += sources_.source[at(i, k)] - sources_.emissivity[at(i, k)] * arriving;
+            if (buried_[i] != 0 && (eps == 0.0 || !std::isfinite(x))) {
+                solution.radiosity[at(i, k)] = solution.irradiation[at(i, k)] = not_known;
+            }
         }
-        net = buried_[i] != 0 ? 0.0 : net;
+        if (buried_[i] != 0) {
+            net = 0.0;
+            absorbed = std::isfinite(x) ? absorbed : not_known;
+        }
         solution.temperature.push_back(kelvin);
         solution.absorbed.push_back(absorbed);
         solution.emitted.push_back(net + absorbed);
@@ -377,6 +412,9 @@ private:
         std::vector<double> powers(factors_.groups.size(), 0.0);
         double emitted = 0.0;
         for (std::uint32_t i = 0; i < size(); ++i) {
+            if (buried_[i] != 0) {
+                continue;
+            }
             const double area = factors_.areas[i] * unit;
             powers[factors_.group_of[i]] += area * solution.net_flux[i];
             emitted += area * solution.emitted[i];
@@ -400,10 +438,11 @@ private:
     const HeatProblem& problem_;
     const HeatSettings& settings_;
     Observer& observer_;
-    ExchangeNetwork network_;
+    const ExchangeNetwork& network_;
     std::vector<std::uint8_t> buried_;
     std::vector<double> fluxes_; // of every condition
     std::vector<Unknown> unknowns_;
+    std::vector<Unknown> reflectors_;       // emissivity 0, several patches with one temperature or bands
     std::vector<std::uint32_t> unknown_of_; // of every patch
     std::vector<double> power_;             // sigma T⁴ of every patch
     NetworkSources sources_;
@@ -411,6 +450,31 @@ private:
     std::uint32_t outer_ = 0;
     double outer_change_ = 0.0;
 };
+
+/// Of an environment that counts as 0 K, or does not count.
+void warn_of_environment(const FormFactors& factors, const HeatProblem& problem,
+                         const ExchangeNetwork& network, Observer& observer) {
+    double seen = 0.0;
+    double area = 0.0;
+    for (std::uint32_t i = 0; i < network.size(); ++i) {
+        seen += factors.areas[i] * network.environment()[i];
+        area += factors.areas[i];
+    }
+    const std::vector<double> bright = environment_exitance(problem);
+    const bool dark = std::none_of(bright.begin(), bright.end(), [](double value) { return value > 0.0; });
+    if (problem.environment_temperature && seen == 0.0) {
+        observer.warning(
+            fmt::format("the environment's temperature, {:.6g} K, does not count: no surface sees "
+                        "the environment",
+                        *problem.environment_temperature),
+            "environment-temperature");
+    } else if (!problem.environment_temperature && dark && seen > 0.0) {
+        observer.warning(fmt::format("the scene is open to an environment without temperature, which counts "
+                                     "as 0 K ({:.3g} % of what leaves surfaces goes there)",
+                                     100.0 * seen / area),
+                         "environment-temperature");
+    }
+}
 
 /// What the mean irradiation of every group is off by, W/m², by its sampled rows: their mean and its standard
 /// error together; by all rows where a group has hardly any; not a number where there are none.
@@ -421,8 +485,9 @@ std::vector<double> irradiation_errors(const FormFactors& factors, const HeatPro
     std::vector<double> squares(groups + 1, 0.0);
     std::vector<std::size_t> counts(groups + 1, 0);
     if (factors.reference.size() == factors.matrix.size()) {
+        const std::vector<double> radiosity = zero_where_unknown(solution.radiosity);
         const IrradianceErrors errors = irradiance_errors(factors.matrix, factors.reference, problem.bands,
-                                                          solution.radiosity, environment_exitance(problem));
+                                                          radiosity, environment_exitance(problem));
         // What a row has too much comes out of what the patch sends itself.
         const std::vector<double> ones(factors.matrix.size(), 1.0);
         const IrradianceErrors excess =
@@ -434,7 +499,7 @@ std::vector<double> irradiation_errors(const FormFactors& factors, const HeatPro
             double sum = 0.0;
             for (std::uint32_t b = 0; b < problem.bands; ++b) {
                 sum += errors.errors[k * problem.bands + b] -
-                       excess.errors[k] * solution.radiosity[std::size_t{errors.rows[k]} * problem.bands + b];
+                       excess.errors[k] * radiosity[std::size_t{errors.rows[k]} * problem.bands + b];
             }
             for (const std::size_t g : {std::size_t{factors.group_of[errors.rows[k]]}, groups}) {
                 sums[g] += sum;
@@ -459,7 +524,15 @@ std::vector<double> irradiation_errors(const FormFactors& factors, const HeatPro
 
 HeatSolution solve_heat(const FormFactors& factors, const HeatProblem& problem, const HeatSettings& settings,
                         Observer& observer) {
-    return HeatSolver(factors, problem, settings, observer).solve();
+    const ExchangeNetwork network = make_network(factors, problem);
+    warn_of_environment(factors, problem, network, observer);
+    return solve_heat_network(network, factors, problem, settings, observer);
+}
+
+HeatSolution solve_heat_network(const ExchangeNetwork& network, const FormFactors& factors,
+                                const HeatProblem& problem, const HeatSettings& settings,
+                                Observer& observer) {
+    return HeatSolver(network, factors, problem, settings, observer).solve();
 }
 
 std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem& problem,
@@ -471,16 +544,13 @@ std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem&
     std::vector<double> power(groups + 1, 0.0);   // sigma T⁴
     std::vector<double> by_heat(groups + 1, 0.0); // eps sigma T⁴
     std::vector<double> held(groups + 1, 0.0);    // eps where the flux is not given
+    std::vector<double> covered(groups + 1, 0.0); // eps of buried patches
     for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
         const double area = factors.areas[i] * unit;
         const bool buried = solution.buried[i] != 0;
         for (const std::size_t g : {std::size_t{factors.group_of[i]}, groups}) {
             GroupHeat& heat = all[g];
             heat.area += area;
-            if (buried) {
-                continue;
-            }
-            exposed[g] += area;
             const double kelvin = solution.temperature[i];
             const double x = black_body_exitance(kelvin);
             const std::vector<double> shares =
@@ -490,9 +560,14 @@ std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem&
                 const std::size_t at = std::size_t{i} * problem.bands + k;
                 const double weight = std::isfinite(kelvin) ? shares[k] : 1.0 / problem.bands;
                 eps += weight * emissivity(problem, i, k, kelvin);
-                heat.irradiation += area * solution.irradiation[at];
-                heat.radiosity += area * solution.radiosity[at];
+                heat.irradiation += buried ? 0.0 : area * solution.irradiation[at];
+                heat.radiosity += buried ? 0.0 : area * solution.radiosity[at];
             }
+            if (buried) {
+                covered[g] += area * eps;
+                continue;
+            }
+            exposed[g] += area;
             power[g] += area * x;
             by_heat[g] += area * eps * x;
             heat.emissivity += area * eps;
@@ -508,7 +583,10 @@ std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem&
         const double area = exposed[g] > 0.0 ? exposed[g] : 1.0;
         for (double GroupHeat::*mean : {&GroupHeat::emissivity, &GroupHeat::emitted, &GroupHeat::absorbed,
                                         &GroupHeat::irradiation, &GroupHeat::radiosity}) {
-            heat.*mean /= area;
+            heat.*mean = exposed[g] > 0.0 ? heat.*mean / area : not_known;
+        }
+        if (exposed[g] == 0.0) {
+            heat.emissivity = heat.area > 0.0 ? covered[g] / heat.area : not_known;
         }
         if (power[g] > 0.0) { // not where it is not a number
             heat.emissivity = by_heat[g] / power[g];

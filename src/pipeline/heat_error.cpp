@@ -65,9 +65,12 @@ std::vector<double> patch_size_flux_errors(const Scene& scene, const PatchMesh& 
     }
     Solution light;
     light.channels = problem.bands;
-    light.radiosity = solution.radiosity;
-    light.irradiance = solution.irradiation;
+    light.radiosity = zero_where_unknown(solution.radiosity);
+    light.irradiance = zero_where_unknown(solution.irradiation);
     const std::vector<double> reflectance = patch_values(same, reflecting.materials, &Material::reflectance);
+    if (std::all_of(reflectance.begin(), reflectance.end(), [](double rho) { return rho == 0.0; })) {
+        return std::vector<double>(groups, 0.0); // every surface is as bright all over as it is
+    }
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         const RowView row = factors.matrix.row(i);
         light.row_sum.push_back(row.sum());
@@ -75,7 +78,7 @@ std::vector<double> patch_size_flux_errors(const Scene& scene, const PatchMesh& 
         light.back_face_share.push_back(row.blocked);
         for (std::uint32_t k = 0; k < problem.bands; ++k) {
             const std::size_t at = std::size_t{i} * problem.bands + k;
-            light.exitance.push_back(solution.radiosity[at] - reflectance[at] * solution.irradiation[at]);
+            light.exitance.push_back(light.radiosity[at] - reflectance[at] * light.irradiance[at]);
         }
     }
     const auto estimate = try_estimate_patch_size_error(reflecting, same, factors, light, settings, observer);

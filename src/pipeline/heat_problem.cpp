@@ -43,11 +43,11 @@ void warn_of_celsius(const Scene& scene, const HeatProblem& problem, Observer& o
                              "temperature");
         }
     }
-    const auto& sky = problem.environment_temperature;
-    if (sky && *sky<cold&& * sky> space) {
+    const double sky = problem.environment_temperature.value_or(hottest);
+    if (sky < cold && sky > space) {
         observer.warning(fmt::format("the environment has {} K, while others have up to {} K; if °C is "
                                      "meant, write \"{} C\"",
-                                     *sky, hottest, *sky),
+                                     sky, hottest, sky),
                          "environment-temperature");
     }
 }
@@ -86,6 +86,14 @@ void warn_of_unknown(const Scene& scene, const PatchMesh& mesh, const HeatProble
     }
 }
 
+/// Whether the values of materials that surfaces use are equal in all channels.
+bool is_grey(const Scene& scene) {
+    return std::all_of(scene.surfaces.begin(), scene.surfaces.end(), [&scene](const Surface& surface) {
+        const Material& material = scene.materials[surface.material];
+        return all_equal(material.reflectance) && all_equal(material.exitance);
+    });
+}
+
 void warn_of_unit(const Scene& scene, Observer& observer) {
     constexpr double large = 500.0;
     const double across = scene.bounds().diagonal();
@@ -99,7 +107,7 @@ void warn_of_unit(const Scene& scene, Observer& observer) {
 
 } // namespace
 
-HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh, Observer& observer) {
+HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh, Observer& observer, bool conditions) {
     const Thermal thermal = scene.thermal.value_or(Thermal{});
     const auto channels = static_cast<std::uint32_t>(scene.channels.size());
     HeatProblem problem;
@@ -109,11 +117,7 @@ HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh, Observer& ob
     problem.environment_temperature = thermal.environment_temperature;
     problem.unit = scene.unit.value_or(1.0);
     if (problem.bands != channels) { // one for all, where they do not differ
-        const bool grey = problem.bands == 1 && all_equal(scene.environment) &&
-                          std::all_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) {
-                              return all_equal(m.reflectance) && all_equal(m.exitance);
-                          });
-        if (!grey) {
+        if (problem.bands > 1 || !all_equal(scene.environment) || !is_grey(scene)) {
             throw InputError(fmt::format(
                 "the scene has {} ({}) and {}; heat needs one channel a band (\"bands\"), or equal channels",
                 plural(channels, "channel", "channels"), fmt::join(scene.channels, ", "),
@@ -136,8 +140,10 @@ HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh, Observer& ob
         problem.condition_of.push_back(surface.heat);
     }
     warn_of_unit(scene, observer);
-    warn_of_celsius(scene, problem, observer);
-    warn_of_unknown(scene, mesh, problem, observer);
+    if (conditions) {
+        warn_of_celsius(scene, problem, observer);
+        warn_of_unknown(scene, mesh, problem, observer);
+    }
     return problem;
 }
 

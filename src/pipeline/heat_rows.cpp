@@ -12,7 +12,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace hemi {
@@ -27,11 +29,7 @@ bool is_isothermal(const HeatProblem& problem, std::uint32_t patch) {
 
 /// Whether something holds the radiosity of a patch, whatever the others do.
 bool holds(const HeatProblem& problem, std::uint32_t patch) {
-    if (!is_held(problem, patch)) {
-        return false;
-    }
-    const auto first = problem.emissivity.begin() + static_cast<std::ptrdiff_t>(patch) * problem.bands;
-    return std::any_of(first, first + problem.bands, [](double eps) { return eps > 0.0; });
+    return is_held(problem, patch) && !reflects_all(problem, patch);
 }
 
 /// What is known of an enclosure.
@@ -70,6 +68,51 @@ bool is_held(const HeatProblem& problem, std::uint32_t patch) {
     return c == no_heat || problem.conditions[c].temperature;
 }
 
+bool reflects_all(const HeatProblem& problem, std::uint32_t patch) {
+    const auto first = problem.emissivity.begin() + static_cast<std::ptrdiff_t>(patch) * problem.bands;
+    return problem.table_of[patch] == no_heat &&
+           std::all_of(first, first + problem.bands, [](double eps) { return eps == 0.0; });
+}
+
+bool is_exitance(double flux, double exitance) {
+    constexpr double rounding = 1e-12; // of a power over an area
+    return std::abs(flux - exitance) <= rounding * std::max(std::abs(flux), exitance);
+}
+
+double exitance_of(const HeatProblem& problem, std::uint32_t patch) {
+    const auto first = problem.exitance.begin() + static_cast<std::ptrdiff_t>(patch) * problem.bands;
+    return std::accumulate(first, first + problem.bands, 0.0);
+}
+
+bool follows_irradiation(const HeatProblem& problem, std::uint32_t patch) {
+    if (problem.condition_of[patch] == no_heat || (problem.bands > 1 && has_flux(problem, patch))) {
+        return reflects_all(problem, patch);
+    }
+    return has_flux(problem, patch) && problem.table_of[patch] == no_heat;
+}
+
+double power_by_irradiation(const HeatProblem& problem, std::uint32_t patch, double flux, double arriving) {
+    const double exitance = exitance_of(problem, patch);
+    if (reflects_all(problem, patch)) {
+        const double net = problem.condition_of[patch] == no_heat ? 0.0 : flux;
+        return is_exitance(net, exitance) ? arriving : std::numeric_limits<double>::quiet_NaN();
+    }
+    return arriving + (flux - exitance) / problem.emissivity[std::size_t{patch} * problem.bands];
+}
+
+std::string too_cold_text(const FormFactors& factors, std::uint32_t patch, double flux) {
+    return fmt::format("group {}: a net flux of {:.6g} W/m² would need a temperature below 0 K at patch {}: "
+                       "less than that arrives there",
+                       factors.groups[factors.group_of[patch]], flux, patch);
+}
+
+std::vector<double> zero_where_unknown(std::vector<double> values) {
+    for (double& value : values) {
+        value = std::isfinite(value) ? value : 0.0;
+    }
+    return values;
+}
+
 double emissivity(const HeatProblem& problem, std::uint32_t patch, std::uint32_t band, double kelvin) {
     const std::uint32_t table = problem.table_of[patch];
     if (table == no_heat || !std::isfinite(kelvin)) {
@@ -101,14 +144,22 @@ std::vector<std::uint8_t> buried_patches(const ExchangeNetwork& network) {
 std::vector<double> condition_fluxes(const FormFactors& factors, const HeatProblem& problem,
                                      const std::vector<std::uint8_t>& buried) {
     std::vector<double> areas(problem.conditions.size(), 0.0);
+    std::vector<std::uint32_t> some(problem.conditions.size(), no_heat); // a patch of each
     for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
-        if (problem.condition_of[i] != no_heat && buried[i] == 0) {
-            areas[problem.condition_of[i]] += factors.areas[i] * problem.unit * problem.unit;
+        const std::uint32_t c = problem.condition_of[i];
+        if (c != no_heat) {
+            areas[c] += buried[i] == 0 ? factors.areas[i] * problem.unit * problem.unit : 0.0;
+            some[c] = i;
         }
     }
     std::vector<double> fluxes;
     for (std::size_t c = 0; c < areas.size(); ++c) {
         const HeatCondition& condition = problem.conditions[c];
+        if (condition.power.value_or(0.0) != 0.0 && some[c] != no_heat && !(areas[c] > 0.0)) {
+            throw InputError(fmt::format("group {}: a power of {:.6g} W cannot leave: all of its patches are "
+                                         "buried",
+                                         factors.groups[factors.group_of[some[c]]], *condition.power));
+        }
         const double of_power = condition.power && areas[c] > 0.0 ? *condition.power / areas[c] : 0.0;
         fluxes.push_back(condition.heat_flux.value_or(of_power));
     }
@@ -148,7 +199,7 @@ ExchangeNetwork make_network(const FormFactors& factors, const HeatProblem& prob
 void refuse_singular(const FormFactors& factors, const HeatProblem& problem, const ExchangeNetwork& network,
                      const std::vector<std::uint8_t>& buried) {
     std::vector<std::uint32_t> enclosure = network.enclosures();
-    // Patches of one unknown temperature are connected by it.
+    // Patches of one unknown temperature are connected by it, unless they take nothing of it.
     std::map<std::uint32_t, std::uint32_t> merged;
     const auto root = [&merged](std::uint32_t e) {
         for (auto found = merged.find(e); found != merged.end(); found = merged.find(e)) {
@@ -158,7 +209,7 @@ void refuse_singular(const FormFactors& factors, const HeatProblem& problem, con
     };
     std::vector<std::uint32_t> of_condition(problem.conditions.size(), no_heat);
     for (std::uint32_t i = 0; i < network.size(); ++i) {
-        if (buried[i] == 0 && is_isothermal(problem, i)) {
+        if (buried[i] == 0 && is_isothermal(problem, i) && !reflects_all(problem, i)) {
             std::uint32_t& first = of_condition[problem.condition_of[i]];
             if (first == no_heat) {
                 first = enclosure[i];
@@ -180,10 +231,10 @@ void refuse_singular(const FormFactors& factors, const HeatProblem& problem, con
         enclosed.lost += area * network.environment()[i];
         enclosed.area += area;
         enclosed.groups.insert(factors.group_of[i]);
-        if (problem.condition_of[i] != no_heat) {
-            enclosed.power += area * fluxes[problem.condition_of[i]];
-            enclosed.magnitude += area * std::abs(fluxes[problem.condition_of[i]]);
-        }
+        // What absorbs nothing gives its exitance, whatever its temperature.
+        const double flux = is_held(problem, i) ? exitance_of(problem, i) : fluxes[problem.condition_of[i]];
+        enclosed.power += area * flux;
+        enclosed.magnitude += area * std::abs(flux);
     }
     for (const auto& [first, enclosed] : all) {
         if (enclosed.held || !enclosed.seen || enclosed.lost > 1e-9 * enclosed.area) {
@@ -192,15 +243,15 @@ void refuse_singular(const FormFactors& factors, const HeatProblem& problem, con
         const std::string names = names_text(enclosed.groups, factors.groups);
         if (std::abs(enclosed.power) <= 1e-9 * enclosed.magnitude) {
             throw InputError(
-                fmt::format("no surface of the enclosure of {} has a temperature, and their heat "
-                            "fluxes balance: any temperature is a solution; give one of them a "
-                            "temperature",
+                fmt::format("no surface of the enclosure of {} that absorbs has a temperature, and their "
+                            "heat fluxes and exitances balance: any temperature is a solution; give one of "
+                            "them a temperature",
                             names));
         }
         throw InputError(
-            fmt::format("no surface of the enclosure of {} has a temperature, and their heat "
-                        "fluxes leave {:.6g} W that cannot go anywhere: there is no solution; give "
-                        "one of them a temperature",
+            fmt::format("no surface of the enclosure of {} that absorbs has a temperature, and their heat "
+                        "fluxes and exitances leave {:.6g} W that cannot go anywhere: there is no solution; "
+                        "give one of them a temperature",
                         names, enclosed.power));
     }
 }

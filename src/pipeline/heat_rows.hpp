@@ -30,14 +30,46 @@ namespace hemi {
 /// Whether the net flux of a patch is not given, neither by itself nor with others'.
 [[nodiscard]] bool is_held(const HeatProblem& problem, std::uint32_t patch);
 
+/// Whether a patch absorbs nothing in any band, nor emits by its temperature: it leaves what it is given.
+[[nodiscard]] bool reflects_all(const HeatProblem& problem, std::uint32_t patch);
+
+/// Whether a net flux is the exitance, but for rounding: what that of a perfect reflector must be.
+[[nodiscard]] bool is_exitance(double flux, double exitance);
+
+/// Of a patch, over all bands, W/m².
+[[nodiscard]] double exitance_of(const HeatProblem& problem, std::uint32_t patch);
+
+/// Whether the irradiation of an exposed patch tells its temperature with nothing else to be found: of grey
+/// ones with a flux, and of perfect reflectors.
+[[nodiscard]] bool follows_irradiation(const HeatProblem& problem, std::uint32_t patch);
+
+/// sigma T⁴ of an exposed patch that follows_irradiation(), W/m²; not a number where any would do, or none.
+/// Perfect reflectors are as hot as what they see. Below 0 where the flux is more than what arrives.
+/// @param flux      given; not used where there is none
+/// @param arriving  irradiation over all bands
+[[nodiscard]] double power_by_irradiation(const HeatProblem& problem, std::uint32_t patch, double flux,
+                                          double arriving);
+
+/// What is wrong where a net flux is more than what a patch can take in at 0 K.
+[[nodiscard]] std::string too_cold_text(const FormFactors& factors, std::uint32_t patch, double flux);
+
+/// Values of which those that are not known count as 0, for sums in which they have no weight.
+[[nodiscard]] std::vector<double> zero_where_unknown(std::vector<double> values);
+
 /// Given net flux of every condition, W/m²; 0 where it has none.
 /// @param buried  N; have no flux
+/// @throws InputError for a power of patches that are all buried, naming a group of them
 [[nodiscard]] std::vector<double> condition_fluxes(const FormFactors& factors, const HeatProblem& problem,
                                                    const std::vector<std::uint8_t>& buried);
 
 /// @throws InputError where nothing holds the temperature of an enclosure, naming its groups
 void refuse_singular(const FormFactors& factors, const HeatProblem& problem, const ExchangeNetwork& network,
                      const std::vector<std::uint8_t>& buried);
+
+/// As solve_heat() on the problem's network, without its warnings.
+[[nodiscard]] HeatSolution solve_heat_network(const ExchangeNetwork& network, const FormFactors& factors,
+                                              const HeatProblem& problem, const HeatSettings& settings,
+                                              Observer& observer);
 
 /// Progress of a linear solve, for the observer.
 [[nodiscard]] ExchangeNetwork::Watcher heat_progress(Observer& observer, double tolerance);

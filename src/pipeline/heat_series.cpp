@@ -21,30 +21,30 @@ constexpr std::uint32_t of_environment = no_heat;
 
 constexpr const char* environment_name = "environment";
 
-/// What a condition gives.
-enum class Given { temperature, heat_flux, power };
-
-Given given(const HeatCondition& condition) {
-    return condition.temperature ? Given::temperature : condition.power ? Given::power : Given::heat_flux;
+HeatQuantity given(const HeatCondition& condition) {
+    return condition.temperature ? HeatQuantity::temperature
+           : condition.power     ? HeatQuantity::power
+                                 : HeatQuantity::heat_flux;
 }
 
 /// The condition that a column changes: one for all of its group, in place of several of one kind, or of
 /// none.
-std::uint32_t condition_of(const FormFactors& factors, HeatProblem& problem, const std::string& name) {
-    const auto found = std::find(factors.groups.begin(), factors.groups.end(), name);
-    if (found == factors.groups.end()) {
+std::uint32_t condition_of(const std::vector<std::string>& groups, std::span<const std::uint32_t> group_of,
+                           HeatProblem& problem, const std::string& name) {
+    const auto found = std::find(groups.begin(), groups.end(), name);
+    if (found == groups.end()) {
         if (name == environment_name) {
             return of_environment;
         }
-        std::vector<std::string> known = factors.groups;
+        std::vector<std::string> known = groups;
         known.emplace_back(environment_name);
         throw InputError(fmt::format("series: no group \"{}\"{}", name, did_you_mean_or_list(name, known)));
     }
-    const auto group = static_cast<std::uint32_t>(found - factors.groups.begin());
+    const auto group = static_cast<std::uint32_t>(found - groups.begin());
     std::set<std::uint32_t> own;
     std::set<std::uint32_t> others;
-    for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
-        (factors.group_of[i] == group ? own : others).insert(problem.condition_of[i]);
+    for (std::size_t i = 0; i < group_of.size(); ++i) {
+        (group_of[i] == group ? own : others).insert(problem.condition_of[i]);
     }
     const auto refuse = [&name](const char* has) {
         throw InputError(
@@ -70,7 +70,7 @@ std::uint32_t condition_of(const FormFactors& factors, HeatProblem& problem, con
                 refuse("an isothermal part, or is isothermal together with others");
             }
         }
-        if (shared && given(condition) == Given::power) {
+        if (shared && given(condition) == HeatQuantity::power) {
             refuse("a power together with others");
         }
         if (own.size() == 1 && !shared) {
@@ -79,12 +79,45 @@ std::uint32_t condition_of(const FormFactors& factors, HeatProblem& problem, con
     }
     const auto index = static_cast<std::uint32_t>(problem.conditions.size());
     problem.conditions.push_back(condition);
-    for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
-        if (factors.group_of[i] == group) {
+    for (std::size_t i = 0; i < group_of.size(); ++i) {
+        if (group_of[i] == group) {
             problem.condition_of[i] = index;
         }
     }
     return index;
+}
+
+/// A line, from 1, for messages.
+std::string line_text(const HeatSchedule& schedule, std::size_t line) {
+    return line < schedule.labels.size() ? fmt::format("line {} (\"{}\")", line + 1, schedule.labels[line])
+                                         : fmt::format("line {}", line + 1);
+}
+
+/// The conditions that the columns change, in the problem.
+std::vector<std::uint32_t> conditions_of(const std::vector<std::string>& groups,
+                                         std::span<const std::uint32_t> group_of, HeatProblem& problem,
+                                         const HeatSchedule& schedule) {
+    const std::size_t columns = schedule.columns.size();
+    if (columns == 0 || schedule.values.size() % columns != 0) {
+        throw InvalidArgument(
+            fmt::format("a schedule of {} columns and {} values", columns, schedule.values.size()));
+    }
+    std::vector<std::uint32_t> conditions;
+    for (const std::string& name : schedule.columns) {
+        conditions.push_back(condition_of(groups, group_of, problem, name));
+        if (std::count(schedule.columns.begin(), schedule.columns.end(), name) > 1) {
+            throw InputError(fmt::format("series: two columns \"{}\"", name));
+        }
+    }
+    for (std::size_t k = 0; k < schedule.values.size(); ++k) {
+        const std::uint32_t c = conditions[k % columns];
+        if ((c == of_environment || problem.conditions[c].temperature) && !(schedule.values[k] >= 0.0)) {
+            throw InputError(fmt::format("series: {}, {}: {} K; must not be below 0 K",
+                                         line_text(schedule, k / columns), schedule.columns[k % columns],
+                                         schedule.values[k]));
+        }
+    }
+    return conditions;
 }
 
 class Series {
@@ -93,25 +126,8 @@ public:
            const HeatSettings& settings, Observer& observer)
         : factors_(factors), problem_(problem), schedule_(schedule), settings_(settings), observer_(observer),
           columns_(schedule.columns.size()), groups_(factors.groups.size()) {
-        if (columns_ == 0 || schedule.values.size() % columns_ != 0) {
-            throw InvalidArgument(
-                fmt::format("a schedule of {} columns and {} values", columns_, schedule.values.size()));
-        }
+        condition_ = conditions_of(factors.groups, factors.group_of, problem_, schedule);
         lines_ = schedule.values.size() / columns_;
-        for (const std::string& name : schedule.columns) {
-            condition_.push_back(hemi::condition_of(factors, problem_, name));
-            if (std::count(schedule.columns.begin(), schedule.columns.end(), name) > 1) {
-                throw InputError(fmt::format("series: two columns \"{}\"", name));
-            }
-        }
-        for (std::size_t l = 0; l < lines_; ++l) {
-            for (std::size_t c = 0; c < columns_; ++c) {
-                if (is_temperature(c) && !(value(l, c) >= 0.0)) {
-                    throw InputError(fmt::format("series: line {}, {}: {} K; must not be below 0 K", l + 1,
-                                                 schedule.columns[c], value(l, c)));
-                }
-            }
-        }
         series_.groups = static_cast<std::uint32_t>(groups_);
     }
 
@@ -164,10 +180,28 @@ private:
         return problem;
     }
 
+    /// Says of which line an error is.
+    template <class Work>
+    void with_line(std::size_t l, const Work& work) const {
+        const auto text = [&](const Error& error) {
+            return fmt::format("series: {}: {}", line_text(schedule_, l), error.what());
+        };
+        try {
+            work();
+        } catch (const InputError& error) {
+            throw InputError(text(error), error.settings());
+        } catch (const NotConverged& error) {
+            throw NotConverged(text(error), error.settings());
+        }
+    }
+
     void solve_lines() {
+        const ExchangeNetwork network = make_network(factors_, problem_);
         for (std::size_t l = 0; l < lines_; ++l) {
             const HeatProblem problem = at_line(l);
-            const HeatSolution solution = solve_heat(factors_, problem, settings_, observer_);
+            HeatSolution solution;
+            with_line(
+                l, [&] { solution = solve_heat_network(network, factors_, problem, settings_, observer_); });
             const std::vector<GroupHeat> all = group_heat(factors_, problem, solution);
             for (std::size_t g = 0; g < groups_; ++g) {
                 series_.temperature.push_back(all[g].temperature);
@@ -181,7 +215,7 @@ private:
     /// What comes of a source of 1 W/m², summed over the area of every group.
     struct Response {
         std::vector<double> net;      // W, a group
-        std::vector<double> arriving; // of patches with given flux: their irradiation, W, a group
+        std::vector<double> arriving; // irradiation of every patch whose temperature follows it, W/m²
         double environment = 0.0;     // W, leaving the environment
     };
 
@@ -209,18 +243,18 @@ private:
             for (std::uint32_t s = 0; s < sources; ++s) {
                 Response& response = responses_[std::size_t{k} * sources + s];
                 response.net.assign(groups_, 0.0);
-                response.arriving.assign(groups_, 0.0);
                 for (std::uint32_t i = 0; i < network.size(); ++i) {
                     const std::size_t at = std::size_t{i} * sources + s;
                     const double area = factors_.areas[i] * problem_.unit * problem_.unit;
-                    response.environment +=
-                        area * network.environment()[i] * (columns.environment[s] - fluxes.radiosity[at]);
                     if (buried[i] == 0) {
+                        response.environment +=
+                            area * network.environment()[i] * (columns.environment[s] - fluxes.radiosity[at]);
                         response.net[factors_.group_of[i]] +=
                             area * (columns.source[at] - columns.emissivity[at] * fluxes.irradiation[at]);
-                        response.arriving[factors_.group_of[i]] +=
-                            has_flux(problem_, i) ? area * fluxes.irradiation[at] : 0.0;
                     }
+                }
+                for (const std::uint32_t i : followers_) {
+                    response.arriving.push_back(fluxes.irradiation[std::size_t{i} * sources + s]);
                 }
             }
         }
@@ -253,45 +287,46 @@ private:
         }
     }
 
-    /// Area of every group by what tells its sigma T⁴.
+    /// Area of every group by what tells its sigma T⁴, but for that of followers.
     struct Exposed {
-        double area = 0.0;
+        double area = 0.0; // with theirs
         double unknown = 0.0;
         std::map<std::uint32_t, double> given; // a condition with a temperature
-        std::map<std::uint32_t, double> flux;  // a condition with a flux: area over emissivity
-        double exitance = 0.0;                 // of those, over emissivity
     };
 
-    [[nodiscard]] std::vector<Exposed> exposed_areas(const std::vector<std::uint8_t>& buried) const {
+    [[nodiscard]] std::vector<Exposed> exposed_areas(const std::vector<std::uint8_t>& buried) {
         std::vector<Exposed> all(groups_);
         for (std::uint32_t i = 0; i < factors_.matrix.size(); ++i) {
             if (buried[i] != 0) {
                 continue;
             }
             Exposed& exposed = all[factors_.group_of[i]];
-            const double area = factors_.areas[i] * problem_.unit * problem_.unit;
+            const double area = patch_area(i);
             const std::uint32_t c = problem_.condition_of[i];
             exposed.area += area;
-            if (c == no_heat) {
+            if (follows_irradiation(problem_, i)) {
+                followers_.push_back(i);
+            } else if (c == no_heat) {
                 exposed.unknown += area;
-            } else if (!has_flux(problem_, i)) {
+            } else {
                 exposed.given[c] += area;
-            } else if (problem_.emissivity[i] > 0.0) {
-                exposed.flux[c] += area / problem_.emissivity[i];
-                exposed.exitance += area * problem_.exitance[i] / problem_.emissivity[i];
             }
         }
         return all;
+    }
+
+    [[nodiscard]] double patch_area(std::uint32_t i) const {
+        return factors_.areas[i] * problem_.unit * problem_.unit;
     }
 
     void superpose() {
         const ExchangeNetwork network = make_network(factors_, problem_);
         const std::vector<std::uint8_t> buried = buried_patches(network);
         refuse_singular(factors_, problem_, network, buried);
-        find_responses(network, buried);
         const std::vector<Exposed> exposed = exposed_areas(buried);
+        find_responses(network, buried);
         for (std::size_t l = 0; l < lines_; ++l) {
-            add_line(l, exposed, condition_fluxes(factors_, at_line(l), buried));
+            with_line(l, [&] { add_line(l, exposed, condition_fluxes(factors_, at_line(l), buried)); });
         }
     }
 
@@ -299,7 +334,8 @@ private:
     void add_line(std::size_t l, const std::vector<Exposed>& exposed, const std::vector<double>& fluxes) {
         const std::size_t sources = columns_ + 1;
         std::vector<double> net(groups_, 0.0);
-        std::vector<double> arriving(groups_, 0.0);
+        std::vector<double> arriving(followers_.size(), 0.0);
+        std::vector<double> magnitude(followers_.size(), 0.0); // of what that is the sum of
         double environment = 0.0;
         for (std::size_t s = 0; s < sources; ++s) {
             std::vector<double> shares(problem_.bands, 1.0);
@@ -312,29 +348,40 @@ private:
             }
             for (std::uint32_t k = 0; k < problem_.bands; ++k) {
                 const Response& response = responses_[std::size_t{k} * sources + s];
+                const double factor = strength * shares[k];
                 for (std::size_t g = 0; g < groups_; ++g) {
-                    net[g] += strength * shares[k] * response.net[g];
-                    arriving[g] += strength * shares[k] * response.arriving[g];
+                    net[g] += factor * response.net[g];
                 }
-                environment += strength * shares[k] * response.environment;
+                for (std::size_t f = 0; f < arriving.size(); ++f) {
+                    arriving[f] += factor * response.arriving[f];
+                    magnitude[f] += std::abs(factor * response.arriving[f]);
+                }
+                environment += factor * response.environment;
             }
+        }
+        std::vector<double> power(groups_, 0.0); // area times sigma T⁴ of followers
+        for (std::size_t f = 0; f < followers_.size(); ++f) {
+            const std::uint32_t i = followers_[f];
+            const std::uint32_t c = problem_.condition_of[i];
+            const double flux = c == no_heat ? 0.0 : fluxes[c];
+            const double x = power_by_irradiation(problem_, i, flux, arriving[f]);
+            if (x < -1e-9 * magnitude[f]) {
+                throw InputError(too_cold_text(factors_, i, flux));
+            }
+            power[factors_.group_of[i]] += patch_area(i) * (x < 0.0 ? 0.0 : x); // or not a number
         }
         for (std::size_t g = 0; g < groups_; ++g) {
             series_.net_power.push_back(net[g]);
             series_.net_flux.push_back(exposed[g].area > 0.0 ? net[g] / exposed[g].area : 0.0);
-            series_.temperature.push_back(temperature(l, exposed[g], arriving[g], fluxes));
+            series_.temperature.push_back(temperature(l, exposed[g], power[g]));
         }
         series_.environment_power.push_back(environment);
     }
 
-    [[nodiscard]] double temperature(std::size_t l, const Exposed& exposed, double arriving,
-                                     const std::vector<double>& fluxes) const {
-        if (exposed.unknown > 0.0 || exposed.area == 0.0) {
+    /// @param power  of followers, W
+    [[nodiscard]] double temperature(std::size_t l, const Exposed& exposed, double power) const {
+        if (exposed.unknown > 0.0 || exposed.area == 0.0 || !std::isfinite(power)) {
             return std::numeric_limits<double>::quiet_NaN();
-        }
-        double power = arriving - exposed.exitance;
-        for (const auto& [c, area] : exposed.flux) {
-            power += area * fluxes[c];
         }
         for (const auto& [c, area] : exposed.given) {
             const auto column = std::find(condition_.begin(), condition_.end(), c);
@@ -355,11 +402,23 @@ private:
     std::size_t groups_;
     std::size_t lines_ = 0;
     std::vector<std::uint32_t> condition_; // of every column
+    std::vector<std::uint32_t> followers_; // patches that are as hot as their irradiation and flux make them
     std::vector<Response> responses_;
     HeatSeries series_;
 };
 
 } // namespace
+
+std::vector<HeatQuantity> check_heat_schedule(const std::vector<std::string>& groups,
+                                              std::span<const std::uint32_t> group_of,
+                                              const HeatProblem& problem, const HeatSchedule& schedule) {
+    HeatProblem changed = problem;
+    std::vector<HeatQuantity> quantities;
+    for (const std::uint32_t c : conditions_of(groups, group_of, changed, schedule)) {
+        quantities.push_back(c == of_environment ? HeatQuantity::temperature : given(changed.conditions[c]));
+    }
+    return quantities;
+}
 
 HeatSeries solve_heat_series(const FormFactors& factors, const HeatProblem& problem,
                              const HeatSchedule& schedule, const HeatSettings& settings, Observer& observer) {

@@ -105,35 +105,74 @@ struct Joined {
     Scene scene;
     std::vector<std::uint32_t> face_of;
     std::vector<Imprint::Finding> findings;
+    std::vector<std::vector<std::uint32_t>> backs; ///< of every face that was joined: its backs' patches
 };
 
-/// Of two one-sided faces with the same corners, which look different ways and are of one material and group,
-/// makes one that is two-sided: a picture cannot tell which of two in one place is nearer.
-Joined join_back_to_back(const Scene& scene) {
-    Joined result{scene, {}, {}};
-    const Bounds bounds = scene.bounds();
-    const WeldedFaces welded = weld(scene, contact_share * bounds.diagonal());
+/// Of the patches of face `front` in their order, those of face `back` with the same centres; nothing where
+/// the faces are subdivided otherwise.
+std::optional<std::vector<std::uint32_t>> opposite_patches(const PatchMesh& mesh, std::uint32_t front,
+                                                           std::uint32_t back, double tolerance) {
+    const std::uint32_t count = mesh.patches_per_side(back);
+    if (mesh.patches_per_side(front) != count) {
+        return std::nullopt;
+    }
+    Welder centres(tolerance);
+    std::vector<std::uint32_t> patch_of; // of every centre
+    for (std::uint32_t i = mesh.first_patch(back); i < mesh.first_patch(back) + count; ++i) {
+        centres.add(mesh.centres()[i]);
+        patch_of.resize(centres.points().size(), i);
+    }
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t i = mesh.first_patch(front); i < mesh.first_patch(front) + count; ++i) {
+        const std::uint32_t centre = centres.add(mesh.centres()[i]);
+        if (centre >= patch_of.size()) {
+            return std::nullopt;
+        }
+        result.push_back(patch_of[centre]);
+    }
+    return result;
+}
+
+/// Of two one-sided faces with the same corners, which look different ways and are of one material and group
+/// and alike subdivided, makes one that is two-sided: a picture cannot tell which of two in one place is
+/// nearer.
+Joined join_back_to_back(const Scene& scene, const Subdivision& subdivision) {
+    Joined result{scene, {}, {}, {}};
+    const double tolerance = contact_share * scene.bounds().diagonal();
+    const WeldedFaces welded = weld(scene, tolerance);
     std::map<std::array<std::uint32_t, 4>, std::vector<std::uint32_t>> found; // by sorted corners
     result.scene.surfaces.clear();
+    std::optional<PatchMesh> mesh; // where there is something to join
     for (std::uint32_t f = 0; f < scene.surfaces.size(); ++f) {
         const Surface& surface = scene.surfaces[f];
         std::array<std::uint32_t, 4> key = welded.corners[f];
         std::sort(key.begin(), key.end());
         auto& there = found[key]; // indices of surfaces of the result
+        std::optional<std::vector<std::uint32_t>> backs;
         const auto mate = std::find_if(there.begin(), there.end(), [&](std::uint32_t s) {
             const Surface& other = result.scene.surfaces[s];
-            return !surface.two_sided && !other.two_sided && other.material == surface.material &&
-                   other.group == surface.group && other.heat == surface.heat &&
-                   glm::dot(area_vector(other.polygon()), area_vector(surface.polygon())) < 0.0;
+            const bool alike = !surface.two_sided && !other.two_sided && other.material == surface.material &&
+                               other.group == surface.group && other.heat == surface.heat &&
+                               glm::dot(area_vector(other.polygon()), area_vector(surface.polygon())) < 0.0;
+            if (!alike) {
+                return false;
+            }
+            if (!mesh) {
+                mesh.emplace(scene, subdivision);
+            }
+            backs = opposite_patches(*mesh, result.face_of[s], f, tolerance);
+            return backs.has_value();
         });
         if (mate != there.end()) {
             result.scene.surfaces[*mate].two_sided = true;
             result.findings.push_back({Imprint::What::joined, f, result.face_of[*mate]});
+            result.backs[*mate] = std::move(*backs);
             continue;
         }
         there.push_back(static_cast<std::uint32_t>(result.scene.surfaces.size()));
         result.scene.surfaces.push_back(surface);
         result.face_of.push_back(f);
+        result.backs.emplace_back();
     }
     return result;
 }
@@ -141,28 +180,13 @@ Joined join_back_to_back(const Scene& scene) {
 /// Of every patch of a scene whose faces were joined, the one that it was before.
 std::vector<std::uint32_t> patches_before(const Joined& joined, const PatchMesh& mesh,
                                           const PatchMesh& as_read) {
-    std::vector<std::uint32_t> back_of(joined.face_of.size(), no_face); // the face that became the back
-    for (const Imprint::Finding& finding : joined.findings) {
-        const auto kept = std::lower_bound(joined.face_of.begin(), joined.face_of.end(), finding.other);
-        back_of[static_cast<std::size_t>(kept - joined.face_of.begin())] = finding.face;
-    }
     std::vector<std::uint32_t> result;
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
         const std::uint32_t s = mesh.surface_of()[patch];
-        if (!mesh.is_back(patch) || back_of[s] == no_face) {
-            result.push_back(as_read.first_patch(joined.face_of[s]) + patch - mesh.first_patch(s));
-            continue;
-        }
-        // Its corners may begin elsewhere.
-        std::uint32_t nearest = as_read.first_patch(back_of[s]);
-        for (std::uint32_t i = nearest; i < as_read.first_patch(back_of[s] + 1); ++i) {
-            const Vec3& centre = mesh.centres()[patch];
-            nearest = glm::distance(as_read.centres()[i], centre) <
-                              glm::distance(as_read.centres()[nearest], centre)
-                          ? i
-                          : nearest;
-        }
-        result.push_back(nearest);
+        const std::uint32_t place = patch - mesh.first_patch(s);
+        result.push_back(mesh.is_back(patch) && !joined.backs[s].empty()
+                             ? joined.backs[s][place - mesh.patches_per_side(s)]
+                             : as_read.first_patch(joined.face_of[s]) + place);
     }
     return result;
 }
@@ -604,7 +628,7 @@ std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivisio
     if (!subdivision.parts.empty()) {
         throw InvalidArgument("imprint: patches of different sizes cannot be cut; cut the scene before");
     }
-    const Joined joined = join_back_to_back(scene);
+    const Joined joined = join_back_to_back(scene, subdivision);
     std::optional<Imprint> result = Imprinter(joined.scene, subdivision).run();
     if (!result && joined.findings.empty()) {
         return std::nullopt;

@@ -275,7 +275,8 @@ void Document::save_result(const std::filesystem::path& path) {
     solution.sweeps = found.sweeps;
     solution.residual = found.residual;
     solution.error = found.error;
-    io::write_hres(path, {std::move(scene), input_.subdivision, std::move(solution)});
+    io::write_hres(path, {std::move(scene), input_.subdivision, std::move(solution), input_.surfaces_as_read,
+                          input_.parts});
 }
 
 } // namespace hemi::viewer

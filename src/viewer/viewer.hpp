@@ -29,6 +29,8 @@ struct ViewerInput {
     std::shared_ptr<const Scene> scene;    ///< names, materials, channels
     std::shared_ptr<const PatchMesh> mesh; ///< its patches
     Subdivision subdivision;               ///< how the mesh was made, for stored results
+    std::vector<Surface> surfaces_as_read; ///< as io::ResultFile has them
+    PatchParts parts;                      ///< as well
     /// How form factors are computed, beside the window. Empty: a stored solution, which has none.
     std::optional<FactorSettings> factor_settings;
     SolverSettings solver;              ///< for the radiosity

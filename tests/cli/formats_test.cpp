@@ -278,7 +278,7 @@ TEST_CASE("Mesh scenes: Gmsh, PLY and STL are solved like any other, bad ones ar
         CHECK(run.status == 3);
         CHECK(run.err_has(name + message));
     };
-    refused("a.msh", "$MeshFormat\n4.1 0 8\n", ":2: MSH version \"4.1\"");
+    refused("a.msh", "$MeshFormat\n3.0 0 8\n$EndMeshFormat\n", ":2: MSH version \"3.0\"");
     refused("a.ply", "ply\nformat binary 1.0\n", ":2: format \"binary\"");
     refused("a.stl", std::string(84, '\377'),
             ": cut short, or not STL: 84 bytes; its 4294967295 triangles need");

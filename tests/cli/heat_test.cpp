@@ -229,6 +229,59 @@ TEST_CASE("hemi heat: the estimated error of a flux is about what it is off by",
     CHECK(heat["error"]["parts"]["patch_size"][0].get<double>() > 0.9 * estimate);
 }
 
+TEST_CASE("hemi heat: black surfaces have no error by the patches' size", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3);
+    for (const char* material : {"bottom", "top", "side"}) {
+        scene["materials"][material]["emissivity"] = 1;
+    }
+    for (const char* side : {"left", "right", "front", "back"}) {
+        scene["groups"][side] = {{"temperature", 400}};
+    }
+    const Json error =
+        run_hemi({"heat", directory.write("box.json", scene), "--json", "--device", "cpu"}).json()["error"];
+    for (std::size_t g = 0; g < 6; ++g) {
+        CHECK(error["parts"]["patch_size"][g] == 0.0);
+        CHECK(error["net_flux"][g].is_number());
+    }
+}
+
+TEST_CASE("hemi heat: a power cannot leave a group that is covered", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(4, 4, 4, 4);
+    // On the floor, without its bottom; "under" is there in its place.
+    for (const char* points : {"[[1,1,2],[3,1,2],[3,3,2],[1,3,2]]", "[[1,1,0],[3,1,0],[3,1,2],[1,1,2]]",
+                               "[[1,3,0],[1,3,2],[3,3,2],[3,3,0]]", "[[1,1,0],[1,1,2],[1,3,2],[1,3,0]]",
+                               "[[3,1,0],[3,3,0],[3,3,2],[3,1,2]]"}) {
+        scene["surfaces"].push_back(face("block", "top", Json::parse(points), 1));
+    }
+    scene["surfaces"].push_back(face("under", "top", Json::parse("[[1,1,0],[1,3,0],[3,3,0],[3,1,0]]"), 1));
+    scene["groups"]["block"] = {{"heat_flux", 0}};
+    scene["groups"]["under"] = {{"power", 500}};
+    const std::string file = directory.write("block.json", scene);
+    for (const Words& words : {Words{"heat", file}, Words{"heat", file, "--no-imprint"}}) {
+        const Outcome run = run_hemi(on_cpu(words));
+        INFO(run.err);
+        CHECK(run.status == 3);
+        CHECK(run.err_has("group under: a power of 500 W cannot leave"));
+        Words other = words;
+        other.insert(other.end(), {"--power", "under=5"});
+        CHECK(run_hemi(on_cpu(other)).err_has("5 W cannot leave"));
+        other.back() = "under=0";
+        const Outcome none = run_hemi(on_cpu(other));
+        CHECK(none.status == 0);
+        CHECK_FALSE(none.out_has("nan"));
+    }
+    // Of its patches nothing is known but that they have no flux.
+    const std::string fluxes = directory.path("fluxes.csv");
+    CHECK(run_hemi(on_cpu({"heat", file, "--no-imprint", "--power", "under=0", "--fluxes", fluxes})).status ==
+          0);
+    const std::string table = directory.read("fluxes.csv");
+    const std::size_t under = table.find(",under,");
+    REQUIRE(under != std::string::npos);
+    CHECK(table.substr(under, table.find('\n', under) - under).ends_with(",,0,,,,"));
+}
+
 TEST_CASE("hemi heat: MOOSE's cavity by factors from a file", "[cli][heat]") {
     const Directory directory;
     const std::string scene = directory.write("cavity.json", cavity());
@@ -302,6 +355,17 @@ TEST_CASE("hemi heat: groups of a mesh get what the command line says", "[cli][h
     CHECK(run_hemi({"heat", mesh, "--temperature", "floor=-1"}).err_has("below 0 K"));
     CHECK(run_hemi({"heat", mesh, "--emissivity", "floor=1.5"}).status == 2);
     CHECK(run_hemi({"heat", mesh, "--temperature", "floor"}).err_has("GROUP=T"));
+    CHECK(run_hemi({"heat", mesh, "--emissivity", "floor=0.5", "--emissivity", "floor=0.6"})
+              .err_has("an emissivity already"));
+    // Materials that no surface uses any more may have colours.
+    directory.write("red.mtl", "newmtl red\nKd 0.8 0.2 0.1\n");
+    const std::string red = directory.write("red.obj", "mtllib red.mtl\n" + directory.read("plates.obj") +
+                                                           "usemtl red\ng lid\nf 1 2 6 5\n");
+    const Words coloured = on_cpu({"heat", red, "--temperature", "floor=500"});
+    CHECK(run_hemi(coloured).err_has("equal channels"));
+    Words grey = coloured;
+    grey.insert(grey.end(), {"--emissivity", "lid=0.5"});
+    CHECK(run_hemi(grey).status == 0);
     const Outcome dark = run_hemi(on_cpu({"heat", mesh, "--temperature", "floor=500"}));
     CHECK(dark.status == 0);
     CHECK(dark.err_has("0 K"));
@@ -330,6 +394,17 @@ TEST_CASE("hemi heat: groups from a table", "[cli][heat]") {
         INFO(run.err);
         CHECK(run.err_has(message));
     };
+    // Options say more than the table.
+    const Json over = run_hemi(on_cpu({"heat", bare, "--groups", table, "--json", "--temperature", "left=400",
+                                       "--emissivity", "top=0.5"}))
+                          .json();
+    CHECK(over["temperature"][2].get<double>() == Approx(400.0));
+    CHECK(over["emissivity"][1].get<double>() == Approx(0.5));
+    CHECK(over["temperature"][0].get<double>() == Approx(550.0));
+    refused("group,temperature\ntop,300\ntop,400\n", "bad.csv:3");
+    refused("group,temperature,power\ntop,300,4\n", "bad.csv:2");
+    refused("group,emissivity\ntop,0.3\ntop,0.4\n", "bad.csv:3");
+    refused("group,temperature,temperature\ntop,300,\n", "two columns");
     refused("group,temprature\ntop,300\n", "\"temperature\"");
     refused("group,temperature\ntop,300,4\n", "bad.csv:2");
     refused("group,temperature\ntop,-3\n", "0 K");
@@ -361,6 +436,9 @@ TEST_CASE("hemi heat: slips in temperatures and units are told", "[cli][heat]") 
     scene["groups"]["top"]["temperature"] = 20;
     CHECK(run_hemi(on_cpu({"heat", directory.write("cold.json", scene)})).err_has("\"20 C\""));
     CHECK(run_hemi(on_cpu({"heat", directory.write("large.json", box(100, 200, 600))})).err_has("no unit"));
+    Json isothermal = box(1, 2, 3);
+    isothermal["groups"]["top"]["isothermal"] = true;
+    CHECK(run_hemi({"heat", directory.write("isothermal.json", isothermal)}).err_has("beside"));
     Json closed = box(1, 2, 3);
     closed["groups"]["bottom"] = {{"power", 10}};
     closed["groups"]["top"] = {{"power", 10}};
@@ -407,6 +485,21 @@ TEST_CASE("hemi heat: a series of temperatures", "[cli][heat]") {
         on_cpu({"heat", scene, "--series", directory.write("word.csv", "time,top\n0,300\n1,warm\n")}));
     CHECK(word.status == 3);
     CHECK(word.err_has("word.csv:3"));
+    // What is wrong with a series is told before anything is computed or written.
+    const std::string fluxes = directory.path("fluxes.csv");
+    const auto refused = [&](const std::string& text, const std::string& message) {
+        const Outcome bad = run_hemi(
+            on_cpu({"heat", scene, "--series", directory.write("bad.csv", text), "--fluxes", fluxes}));
+        INFO(bad.err);
+        CHECK(bad.status == 3);
+        CHECK(bad.err_has(message));
+        CHECK_FALSE(std::filesystem::exists(fluxes));
+    };
+    refused("time,bottom\n0,300\n1,-5\n", "bad.csv:3");
+    refused("time,left\n0,0\n1,20C\n", "a number");
+    refused("time,back\n0,20C\n", "a number");
+    refused("time,botom\n0,300\n", "\"bottom\"");
+    refused("time,left\n0 h,0\n1 h,-50000\n", "line 2 (\"1 h\"): group left");
 }
 
 TEST_CASE("hemi exchange: conductances are reciprocal and balance", "[cli][heat]") {
@@ -435,4 +528,10 @@ TEST_CASE("hemi exchange: conductances are reciprocal and balance", "[cli][heat]
     CHECK(table.starts_with("from,to,gebhart,script_f,conductance\nbottom,bottom,"));
     CHECK(std::count(table.begin(), table.end(), '\n') == 1 + 6 * 7);
     CHECK(run_hemi({"exchange", directory.path("box.json"), "--temperature", "top=300"}).status == 2);
+    CHECK(run_hemi({"exchange", directory.path("box.csv")}).err_has("exchange needs a scene"));
+    const Outcome large = run_hemi(
+        {"exchange", directory.write("large.json", box(100, 200, 600)), "--device", "cpu", "--json"});
+    CHECK(large.err_has("no unit"));
+    CHECK_FALSE(large.err_has("temperature"));
+    CHECK(large.json()["seconds"]["estimate"] == 0.0);
 }

@@ -106,6 +106,14 @@ TEST_CASE("imprint: factors are those of the scene's patches, with the area that
     CHECK(covered["entries"].empty());
     CHECK(run_hemi({"factors", hff, "--row", std::to_string(patches)}).status == 2);
 
+    // Radiosity from a stored solution is that of the same patches.
+    REQUIRE(run_hemi(on_cpu({"solve", scene, "--result", directory.path("a.hres"), "--radiosity",
+                             directory.path("direct.csv")}))
+                .status == 0);
+    REQUIRE(run_hemi({"convert", directory.path("a.hres"), directory.path("stored.csv")}).status == 0);
+    CHECK(directory.read("stored.csv") == directory.read("direct.csv"));
+    CHECK(table(directory.read("stored.csv")).at("area") == areas);
+
     // From a point above the floor, parts of a patch count as one.
     const Json seen = run_hemi({"factors", scene, "--from-point", "0.1,0.1,0.5,0,0,-1", "--json"}).json();
     CHECK(seen["patches"] == patches);

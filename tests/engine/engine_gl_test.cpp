@@ -342,7 +342,7 @@ TEST_CASE("hemicube rows: a two-sided sheet radiates on both sides", "[engine][g
 }
 
 TEST_CASE("hemicube rows: the closed-form cases within what one eye point can reach",
-          "[engine][gl][accuracy][every-device]") {
+          "[engine][gl][accuracy][every-device][slow]") {
     for (const ExactCase& exact : exact_cases()) {
         const PatchMesh mesh(read_case(exact.file),
                              {.patch_size = {}, .patches_per_face = exact.patches_per_face});

@@ -184,7 +184,7 @@ Scene sheets() {
 
 } // namespace
 
-TEST_CASE("Rasteriser and OpenGL: item buffers equal rays through the texel centres", "[engine][gl]") {
+TEST_CASE("Rasteriser and OpenGL: item buffers equal rays through the texel centres", "[engine][gl][slow]") {
     const HemicubeSettings settings{.resolution = 64};
     SECTION("a room with blocks") {
         check_against_rays(PatchMesh(room_with_blocks(6)), settings, 17);

@@ -70,7 +70,7 @@ TEST_CASE("split patches: no texel is lost between pieces", "[engine][every-devi
     }
 }
 
-TEST_CASE("split patches: item buffers show what rays meet", "[engine]") {
+TEST_CASE("split patches: item buffers show what rays meet", "[engine][slow]") {
     for (const Scene& scene : scenes()) {
         const Mixed fine = mixed(PatchMesh(scene));
         HemicubeSettings settings;

@@ -95,6 +95,9 @@ void seed_hres(const fs::path& folder) {
     solution.row_sum = solution.environment_share = {0.5, 0.5};
     solution.back_face_share = {0.0, 0.0};
     io::write_hres(folder / "a.hres", result);
+    result.surfaces_as_read = result.scene.surfaces;
+    result.parts.patch_of = {1, 1};
+    io::write_hres(folder / "parts.hres", result);
 }
 
 void seed_rows(const fs::path& folder) {

@@ -302,4 +302,52 @@ TEST_CASE("HRES: patches of different sizes are stored, and refused where they d
     require_parts(message_of<InputError>([&] { (void)io::read_hres(many); }), {"c.hres:", "more parts than"});
 }
 
+TEST_CASE("HRES: surfaces as they were read, and what is left of them", "[io]") {
+    const Folder folder;
+    io::ResultFile a = sample();
+    // The scene has what is left: half of the floor's first patch, and the lid but for its back.
+    a.surfaces_as_read = a.scene.surfaces;
+    const PatchMesh as_read(a.scene_as_read());
+    for (std::uint32_t s = 0; s < 2; ++s) {
+        a.surfaces_as_read[s].patches = as_read.grid(s);
+    }
+    Surface& half = a.scene.surfaces[0];
+    half.vertices = {Vec3(0, 0, 0), Vec3(1.0 / 6.0, 0, 0), Vec3(1.0 / 6.0, 0.5, 0), Vec3(0, 0.5, 0)};
+    half.patches = Grid{1, 1};
+    a.scene.surfaces[1].patches = as_read.grid(1);
+    a.scene.surfaces[1].two_sided = false;
+    const PatchMesh mesh(a.scene);
+    const std::uint32_t lid = as_read.first_patch(1);
+    a.parts.patch_of = {0};
+    for (std::uint32_t k = 1; k < mesh.size(); ++k) {
+        a.parts.patch_of.push_back(lid + k - 1);
+    }
+    for (std::uint32_t i = 0; i < as_read.size(); ++i) {
+        a.parts.group_of.push_back(as_read.group(i));
+    }
+    fit(a.solution, mesh.size());
+    io::write_hres(folder / "a.hres", a);
+    const io::ResultFile b = io::read_hres(folder / "a.hres");
+    CHECK(b.parts == a.parts);
+    CHECK(PatchMesh(b.scene_as_read()).geometry_hash() == as_read.geometry_hash());
+
+    io::write_radiosity_csv(folder / "a.csv", b);
+    const std::string lines = io::read_file(folder / "a.csv");
+    CHECK(std::count(lines.begin(), lines.end(), '\n') == 1 + as_read.size());
+    const auto begins = [&](const std::string& line) { return lines.find("\n" + line) != std::string::npos; };
+    CHECK(begins("0,floor,0.08333333333333333,0.08333333333333333,0.25,0,0,0,1,"));
+    CHECK(begins("1,floor,0,0.5,0.25,0,0,0,1,0,0,0,0,0,0,"));
+
+    std::ifstream file(folder / "a.hres", std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    constexpr int patches_chunk = 3; // HEAD, SURF, READ, OFPA
+    const auto of_none = folder.write("b.hres", with_payload(bytes, patches_chunk, 4, raw(as_read.size())));
+    require_parts(message_of<InputError>([&] { (void)io::read_hres(of_none); }),
+                  {"b.hres:", "a part of patch"});
+    io::ResultFile few = a;
+    few.parts.patch_of.pop_back();
+    require_parts(message_of<InvalidArgument>([&] { io::write_hres(folder / "c.hres", few); }),
+                  {"the patches that parts are of"});
+}
+
 } // namespace hemi::io_test

@@ -153,6 +153,10 @@ TEST_CASE("heat: plates, spheres, a shield", "[heat]") {
     CHECK(shield.temperature[1] == shield.temperature[2]);
     CHECK(shield.net_flux[1] == Approx(-shield.net_flux[0]).epsilon(1e-8));
     CHECK(shield.relative_balance < 1e-8);
+    // One that takes nothing in does not tell the other side of the hot one.
+    problem.emissivity = {0.8, 0.0, 0.0, 0.3};
+    problem.conditions[3] = with_flux(0.0);
+    CHECK_THROWS_WITH(solve_heat(shielded, problem), Contains("cold") && Contains("any temperature"));
 }
 
 TEST_CASE("heat: a given flux makes the temperature that makes the flux", "[heat]") {
@@ -258,6 +262,36 @@ TEST_CASE("heat: emissivity by temperature", "[heat]") {
     CHECK(solve_heat(plates(), problem).temperature[0] == Approx(800.0).epsilon(1e-8));
 }
 
+TEST_CASE("heat: perfect reflectors are as hot as what they see", "[heat]") {
+    const FormFactors factors = duct();
+    HeatProblem mirrors = grey({1.0, 0.0, 0.75, 0.0}, {at(550.0), with_flux(0.0), at(300.0), with_flux(0.0)});
+    const HeatSolution simple = solve_heat(factors, mirrors);
+    CHECK(simple.temperature[1] == Approx(488.460360).epsilon(1e-8));
+    mirrors.conditions[1].isothermal = true;
+    CHECK(solve_heat(factors, mirrors).temperature[1] == Approx(simple.temperature[1]).epsilon(1e-10));
+    const std::vector<std::vector<double>> eps{{1.0, 1.0}, {0.0, 0.0}, {0.75, 0.75}, {0.0, 0.0}};
+    HeatProblem bands = banded(mirrors, {6.0}, eps);
+    CHECK(solve_heat(factors, bands).temperature[1] == Approx(simple.temperature[1]).epsilon(1e-10));
+    bands.conditions[1].isothermal = false;
+    CHECK(solve_heat(factors, bands).temperature[3] == Approx(simple.temperature[3]).epsilon(1e-10));
+    // They can have no flux but their exitance.
+    for (HeatProblem problem : {mirrors, bands}) {
+        *problem.conditions[1].heat_flux = 100.0;
+        CHECK_THROWS_WITH(solve_heat(factors, problem), Contains("group right") && Contains("emissivity"));
+        problem.exitance[problem.bands] = 100.0;
+        CHECK(solve_heat(factors, problem).net_flux[1] == Approx(100.0).epsilon(1e-12));
+    }
+    // Both walls of one temperature: the mean of what they get.
+    HeatProblem joined = mirrors;
+    joined.condition_of[3] = 1;
+    const HeatSolution together = solve_heat(factors, joined);
+    CHECK(together.temperature[3] == together.temperature[1]);
+    CHECK(together.temperature[1] == Approx(simple.temperature[1]).epsilon(1e-8));
+    // In one band a flux is a source, whatever the emissivity; of the temperature it tells nothing then.
+    mirrors.conditions[1] = with_flux(100.0);
+    CHECK(std::isnan(solve_heat(factors, mirrors).temperature[1]));
+}
+
 TEST_CASE("heat: an environment, and none", "[heat]") {
     const FormFactors factors = make_factors({{0.0, 0.4}, {0.4, 0.0}}, {1.0, 1.0}, {"floor", "ceiling"});
     HeatProblem problem = grey({0.9, 0.6}, {at(320.0), with_flux(0.0)});
@@ -276,6 +310,18 @@ TEST_CASE("heat: an environment, and none", "[heat]") {
     CHECK_THAT(warnings.all[0], Contains("0 K"));
     CHECK(dark.environment_power < 0.0);
     CHECK(dark.net_flux[0] == Approx(-dark.environment_power).epsilon(1e-9));
+    // A series says nothing of it again, line by line.
+    problem.tables = {{{300.0, 0.4}, {1300.0, 0.9}}};
+    problem.table_of[0] = 0;
+    CHECK_FALSE(
+        solve_heat_series(factors, problem, {{"floor"}, {300.0, 400.0}, {}}, {}, warnings).superposed);
+    CHECK(warnings.all.size() == 1);
+    // Nothing sees it in a closed scene.
+    HeatProblem closed = grey({0.8, 0.3}, {at(800.0), at(300.0)});
+    closed.environment_temperature = 280.0;
+    CHECK(solve_heat(plates(), closed, {}, warnings).environment_power == 0.0);
+    REQUIRE(warnings.all.size() == 2);
+    CHECK_THAT(warnings.all[1], Contains("280 K") && Contains("no surface sees"));
 }
 
 TEST_CASE("heat: buried patches have no flux and are left out of means", "[heat]") {
@@ -295,10 +341,37 @@ TEST_CASE("heat: buried patches have no flux and are left out of means", "[heat]
     CHECK(groups[0].net_power == Approx(solution.net_flux[0]));
     CHECK(groups[0].temperature == Approx(800.0));
     CHECK(groups[2].net_power == Approx(0.0).margin(1e-6));
+    CHECK(solution.radiosity[2] == Approx(power_of(800.0))); // as in a cavity
     // A power is that of the patches that can get rid of it.
     problem.conditions[0] = {};
     problem.conditions[0].power = 1000.0;
-    CHECK(solve_heat(factors, problem).net_flux[0] == 1000.0);
+    const HeatSolution powered = solve_heat(factors, problem);
+    CHECK(powered.net_flux[0] == 1000.0);
+    // Nothing tells what is in between there.
+    for (const auto* values : {&powered.temperature, &powered.radiosity, &powered.irradiation,
+                               &powered.emitted, &powered.absorbed}) {
+        CHECK(std::isnan((*values)[2]));
+        CHECK(std::isfinite((*values)[0]));
+    }
+    CHECK(powered.relative_balance < 1e-10);
+    // Of a group that is all buried, what it is made of is known; a power cannot leave it.
+    factors.groups = {"hot", "cold", "under"};
+    factors.group_of = {0, 1, 2};
+    problem.emissivity[2] = 0.7;
+    problem.conditions = {at(800.0), at(300.0), with_flux(0.0)};
+    problem.condition_of = {0, 1, 2};
+    const auto under = [&] { return group_heat(factors, problem, solve_heat(factors, problem))[2]; };
+    CHECK(under().emissivity == Approx(0.7));
+    CHECK(std::isnan(under().radiosity));
+    CHECK(std::isnan(under().temperature));
+    CHECK(under().net_power == 0.0);
+    problem.conditions[2].isothermal = true;
+    CHECK(std::isnan(under().temperature));
+    problem.conditions[2] = {};
+    problem.conditions[2].power = 5.0;
+    CHECK_THROWS_WITH(under(), Contains("group under") && Contains("5 W") && Contains("buried"));
+    problem.conditions[2].power = 0.0;
+    CHECK(under().net_power == 0.0);
 }
 
 TEST_CASE("heat: what has no solution is refused by name", "[heat]") {
@@ -318,6 +391,11 @@ TEST_CASE("heat: what has no solution is refused by name", "[heat]") {
     CHECK_THROWS_WITH(solve_heat(two, grey({0.9, 0.9, 0.9, 0.9},
                                            {at(300.0), with_flux(0.0), with_flux(1.0), with_flux(0.0)})),
                       Contains("c, d"));
+    // What a lamp that absorbs nothing gives must go somewhere, too.
+    HeatProblem lamp = grey({0.0, 0.9, 0.9, 0.9}, {with_flux(0.0)});
+    lamp.exitance[0] = 100.0;
+    lamp.condition_of = {no_heat, 0, 0, 0};
+    CHECK_THROWS_WITH(solve_heat(factors, lamp), Contains("100 W") && Contains("no solution"));
     FormFactors lopsided = plates();
     lopsided.areas = {1.0, 2.0};
     CHECK_THROWS_AS(solve_heat(lopsided, grey({0.8, 0.3}, {at(800.0), at(300.0)})), InvalidArgument);
@@ -360,6 +438,32 @@ TEST_CASE("heat: a series is as many single runs", "[heat]") {
     SECTION("by superposition") {
         check(true, 1e-9);
     }
+    SECTION("by superposition, with perfect reflectors") {
+        problem.emissivity[1] = 0.0;
+        check(true, 1e-9);
+        problem.condition_of[1] = no_heat;
+        check(true, 1e-9);
+    }
+    SECTION("a flux that needs less than 0 K is refused with line, group and patch") {
+        schedule.values[4] = -1e5;
+        CHECK_THROWS_WITH(solve_heat_series(factors, problem, schedule),
+                          Contains("line 2") && Contains("group left") && Contains("0 K"));
+        problem.conditions[3].isothermal = true; // line by line
+        CHECK_THROWS_WITH(solve_heat_series(factors, problem, schedule),
+                          Contains("line 2") && Contains("group left") && Contains("0 K"));
+        schedule.values[4] = -250.0;
+        HeatSettings few;
+        few.max_outer = 0;
+        CHECK_THROWS_WITH(solve_heat_series(factors, problem, schedule, few), Contains("line 1"));
+    }
+    SECTION("a schedule is looked through before the work") {
+        CHECK(check_heat_schedule(factors.groups, factors.group_of, problem, schedule) ==
+              std::vector<HeatQuantity>{HeatQuantity::temperature, HeatQuantity::power,
+                                        HeatQuantity::temperature});
+        schedule.columns[1] = "top";
+        CHECK_THROWS_WITH(check_heat_schedule(factors.groups, factors.group_of, problem, schedule),
+                          Contains("two columns \"top\""));
+    }
     SECTION("line by line, where emissivities depend on temperatures") {
         problem.tables = {{{300.0, 0.4}, {1300.0, 0.9}}};
         problem.table_of[2] = 0;
@@ -372,7 +476,8 @@ TEST_CASE("heat: a series is as many single runs", "[heat]") {
         HeatProblem several = problem;
         several.conditions[3] = at(900.0); // beside the 300 K of the other one
         several.condition_of[1] = no_heat;
-        const HeatSeries series = solve_heat_series(joined, several, {{"walls", "right"}, {500.0, 350.0}});
+        const HeatSeries series =
+            solve_heat_series(joined, several, {{"walls", "right"}, {500.0, 350.0}, {}});
         HeatProblem single = problem;
         single.conditions = {at(1500.0), at(350.0), at(500.0), at(500.0)};
         const HeatSolution solution = solve_heat(joined, single);
@@ -381,10 +486,10 @@ TEST_CASE("heat: a series is as many single runs", "[heat]") {
             CHECK(series.net_power[g] == Approx(groups[g].net_power).epsilon(1e-9));
         }
         several.conditions[3] = with_flux(0.0);
-        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}}),
+        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}, {}}),
                           Contains("walls") && Contains("several kinds"));
         several.condition_of[3] = no_heat;
-        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}}),
+        CHECK_THROWS_WITH(solve_heat_series(joined, several, {{"walls"}, {500.0}, {}}),
                           Contains("parts without"));
     }
     SECTION("unknown groups are refused with the nearest") {
@@ -403,7 +508,7 @@ TEST_CASE("heat: a series in bands by superposition", "[heat]") {
     const HeatProblem problem =
         banded(grey({0.5, 0.5, 0.5, 0.5}, {at(1500.0), at(700.0), at(300.0), at(900.0)}), {2.5, 6.0},
                {{0.9, 0.7, 0.2}, {0.3, 0.5, 0.8}, {0.75, 0.6, 1.0}, {0.4, 0.4, 0.1}});
-    const HeatSchedule schedule{{"right"}, {700.0, 1200.0}};
+    const HeatSchedule schedule{{"right"}, {700.0, 1200.0}, {}};
     const HeatSeries series = solve_heat_series(factors, problem, schedule);
     CHECK(series.superposed);
     HeatProblem later = problem;

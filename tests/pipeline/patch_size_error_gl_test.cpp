@@ -155,7 +155,8 @@ std::vector<double> group_irradiance(const Solved& solved) {
 
 } // namespace
 
-TEST_CASE("patch size: the error of lit rooms is that against a grid three times as fine", "[pipeline][gl]") {
+TEST_CASE("patch size: the error of lit rooms is that against a grid three times as fine",
+          "[pipeline][gl][slow]") {
     std::uint32_t groups = 0;
     std::uint32_t too_small = 0;
     double true_squares = 0.0;

@@ -85,7 +85,7 @@ TEST_CASE("presets: the unit cube of 24 x 24 patches a face", "[pipeline][gl][sl
     row.check_below(column(Preset::standard), "max", errors.max, 1e-5);
 }
 
-TEST_CASE("presets: a room with two turned boxes, 1,110 patches", "[pipeline][gl][accuracy]") {
+TEST_CASE("presets: a room with two turned boxes, 1,110 patches", "[pipeline][gl][accuracy][slow]") {
     const Scene scene = coarse_room_with_turned_boxes();
     const PatchMesh mesh(scene);
     const OccludedReference reference(mesh, {"first", "second"}, 20);
@@ -123,7 +123,7 @@ TEST_CASE("presets: a room with two turned boxes, 5,790 patches", "[pipeline][gl
         .check_below("limit", "", default_errors.rms / errors_without.rms, 0.8);
 }
 
-TEST_CASE("presets: triangles cut into patches behind a sphere", "[pipeline][gl][accuracy]") {
+TEST_CASE("presets: triangles cut into patches behind a sphere", "[pipeline][gl][accuracy][slow]") {
     Scene scene = read_case("10_concentric_spheres.obj");
     for (Surface& surface : scene.surfaces) {
         surface.patches = Grid{2, 2};
@@ -176,7 +176,8 @@ TEST_CASE("presets: the shared cases of 16 patches a face", "[pipeline][gl][slow
     }
 }
 
-TEST_CASE("presets: a patch half under a block keeps what its other half sees", "[pipeline][gl][accuracy]") {
+TEST_CASE("presets: a patch half under a block keeps what its other half sees",
+          "[pipeline][gl][accuracy][slow]") {
     struct Limit {
         Preset preset;
         double row, element;
@@ -213,7 +214,7 @@ TEST_CASE("presets: a patch half under a block keeps what its other half sees", 
     }
 }
 
-TEST_CASE("presets: a sheet close above a patch", "[pipeline][gl][accuracy]") {
+TEST_CASE("presets: a sheet close above a patch", "[pipeline][gl][accuracy][slow]") {
     struct Limit {
         Preset preset;
         double element;

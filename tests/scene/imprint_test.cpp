@@ -137,6 +137,28 @@ TEST_CASE("Imprint: parts know the patches that they are parts of", "[imprint]")
     CHECK(patches == std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11});
 }
 
+TEST_CASE("Imprint: faces back to back are joined where their patches are the same", "[imprint]") {
+    const Surface front = face({{0.0, 0.0, 2.0}, {3.0, 0.0, 2.0}, {3.0, 1.0, 2.0}, {0.0, 1.0, 2.0}}, {3, 2});
+    const auto with_back = [&](const Grid& grid) {
+        // From corner to corner as the front in the other sense, so that its u is the front's v.
+        return scene_of(
+            {front, face({{0.0, 0.0, 2.0}, {0.0, 1.0, 2.0}, {3.0, 1.0, 2.0}, {3.0, 0.0, 2.0}}, grid)});
+    };
+    const Scene same = with_back({2, 3});
+    const auto joined = imprint(same);
+    REQUIRE(joined);
+    CHECK(joined->scene.surfaces.size() == 1);
+    check_parts(same, *joined);
+    for (const Grid& other : {Grid{3, 2}, Grid{1, 1}, Grid{6, 1}, Grid{4, 6}}) {
+        const Scene scene = with_back(other);
+        const auto apart = imprint(scene);
+        REQUIRE((!apart || apart->scene.surfaces.size() >= 2));
+        if (apart) {
+            check_parts(scene, *apart);
+        }
+    }
+}
+
 TEST_CASE("Imprint: a block that passes through a floor is cut where it does, and its foot is not seen",
           "[imprint]") {
     std::vector<Surface> surfaces = block(1.3, 2.2, 2.7, 3.4, 1.0, -0.5);

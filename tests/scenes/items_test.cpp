@@ -42,7 +42,7 @@ std::optional<std::string> software_egl() {
 TEST_CASE("scenes: OSMesa, transforming polygons itself or not, EGL and the CPU rasteriser show the items "
           "that rays meet, but within their "
           "distance of an edge",
-          "[scenes][gl]") {
+          "[scenes][gl][slow]") {
     // What each says of itself, in texels: llvmpipe snaps vertices to 1/256, the rasteriser less than 1/1000.
     constexpr double llvmpipe_margin = 1.0 / 256.0;
     constexpr double cpu_margin = 1e-3;

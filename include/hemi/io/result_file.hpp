@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/core/patch_parts.hpp"
 #include "hemi/matrix/error_estimate.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
@@ -7,6 +8,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,13 @@ struct ResultFile {
     Scene scene;             ///< geometry, materials, camera, channels: all but file names
     Subdivision subdivision; ///< how surfaces were cut, for write_hres()
     Solution solution;       ///< all but the exitance, which the scene's materials have: patch_values()
+    /// The surfaces as they were read, each with its own grid, where those of the scene are what is left of
+    /// them (imprint()); else none.
+    std::vector<Surface> surfaces_as_read = {};
+    PatchParts parts = {}; ///< which of their patches those of the scene are parts of; none without them
+
+    /// The scene with the surfaces as they were read.
+    [[nodiscard]] Scene scene_as_read() const;
 };
 
 /// Writes `.hres`.
@@ -34,6 +43,14 @@ struct PatchPlaces {
     std::vector<double> areas; ///< scene units squared; 0 where nothing is left
     std::vector<Vec3> centres; ///< area centroids
 };
+
+/// Where what is left of patches is.
+/// @param as_read  mesh of the patches
+/// @param mesh     of their parts
+/// @param parts    none: each patch is its own part
+/// @return nothing at all where there are no parts
+[[nodiscard]] PatchPlaces places_left(const PatchMesh& as_read, const PatchMesh& mesh,
+                                      const PatchParts& parts);
 
 /// One line a patch: index,group,area,cx,cy,cz,nx,ny,nz (index from 0; shortest digits that read back equal).
 /// @param path  of the file
@@ -55,5 +72,8 @@ void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mes
                          std::span<const std::string> channels, std::span<const double> exitance,
                          std::span<const double> irradiance, std::span<const double> radiosity,
                          std::span<const double> errors = {}, const PatchPlaces& left = {});
+/// The same of a stored solution: one line a patch of the surfaces as they were read, with means over what is
+/// left of it.
+void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& result);
 
 } // namespace hemi::io

@@ -36,9 +36,10 @@ struct HeatProblem {
 /// @param mesh      its patches
 /// @param observer  gets warnings: of groups of which nothing is known, of temperatures that look like °C, of
 ///   lengths that look like millimetres
-/// @throws InputError where channels are neither the bands nor equal
+/// @param conditions  whether temperatures and fluxes are of interest, and warnings of them
+/// @throws InputError where channels are neither the bands nor equal, in materials that surfaces use
 [[nodiscard]] HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh,
-                                       Observer& observer = no_observer());
+                                       Observer& observer = no_observer(), bool conditions = true);
 
 /// How far a problem is solved.
 struct HeatSettings {
@@ -50,12 +51,13 @@ struct HeatSettings {
 /// Temperatures and fluxes of all patches. Arrays of N·bands hold band k of patch i at [i·bands + k]; others
 /// are over all bands.
 struct HeatSolution {
-    std::uint32_t bands = 1;          ///< as in the problem
-    std::vector<double> temperature;  ///< K, N; not a number where nothing tells it
-    std::vector<double> radiosity;    ///< J, W/m², N·bands
-    std::vector<double> irradiation;  ///< G, W/m², N·bands
-    std::vector<double> emitted;      ///< eps f sigma T⁴ + exitance, W/m², N
-    std::vector<double> absorbed;     ///< eps G, W/m², N
+    std::uint32_t bands = 1;         ///< as in the problem
+    std::vector<double> temperature; ///< K, N; not a number where nothing tells it
+    /// J, W/m², N·bands; not a number of buried patches without a known temperature.
+    std::vector<double> radiosity;
+    std::vector<double> irradiation;  ///< G, W/m², N·bands; as J
+    std::vector<double> emitted;      ///< eps f sigma T⁴ + exitance, W/m², N; as J
+    std::vector<double> absorbed;     ///< eps G, W/m², N; as J
     std::vector<double> net_flux;     ///< J - G, leaving positive, W/m², N
     std::vector<std::uint8_t> buried; ///< N; 1: sees nothing, has no flux, and is left out of means
     double environment_power = 0.0;   ///< W, leaving the environment positive
@@ -77,19 +79,21 @@ struct HeatSolution {
 /// @param problem   of the same patches
 /// @param settings  tolerances
 /// @param observer  gets progress and may cancel; gets a warning where an open scene's environment has no
-///   temperature
+///   temperature, and where one is given that no surface sees
 /// @throws InvalidArgument for rows that are not reciprocal or unknown, and sizes that differ; InputError
 /// where
-///   nothing holds the temperature of an enclosure, naming its groups, and where a flux would need
-///   temperatures below 0 K; NotConverged; Cancelled
+///   nothing holds the temperature of an enclosure, naming its groups, where a flux would need temperatures
+///   below 0 K, where one is given in bands or isothermally that an emissivity of 0 does not allow, and where
+///   a power is that of buried patches only; NotConverged; Cancelled
 [[nodiscard]] HeatSolution solve_heat(const FormFactors& factors, const HeatProblem& problem,
                                       const HeatSettings& settings = {}, Observer& observer = no_observer());
 
-/// What is known of a group: means over the area that is not buried.
+/// What is known of a group: means over the area that is not buried; not a number where all is, but for the
+/// emissivity, which is none of a group without patches.
 struct GroupHeat {
-    double area = 0.0; ///< m², all of it
-    double emissivity =
-        0.0; ///< of all bands: emitted by the temperature over sigma T⁴; mean where T is unknown
+    double area = 0.0;       ///< m², all of it
+    double emissivity = 0.0; ///< of all bands: emitted by the temperature over sigma T⁴; mean where T is
+                             ///< unknown or all is buried
     double temperature = 0.0; ///< K, of the mean of sigma T⁴; not a number where it is not known of all of it
     double emitted = 0.0;     ///< W/m²
     double absorbed = 0.0;    ///< W/m²
@@ -127,7 +131,21 @@ struct HeatSchedule {
     /// Line l, column c at [l·columns + c]: temperatures, K; of groups with a heat flux that, W/m²; of groups
     /// with a power that, W.
     std::vector<double> values;
+    std::vector<std::string> labels; ///< of lines, for messages; none: they have their numbers only
 };
+/// What a column of a schedule gives.
+enum class HeatQuantity { temperature, heat_flux, power };
+/// Looks through a schedule before any work is done with it.
+/// @param groups    names
+/// @param group_of  N, of every patch
+/// @param problem   of the same patches
+/// @param schedule  no values need be there yet
+/// @return what every column gives
+/// @throws InvalidArgument, InputError as solve_heat_series() for names and values
+[[nodiscard]] std::vector<HeatQuantity> check_heat_schedule(const std::vector<std::string>& groups,
+                                                            std::span<const std::uint32_t> group_of,
+                                                            const HeatProblem& problem,
+                                                            const HeatSchedule& schedule);
 /// What comes of a schedule, line by line. Arrays of lines·groups hold group g of line l at [l·groups + g].
 struct HeatSeries {
     std::uint32_t groups = 0;              ///< their number
@@ -144,8 +162,9 @@ struct HeatSeries {
 /// @param schedule  temperatures, fluxes and powers
 /// @param settings  tolerances
 /// @param observer  gets progress and may cancel
-/// @throws InputError for unknown groups, with the nearest, groups with conditions of several kinds, and
-///   temperatures below 0 K; as solve_heat()
+/// @throws InputError for unknown groups, with the nearest, repeated columns, groups with conditions of
+/// several
+///   kinds, and temperatures below 0 K; as solve_heat(), with the line
 [[nodiscard]] HeatSeries solve_heat_series(const FormFactors& factors, const HeatProblem& problem,
                                            const HeatSchedule& schedule, const HeatSettings& settings = {},
                                            Observer& observer = no_observer());

@@ -81,8 +81,8 @@ Report heat_report(const FormFactors& factors, const HeatProblem& problem, const
         const GroupHeat& heat = all[g];
         const bool total = g + 1 == all.size();
         table.add({total ? "(all surfaces)" : factors.groups[g], number_text(heat.area),
-                   number_text(heat.emissivity), value_text(heat.temperature), number_text(heat.emitted),
-                   number_text(heat.absorbed), number_text(heat.irradiation), number_text(heat.radiosity),
+                   value_text(heat.emissivity), value_text(heat.temperature), value_text(heat.emitted),
+                   value_text(heat.absorbed), value_text(heat.irradiation), value_text(heat.radiosity),
                    number_text(heat.net_flux),
                    std::isfinite(combined[g]) ? fmt::format("{:.2g}", combined[g]) : "-",
                    number_text(heat.net_power)});

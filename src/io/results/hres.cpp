@@ -47,7 +47,7 @@ Json patch_size_json(const PatchSizeError& error) {
             {"sampled", error.sampled}};
 }
 
-Json header(const ResultFile& result, const PatchMesh& mesh) {
+Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional<PatchMesh>& as_read) {
     const Scene& scene = result.scene;
     Json materials = Json::array();
     for (const Material& material : scene.materials) {
@@ -79,6 +79,9 @@ Json header(const ResultFile& result, const PatchMesh& mesh) {
     if (result.solution.patch_size_error) {
         head["patch_size_error"] = patch_size_json(*result.solution.patch_size_error);
         head["dominance"] = result.solution.dominance;
+    }
+    if (as_read) {
+        head["as_read"] = {{"surfaces", as_read->surfaces().size()}, {"patches", as_read->size()}};
     }
     if (scene.camera) {
         const Camera& camera = *scene.camera;
@@ -116,7 +119,7 @@ void check_array(const std::vector<Number>& values, std::size_t size, const char
             fmt::format("{} values of {}; the solution needs {}", values.size(), name, size));
     }
     for (const Number value : values) {
-        if (!std::isfinite(value)) {
+        if (!std::isfinite(static_cast<double>(value))) {
             throw InvalidArgument(fmt::format("{}: a value of {}; must be finite", name, value));
         }
     }
@@ -181,8 +184,10 @@ void check_patch_size(const ResultFile& result, const Fail& fail) {
 struct Sizes {
     std::uint64_t surfaces = 0;
     std::uint64_t patches = 0;
-    bool gathered = false; ///< there is radiosity at vertices
-    bool parts = false;    ///< patches of some surfaces differ in size
+    bool gathered = false;              ///< there is radiosity at vertices
+    bool parts = false;                 ///< patches of some surfaces differ in size
+    std::uint64_t surfaces_as_read = 0; ///< 0: the surfaces are as they were read
+    std::uint64_t patches_as_read = 0;
 };
 
 Sizes read_header(const JsonNode& head, ResultFile& result) {
@@ -221,9 +226,15 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
         result.solution.patch_size_error = read_patch_size(head.member("patch_size_error"));
         result.solution.dominance = head.member("dominance").number();
     }
-    return {head.member("surfaces").integer(most), head.member("patches").integer(most),
-            head.has("gathered") && head.member("gathered").boolean(),
-            head.has("parts") && head.member("parts").boolean()};
+    Sizes sizes{head.member("surfaces").integer(most), head.member("patches").integer(most),
+                head.has("gathered") && head.member("gathered").boolean(),
+                head.has("parts") && head.member("parts").boolean()};
+    if (head.has("as_read")) {
+        const JsonNode as_read = head.member("as_read");
+        sizes.surfaces_as_read = as_read.member("surfaces").integer(most);
+        sizes.patches_as_read = as_read.member("patches").integer(most);
+    }
+    return sizes;
 }
 
 Surface scene_surface(const StoredSurface& stored) {
@@ -276,26 +287,47 @@ void read_parts(Payload payload, const Sizes& sizes, Subdivision& subdivision) {
     payload.expect_end();
 }
 
-void read_surfaces(Payload payload, const Sizes& sizes, const Subdivision& subdivision, Scene& scene) {
+/// @param count    of the surfaces
+/// @param patches  that they have together
+std::vector<Surface> read_surfaces(Payload payload, std::uint64_t count, std::uint64_t all_patches,
+                                   const Subdivision& subdivision) {
+    std::vector<Surface> surfaces;
     std::uint64_t patches = 0;
-    for (const StoredSurface& stored : payload.take_array<StoredSurface>(sizes.surfaces)) {
+    for (const StoredSurface& stored : payload.take_array<StoredSurface>(count)) {
         if (stored.vertex_count < 3 || stored.vertex_count > 4 || stored.two_sided > 1) {
             payload.fail(fmt::format("a surface of {} vertices and {} sides", stored.vertex_count,
                                      std::uint64_t{stored.two_sided} + 1));
         }
-        const std::size_t parts =
-            subdivision.parts.empty() ? 0 : subdivision.parts[scene.surfaces.size()].size();
+        const std::size_t parts = subdivision.parts.empty() ? 0 : subdivision.parts[surfaces.size()].size();
         const std::uint64_t per_side = parts > 0 ? parts : std::uint64_t{stored.grid_u} * stored.grid_v;
         patches += per_side <= most ? per_side * (stored.two_sided + 1) : most + 1;
-        if (patches > sizes.patches) {
+        if (patches > all_patches) {
             break;
         }
-        scene.surfaces.push_back(scene_surface(stored));
+        surfaces.push_back(scene_surface(stored));
     }
-    if (patches != sizes.patches) {
-        payload.fail(fmt::format("the surfaces have not the {} patches of the solution", sizes.patches));
+    if (patches != all_patches) {
+        payload.fail(fmt::format("the surfaces have not the {} patches of the solution", all_patches));
     }
     payload.expect_end();
+    return surfaces;
+}
+
+std::vector<std::uint32_t> groups_of_patches(const PatchMesh& mesh) {
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        result.push_back(mesh.group(i));
+    }
+    return result;
+}
+
+/// @throws InvalidArgument where a part is of no patch
+void check_patches_as_read(const PatchParts& parts) {
+    for (const std::uint32_t patch : parts.patch_of) {
+        if (patch >= parts.patches()) {
+            throw InvalidArgument(fmt::format("a part of patch {} of {}", patch, parts.patches()));
+        }
+    }
 }
 
 template <class Number = double>
@@ -304,7 +336,7 @@ std::vector<Number> read_array(ChunkReader& reader, std::string_view tag, std::u
     std::vector<Number> values = payload.take_array<Number>(size);
     payload.expect_end();
     for (const Number value : values) {
-        if (!std::isfinite(value)) {
+        if (!std::isfinite(static_cast<double>(value))) {
             payload.fail("a value that is not finite");
         }
     }
@@ -313,8 +345,20 @@ std::vector<Number> read_array(ChunkReader& reader, std::string_view tag, std::u
 
 } // namespace
 
+Scene ResultFile::scene_as_read() const {
+    Scene result = scene;
+    result.surfaces = surfaces_as_read.empty() ? scene.surfaces : surfaces_as_read;
+    return result;
+}
+
 void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     const PatchMesh mesh(result.scene, result.subdivision);
+    std::optional<PatchMesh> as_read;
+    if (!result.surfaces_as_read.empty()) {
+        as_read.emplace(result.scene_as_read());
+        check_array(result.parts.patch_of, mesh.size(), "the patches that parts are of");
+        check_patches_as_read({result.parts.patch_of, groups_of_patches(*as_read)});
+    }
     const std::size_t patches = mesh.size();
     const std::size_t values = patches * result.scene.channels.size();
     check_array(result.solution.radiosity, values, "radiosity");
@@ -338,11 +382,15 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     }
 
     ChunkWriter writer(path, hres_format);
-    writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh)))});
+    writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh, as_read)))});
     if (!mesh.parts().empty()) {
         writer.chunk("PART", {bytes_of(stored_parts(mesh))});
     }
     writer.chunk("SURF", {bytes_of(stored_surfaces(mesh))});
+    if (as_read) {
+        writer.chunk("READ", {bytes_of(stored_surfaces(*as_read))});
+        writer.chunk("OFPA", {bytes_of(result.parts.patch_of)});
+    }
     writer.chunk("RADI", {bytes_of(result.solution.radiosity)});
     writer.chunk("IRRA", {bytes_of(result.solution.irradiance)});
     writer.chunk("RSUM", {bytes_of(result.solution.row_sum)});
@@ -370,9 +418,21 @@ ResultFile read_hres(const std::filesystem::path& path) {
     if (sizes.parts) {
         read_parts(reader.chunk("PART"), sizes, result.subdivision);
     }
-    read_surfaces(reader.chunk("SURF"), sizes, result.subdivision, result.scene);
+    result.scene.surfaces =
+        read_surfaces(reader.chunk("SURF"), sizes.surfaces, sizes.patches, result.subdivision);
+    if (sizes.surfaces_as_read > 0) {
+        result.surfaces_as_read =
+            read_surfaces(reader.chunk("READ"), sizes.surfaces_as_read, sizes.patches_as_read, {});
+        result.parts.patch_of = read_array<std::uint32_t>(reader, "OFPA", sizes.patches);
+    }
     try {
         validate(result.scene);
+        if (sizes.surfaces_as_read > 0) {
+            const Scene as_read = result.scene_as_read();
+            validate(as_read);
+            result.parts.group_of = groups_of_patches(PatchMesh(as_read));
+            check_patches_as_read(result.parts);
+        }
         if (sizes.parts) {
             (void)PatchMesh(result.scene, result.subdivision); // whether parts fill their surfaces
         }

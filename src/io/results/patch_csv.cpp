@@ -98,6 +98,23 @@ void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
     output.commit();
 }
 
+PatchPlaces places_left(const PatchMesh& as_read, const PatchMesh& mesh, const PatchParts& parts) {
+    if (!parts.any()) {
+        return {};
+    }
+    std::vector<double> coordinates;
+    for (const Vec3& centre : mesh.centres()) {
+        coordinates.insert(coordinates.end(), {centre.x, centre.y, centre.z});
+    }
+    const std::vector<double> means = means_of_patches(parts, mesh.areas(), coordinates, 3);
+    PatchPlaces left{areas_of_patches(parts, mesh.areas()), {}};
+    for (std::size_t i = 0; i < left.areas.size(); ++i) {
+        left.centres.push_back(left.areas[i] > 0.0 ? Vec3(means[3 * i], means[3 * i + 1], means[3 * i + 2])
+                                                   : as_read.centres()[i]);
+    }
+    return left;
+}
+
 void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh, const PatchPlaces& left) {
     write_patch_table(path, mesh, {}, left);
 }
@@ -126,6 +143,25 @@ void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mes
         arrays.push_back(array("error", errors));
     }
     write_patch_table(path, mesh, arrays, left);
+}
+
+void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& result) {
+    const PatchMesh mesh(result.scene, result.subdivision);
+    const std::vector<std::string>& channels = result.scene.channels;
+    const Solution& solution = result.solution;
+    const std::vector<double> exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+    const std::vector<double> errors = radiosity_errors(solution);
+    if (!result.parts.any()) {
+        write_radiosity_csv(path, mesh, channels, exitance, solution.irradiance, solution.radiosity, errors);
+        return;
+    }
+    const PatchMesh as_read(result.scene_as_read());
+    const auto means = [&](const std::vector<double>& values) {
+        return values.empty() ? values
+                              : means_of_patches(result.parts, mesh.areas(), values, channels.size());
+    };
+    write_radiosity_csv(path, as_read, channels, means(exitance), means(solution.irradiance),
+                        means(solution.radiosity), means(errors), places_left(as_read, mesh, result.parts));
 }
 
 } // namespace hemi::io

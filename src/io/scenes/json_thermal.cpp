@@ -124,6 +124,11 @@ std::optional<HeatCondition> read_heat(const JsonNode& node) {
     }
     const JsonNode value = node.member(given[0]);
     if (given[0] == "temperature") {
+        if (condition.isothermal) {
+            node.fail(
+                "\"isothermal\" beside \"temperature\", which is one for all already; it is for \"power\" "
+                "or \"heat_flux\"");
+        }
         condition.temperature = read_temperature(value);
     } else {
         (given[0] == "power" ? condition.power : condition.heat_flux) = value.number();
