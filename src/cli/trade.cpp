@@ -41,7 +41,7 @@ ExitStatus run(const TradeArguments& arguments, const Terminal& terminal) {
         file.write(trade_drawing(trade, loaded));
         file.commit();
     }
-    const Report report = trade_report(trade, loaded, arguments.budget, total.seconds());
+    const Report report = trade_report(trade, loaded, arguments.scene, arguments.budget, total.seconds());
     if (outputs.uses_standard_output()) { // never with --json
         std::fputs(report.text.c_str(), stderr);
     } else {

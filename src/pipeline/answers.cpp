@@ -1,6 +1,5 @@
 #include "pipeline/answers.hpp"
 
-#include "hemi/core/error.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/pipeline/cost.hpp"
 #include "hemi/pipeline/form_factors.hpp"
@@ -8,14 +7,17 @@
 #include "hemi/pipeline/refinement.hpp"
 #include "hemi/pipeline/vertex_gather.hpp"
 #include "pipeline/cut_mesh.hpp"
+#include "pipeline/failure.hpp"
 #include "pipeline/patch_locator.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <span>
+#include <string>
 
 namespace hemi {
 
@@ -42,7 +44,7 @@ constexpr double least_growth_of_time = 1.0;
 constexpr double most_growth_of_time = 1.8;
 constexpr double usual_growth_of_time = 1.2;
 constexpr double reference_over_standard = 0.8;
-constexpr double reference_point_over_vertex = 1.2;
+constexpr double reference_point_over_vertex = 1.5;
 constexpr double bytes_a_pair = 4.0;
 constexpr double bytes_an_entry = 9.0;
 
@@ -63,10 +65,11 @@ double at_least_few(double patches) {
     return std::max(patches, few);
 }
 
-/// To three digits, as a person would write it.
+/// To three digits, as a person would write it: the number that is read from these.
 double rounded(double value) {
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
-    return std::round(value / unit) * unit;
+    const std::string text = fmt::format("{:.3g}", value);
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
 }
 
 /// The size of the patches as `--patch-size` has it: the longest edge, the mean over the area.
@@ -94,6 +97,8 @@ bool is_dark(const Scene& scene) {
            std::none_of(scene.materials.begin(), scene.materials.end(),
                         [&](const Material& material) { return shines(material.exitance); });
 }
+
+const std::string own_label = "solutions on the scene's own patches";
 
 std::string size_label(double patch_size) {
     return fmt::format("patches of {:g}", patch_size);
@@ -147,7 +152,7 @@ double Answers::reference_seconds(double patches) const {
            reference_point_over_vertex * seconds_a_vertex_ * reference_points();
 }
 
-double Answers::reference_seconds() const {
+double Answers::reference_seconds() {
     return solved_.empty() ? 0.0 : reference_seconds(reference_mesh().size());
 }
 
@@ -163,8 +168,23 @@ bool Answers::fits_memory(double patches) const {
            static_cast<double>(memory_limit(subject_.base));
 }
 
-bool Answers::can_judge(double patches) const {
-    return reference_seconds(2.0 * patches) <= reference_share * budget_ && fits_memory(2.0 * patches);
+Answers::Limit Answers::limit_of_judging(double patches) const {
+    return !fits_memory(2.0 * patches)                                    ? Limit::reference_memory
+           : reference_seconds(2.0 * patches) > reference_share * budget_ ? Limit::reference_time
+                                                                          : Limit::none;
+}
+
+std::string Answers::text(Limit limit) {
+    switch (limit) {
+    case Limit::solution_time:
+        return "a solution would take too long";
+    case Limit::reference_time:
+        return "a finer reference would take too long";
+    case Limit::reference_memory:
+        return "a finer reference does not fit into the memory";
+    default:
+        return "";
+    }
 }
 
 std::vector<std::pair<double, PatchMesh>> Answers::coarser_meshes() const {
@@ -192,7 +212,8 @@ std::vector<Preset> Answers::affordable(const PatchMesh& mesh, bool own) {
         timed_[Preset::standard] = {{mesh.size(), measure_cost(mesh, settings).seconds}};
     }
     std::vector<Preset> result;
-    if (!can_judge(patches)) {
+    limit_ = limit_of_judging(patches);
+    if (limit_ != Limit::none) {
         return result;
     }
     double seconds = watch_.seconds();
@@ -204,21 +225,36 @@ std::vector<Preset> Answers::affordable(const PatchMesh& mesh, bool own) {
             seconds += more;
         }
     }
+    limit_ = result.empty() ? Limit::solution_time : Limit::none;
     return result;
 }
 
-void Answers::solve_size(double patch_size, const PatchMesh& mesh, const std::vector<Preset>& affordable) {
-    const Reference rows = find_reference(mesh, all_patches(mesh.size()), subject_.base, 0.0);
+bool Answers::solve_size(double patch_size, const PatchMesh& mesh, const std::vector<Preset>& affordable) {
+    Reference rows;
+    if (const auto why = failure(
+            [&] { rows = find_reference(mesh, all_patches(mesh.size()), subject_.base, 0.0, observer_); })) {
+        omit(size_label(patch_size), *why);
+        return false;
+    }
+    const std::size_t before = solved_.size();
     for (const Preset preset : affordable) {
         Candidate candidate = hemicube_candidate(subject_.base, preset, mesh.size());
         candidate.settings.estimate_error = false;
-        observer_.detail(size_label(patch_size) + ", " + candidate.label());
+        const std::string label = size_label(patch_size) + ", " + candidate.label();
+        observer_.detail(label);
         const Stopwatch watch;
-        const FormFactors factors = compute_form_factors(subject_.scene, mesh, candidate.settings);
+        FormFactors factors;
+        if (const auto why = failure([&] {
+                factors = compute_form_factors(subject_.scene, mesh, candidate.settings, observer_);
+            })) {
+            omit(label, *why);
+            continue;
+        }
         const double seconds = watch.seconds();
         add(candidate, patch_size, mesh, factors, seconds,
             estimate_factor_error(factors.matrix, rows.rows).row_rms);
     }
+    return solved_.size() > before;
 }
 
 void Answers::solve_uniform(const TryOwn& try_own) {
@@ -229,15 +265,16 @@ void Answers::solve_uniform(const TryOwn& try_own) {
     for (const auto& [size, mesh] : coarser_meshes()) {
         const auto chosen = affordable(mesh, false);
         if (chosen.empty()) {
-            omit(size_label(size), "a finer reference would take too long");
+            omit(size_label(size), text(limit_));
             return;
         }
-        solve_size(size, mesh, chosen);
-        note_finest(size, mesh.size());
+        if (solve_size(size, mesh, chosen)) {
+            note_finest(size, mesh.size());
+        }
     }
     const auto chosen = affordable(subject_.mesh, true);
     if (chosen.empty()) {
-        omit("solutions on the scene's own patches", "a finer reference would take too long");
+        omit(own_label, text(limit_));
         return;
     }
     judges_own_ = true;
@@ -249,10 +286,12 @@ void Answers::solve_uniform(const TryOwn& try_own) {
         const PatchMesh mesh = cut_mesh(subject_.scene, {size, {}, {}}, subject_.with_imprint);
         const auto finer = affordable(mesh, false);
         if (finer.empty()) {
+            limit_ = Limit::none; // what is left out there needs no reason
             return;
         }
-        solve_size(size, mesh, finer);
-        note_finest(size, mesh.size());
+        if (solve_size(size, mesh, finer)) {
+            note_finest(size, mesh.size());
+        }
     }
 }
 
@@ -268,17 +307,20 @@ void Answers::add(const Candidate& candidate, std::optional<double> patch_size, 
                   const FormFactors& factors, double seconds, double row_error) {
     const Stopwatch watch;
     Solution solution;
-    try {
-        solution = solve_radiosity(subject_.scene, mesh, factors, {}, observer_, false);
-    } catch (const NotConverged& error) { // rows may sum up to more than 1 where nothing closes them
-        omit(candidate.label(), error.what());
+    double seconds_of_gather = 0.0;
+    // Rows may sum up to more than 1 where nothing closes them, and then no solution is found.
+    if (const auto why = failure([&] {
+            solution = solve_radiosity(subject_.scene, mesh, factors, {}, observer_, false);
+            const Stopwatch gather_watch;
+            gather_at_vertices(subject_.scene, mesh, candidate.settings, Gather::automatic, solution,
+                               observer_);
+            seconds_of_gather = gather_watch.seconds();
+        })) {
+        omit((patch_size ? size_label(*patch_size) : own_label) + ", " + candidate.label(), *why);
         return;
     }
-    const Stopwatch gather_watch;
-    gather_at_vertices(subject_.scene, mesh, candidate.settings, Gather::automatic, solution, observer_);
     seconds += watch.seconds();
     if (!solution.vertex_radiosity.empty()) {
-        const double seconds_of_gather = gather_watch.seconds();
         const VertexGather gathered(mesh, solution.back_face_share, reflecting_patches(subject_.scene, mesh));
         seconds_a_vertex_ = seconds_of_gather / at_least_few(static_cast<double>(gathered.points().size()));
     }
@@ -290,10 +332,8 @@ void Answers::add(const Candidate& candidate, std::optional<double> patch_size, 
     answer.memory = pair_table_bytes(candidate, mesh.size(), mesh.size()) + factors.matrix.memory_bytes();
     answer.gathered = !solution.vertex_radiosity.empty();
     answer.row_error = row_error;
-    const FactorSettings& settings = candidate.settings;
-    if (settings.method == Method::hemicube && !settings.eye_points && !settings.resolution &&
-        !settings.shadow_rays) {
-        auto& times = timed_[settings.preset];
+    if (candidate.is_preset()) {
+        auto& times = timed_[candidate.settings.preset];
         if (!times.empty() && times.back().patches == mesh.size()) { // what was only a guess
             times.pop_back();
         }
@@ -310,16 +350,16 @@ void Answers::refine() {
     Candidate candidate =
         hemicube_candidate(subject_.base, Preset::standard, static_cast<std::uint32_t>(finest_patches_));
     candidate.settings.estimate_error = true;
-    const PatchMesh coarse = coarse_mesh(subject_.scene, subject_.with_imprint);
+    std::optional<PatchMesh> coarse;
     double last = 0.0;
     double reached = 1.0;
     for (const double target : error_targets) {
         if (reached <= target) { // the same patches would do
             continue;
         }
+        const std::string label = fmt::format("patches refined to {:g} %", 100.0 * target);
         const double limit = std::min(refinement_share * budget_, (1.0 - others_share) * budget_ -
                                                                       reference_seconds() - watch_.seconds());
-        const std::string label = fmt::format("patches refined to {:g} %", 100.0 * target);
         if (2.0 * last > limit) {
             omit(label, "there was no time for it");
             return;
@@ -329,44 +369,58 @@ void Answers::refine() {
         goal.seconds = limit;
         observer_.detail(label);
         const Stopwatch watch;
-        Refinement found =
-            solve_refined(subject_.scene, coarse, candidate.settings, {}, goal, false, observer_);
-        last = watch.seconds();
-        if (!found.stopped.empty()) {
-            omit(label, found.stopped);
+        std::optional<Refinement> found;
+        if (const auto why = failure([&] {
+                if (!coarse) {
+                    coarse = coarse_mesh(subject_.scene, subject_.with_imprint);
+                }
+                found =
+                    solve_refined(subject_.scene, *coarse, candidate.settings, {}, goal, false, observer_);
+            })) {
+            omit(label, *why);
             return;
         }
-        reached = found.steps.back().error;
+        last = watch.seconds();
+        if (!found->stopped.empty()) {
+            omit(label, found->stopped);
+            return;
+        }
+        reached = found->steps.back().error;
         Trade::Answer answer;
         answer.candidate = candidate;
         answer.error_target = target;
-        answer.patches = found.mesh.size();
+        answer.patches = found->mesh.size();
         answer.seconds = last;
-        const std::size_t fresh = found.steps.back().rows;
+        const std::size_t fresh = found->steps.back().rows;
         // The matrix before a step and after it, or raw and prepared.
         answer.memory =
-            pair_table_bytes(candidate, answer.patches, fresh) + 2 * found.factors.matrix.memory_bytes();
-        answer.gathered = !found.solution.vertex_radiosity.empty();
-        answer.row_error = found.factors.error ? found.factors.error->row_rms : 0.0;
-        solved_.push_back({std::move(answer), std::move(found.mesh), std::move(found.solution)});
+            pair_table_bytes(candidate, answer.patches, fresh) + 2 * found->factors.matrix.memory_bytes();
+        answer.gathered = !found->solution.vertex_radiosity.empty();
+        answer.row_error = found->factors.error ? found->factors.error->row_rms : 0.0;
+        solved_.push_back({std::move(answer), std::move(found->mesh), std::move(found->solution)});
     }
 }
 
-PatchMesh Answers::reference_mesh() const {
-    // Half the size of the finest patches where there is time for it, else half their area.
-    PatchMesh mesh = cut_mesh(subject_.scene, {0.5 * finest_size_, {}, {}}, subject_.with_imprint);
-    if (reference_seconds(mesh.size()) > reference_share * budget_ || !fits_memory(mesh.size())) {
-        mesh = cut_mesh(subject_.scene, {std::sqrt(0.5) * finest_size_, {}, {}}, subject_.with_imprint);
+const PatchMesh& Answers::reference_mesh() {
+    if (!reference_mesh_) {
+        // Half the size of the finest patches where there is time for it, else half their area.
+        PatchMesh half = cut_mesh(subject_.scene, {0.5 * finest_size_, {}, {}}, subject_.with_imprint);
+        const bool too_fine =
+            reference_seconds(half.size()) > reference_share * budget_ || !fits_memory(half.size());
+        reference_mesh_ = too_fine ? cut_mesh(subject_.scene, {std::sqrt(0.5) * finest_size_, {}, {}},
+                                              subject_.with_imprint)
+                                   : std::move(half);
     }
     // Nowhere coarser than any of them.
     constexpr double rounding = 1.01;
-    for (const Solved& solved : solved_) {
+    for (; not_finer_ < solved_.size(); ++not_finer_) {
+        const Solved& solved = solved_[not_finer_];
         for (bool coarser = true; coarser;) {
-            const PatchLocator locator(mesh);
+            const PatchLocator locator(*reference_mesh_);
             std::vector<std::uint32_t> split;
             for (std::uint32_t i = 0; i < solved.mesh.size(); ++i) {
                 const auto patch = locator.find({solved.mesh.centres()[i], solved.mesh.normal(i), 0});
-                if (patch && mesh.areas()[*patch] > rounding * solved.mesh.areas()[i]) {
+                if (patch && reference_mesh_->areas()[*patch] > rounding * solved.mesh.areas()[i]) {
                     split.push_back(*patch);
                 }
             }
@@ -374,35 +428,67 @@ PatchMesh Answers::reference_mesh() const {
             split.erase(std::unique(split.begin(), split.end()), split.end());
             coarser = !split.empty();
             if (coarser) {
-                mesh = mesh.split(split, Cut::by_shape).mesh;
+                reference_mesh_ = reference_mesh_->split(split, Cut::by_shape).mesh;
             }
         }
     }
-    return mesh;
+    return *reference_mesh_;
 }
 
 void Answers::judge(Trade& trade) {
-    for (const auto& [label, why] : omitted_) {
-        trade.omitted.emplace_back(label, why);
-    }
     if (solved_.empty()) {
-        trade.unanswered = "there was no time for a reference: give more with --budget";
+        trade.unanswered = limit_ == Limit::reference_memory
+                               ? "there was no memory for a reference: give more with --max-memory"
+                           : limit_ == Limit::none
+                               ? "no solution was found"
+                               : "there was no time for a reference: give more with --budget";
+    } else {
+        const Solved* finest = &solved_.front();
+        for (const Solved& solved : solved_) {
+            finest =
+                !solved.answer.error_target && solved.mesh.size() > finest->mesh.size() ? &solved : finest;
+        }
+        RadiosityReference reference;
+        if (const auto why = failure([&] {
+                reference = find_radiosity_reference(subject_.scene, reference_mesh(), finest->mesh,
+                                                     subject_.base, reference_points(), observer_);
+            })) {
+            trade.unanswered = "no reference was found: " + *why;
+        } else {
+            judge_by(std::move(reference), trade);
+        }
+    }
+    trade.omitted.insert(trade.omitted.end(), omitted_.begin(), omitted_.end());
+}
+
+void Answers::judge_by(RadiosityReference reference, Trade& trade) {
+    if (std::none_of(reference.reflected.begin(), reference.reflected.end(),
+                     [](double light) { return light > 0.0; })) {
+        trade.unanswered = "no light comes to what reflects it";
         return;
     }
-    const Solved* finest = &solved_.front();
-    for (const Solved& solved : solved_) {
-        finest = !solved.answer.error_target && solved.mesh.size() > finest->mesh.size() ? &solved : finest;
-    }
-    trade.answer_reference = find_radiosity_reference(subject_.scene, reference_mesh(), finest->mesh,
-                                                      subject_.base, reference_points(), observer_);
     for (Solved& solved : solved_) {
-        solved.answer.error = judge_radiosity(solved.mesh, solved.solution, *trade.answer_reference);
-        const FieldError& vertices = solved.answer.error.vertices;
-        observer_.detail(fmt::format(
-            "{} by {}: {:.2g} %, standard error {:.2g} %", plural(solved.answer.patches, "patch", "patches"),
-            solved.answer.candidate.label(), 100.0 * vertices.rms, 100.0 * vertices.doubt));
-        trade.answers.push_back(std::move(solved.answer));
+        Trade::Answer& answer = solved.answer;
+        const auto error = answer.patches < reference.patches
+                               ? judge_radiosity(solved.mesh, solved.solution, reference)
+                               : std::nullopt;
+        const std::string label =
+            plural(answer.patches, "patch", "patches") + ", " + answer.candidate.label();
+        if (!error) {
+            omit(label, answer.patches < reference.patches ? "its patches have no lit point of the reference"
+                                                           : "there was no time for a finer reference");
+            continue;
+        }
+        answer.error = *error;
+        observer_.detail(fmt::format("{}: {:.2g} %, standard error {:.2g} %", label,
+                                     100.0 * error->vertices.rms, 100.0 * error->vertices.doubt));
+        trade.answers.push_back(std::move(answer));
     }
+    if (trade.answers.empty()) {
+        trade.unanswered = "the reference can judge no solution, see below";
+        return;
+    }
+    trade.answer_reference = std::move(reference);
 }
 
 } // namespace hemi

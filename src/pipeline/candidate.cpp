@@ -30,9 +30,12 @@ double seconds_a_row(Provider& provider, std::size_t sampled, double seconds) {
     return watch.seconds() / static_cast<double>(patches.size());
 }
 
-bool go_on(std::size_t, std::size_t) {
-    stop_if_interrupted();
-    return true;
+/// Tells the observer what a phase is at.
+Progress progress_of(Observer& observer, Phase phase) {
+    return [&observer, phase](std::size_t done, std::size_t total) {
+        stop_if_interrupted();
+        return observer.progress(phase, done, total);
+    };
 }
 
 bool is_weighted(const FactorSettings& settings) {
@@ -40,11 +43,12 @@ bool is_weighted(const FactorSettings& settings) {
 }
 
 /// Rows of a sample, and what all rows will take.
-/// @param count    number of rows that `seconds` are to be for
-/// @param compute  makes rows of a provider, and calls back after each
+/// @param count     number of rows that `seconds` are to be for
+/// @param progress  of the rows
+/// @param compute   makes rows of a provider, and calls back after each
 template <class Provider, class Compute>
 FormFactorMatrix timed_rows(Provider& provider, std::span<const std::uint32_t> patches, std::size_t count,
-                            double& seconds, const Compute& compute) {
+                            double& seconds, const Progress& progress, const Compute& compute) {
     // The first row also pays for contexts and workers, which do not grow with the number of rows.
     const Stopwatch start_watch;
     provider.rows(patches.first(1), [](std::uint32_t, const auto&) {});
@@ -53,7 +57,7 @@ FormFactorMatrix timed_rows(Provider& provider, std::span<const std::uint32_t> p
     double rows_seconds = 0.0;
     FormFactorMatrix rows = compute([&](std::size_t done, std::size_t total) {
         rows_seconds = watch.seconds();
-        return go_on(done, total);
+        return progress(done, total);
     });
     const double pair_seconds = watch.seconds() - rows_seconds; // 0 where rows are all there is
     // Each pair is computed once.
@@ -66,19 +70,23 @@ FormFactorMatrix timed_rows(Provider& provider, std::span<const std::uint32_t> p
 }
 
 FormFactorMatrix rows_of(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,
-                         std::span<const std::uint32_t> patches, std::size_t count, double& seconds) {
+                         std::span<const std::uint32_t> patches, std::size_t count, double& seconds,
+                         Observer& observer) {
+    const auto progress = [&observer](Phase phase) { return progress_of(observer, phase); };
     if (!is_weighted(settings)) {
         const auto provider = make_row_provider(mesh, settings);
-        return timed_rows(*provider, patches, count, seconds, [&](const Progress& rows_done) {
-            return compute_matrix(*provider, patches, rows_done);
-        });
+        return timed_rows(
+            *provider, patches, count, seconds, progress(Phase::form_factors),
+            [&](const Progress& rows_done) { return compute_matrix(*provider, patches, rows_done); });
     }
     const RowPlan plan = plan_rows(settings, mesh.size());
     const auto provider = make_visibility_provider(mesh, plan.hemicube, settings);
-    return timed_rows(*provider, patches, count, seconds, [&](const Progress& rows_done) {
-        return compute_visibility_weighted(*provider, mesh, patches, *plan.weighted, scene.enclosure,
-                                           rows_done, go_on, go_on);
-    });
+    return timed_rows(
+        *provider, patches, count, seconds, progress(Phase::visibility), [&](const Progress& rows_done) {
+            return compute_visibility_weighted(*provider, mesh, patches, *plan.weighted, scene.enclosure,
+                                               rows_done, progress(Phase::pairs),
+                                               progress(Phase::form_factors));
+        });
 }
 
 void judge(Measurement& measurement, const Scene& scene, const PatchMesh& mesh, const FormFactorMatrix& rows,
@@ -106,6 +114,11 @@ std::string Candidate::description() const {
     text += settings.resolution ? fmt::format(", resolution {}", *settings.resolution) : "";
     text += settings.shadow_rays ? fmt::format(", shadow rays {}", *settings.shadow_rays) : "";
     return text;
+}
+
+bool Candidate::is_preset() const {
+    return settings.method == Method::hemicube && !settings.eye_points && !settings.resolution &&
+           !settings.shadow_rays;
 }
 
 Candidate hemicube_candidate(const FactorSettings& base, Preset preset, std::uint32_t patches,
@@ -148,7 +161,7 @@ Candidate baseline_candidate(const FactorSettings& base, Method method, std::uin
 }
 
 Reference find_reference(const PatchMesh& mesh, std::span<const std::uint32_t> patches,
-                         const FactorSettings& base, double seconds) {
+                         const FactorSettings& base, double seconds, Observer& observer) {
     constexpr std::uint32_t min_rows = 8;
     constexpr std::uint32_t max_rows = 32;
     constexpr std::uint32_t min_resolution = 128;
@@ -170,7 +183,8 @@ Reference find_reference(const PatchMesh& mesh, std::span<const std::uint32_t> p
     const auto count = static_cast<std::uint32_t>(
         std::clamp<double>(seconds / std::max(one.seconds(), 1e-4), min_rows, max_rows));
     reference.patches = reference_patches(patches, count);
-    reference.rows = compute_reference(*engine, mesh, reference.patches);
+    reference.rows =
+        compute_reference(*engine, mesh, reference.patches, progress_of(observer, Phase::error_estimate));
     reference.renderer = engine->renderer();
     reference.seconds = watch.seconds();
     stop_if_interrupted();
@@ -178,29 +192,32 @@ Reference find_reference(const PatchMesh& mesh, std::span<const std::uint32_t> p
 }
 
 Measurement try_on_sample(const Scene& scene, const PatchMesh& mesh, const Candidate& candidate,
-                          const Reference& reference, std::size_t count, std::span<const double> radiosity) {
+                          const Reference& reference, std::size_t count, std::span<const double> radiosity,
+                          Observer& observer) {
     Measurement measurement;
     const FormFactorMatrix rows =
-        rows_of(scene, mesh, candidate.settings, reference.patches, count, measurement.seconds);
+        rows_of(scene, mesh, candidate.settings, reference.patches, count, measurement.seconds, observer);
     judge(measurement, scene, mesh, rows, reference, radiosity);
     stop_if_interrupted();
     return measurement;
 }
 
 Measurement try_on_all(const Scene& scene, const PatchMesh& mesh, const Candidate& candidate,
-                       const Reference& reference, std::span<const double> radiosity, FormFactors* rows) {
+                       const Reference& reference, std::span<const double> radiosity, FormFactors* rows,
+                       Observer& observer) {
     const auto patches = all_patches(mesh.size());
     const Stopwatch watch;
     Measurement measurement;
     measurement.all_rows = true;
     FormFactors factors;
     if (candidate.settings.method != Method::hemicube) { // as the method has them
-        factors.matrix = compute_matrix(*make_row_provider(mesh, candidate.settings), patches, go_on);
+        factors.matrix = compute_matrix(*make_row_provider(mesh, candidate.settings), patches,
+                                        progress_of(observer, Phase::form_factors));
         factors.areas.assign(mesh.areas().begin(), mesh.areas().end());
     } else {
         FactorSettings settings = candidate.settings;
         settings.estimate_error = false;
-        factors = compute_form_factors(scene, mesh, settings);
+        factors = compute_form_factors(scene, mesh, settings, observer);
     }
     stop_if_interrupted();
     measurement.seconds = watch.seconds();

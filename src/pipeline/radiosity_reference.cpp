@@ -28,6 +28,8 @@ constexpr std::uint32_t mesh_resolution = 96;
 constexpr std::uint32_t mesh_shadow_rays = 32;
 constexpr std::uint32_t point_resolution = 192;
 constexpr std::uint32_t point_shadow_rays = 64;
+/// Of the points one in so many is gathered at a second time.
+constexpr std::uint32_t repeated_every = 4;
 
 /// A number in [0, 1) that depends on both.
 double hashed(std::uint64_t index, std::uint64_t which) {
@@ -186,12 +188,14 @@ private:
     double reflected_ = 0.0;
 };
 
-void take_worst(FieldError& worst, const std::optional<FieldError>& error) {
+/// @return whether there was one to take
+bool take_worst(FieldError& worst, const std::optional<FieldError>& error) {
     if (error) {
         worst.rms = std::max(worst.rms, error->rms);
         worst.percentile95 = std::max(worst.percentile95, error->percentile95);
         worst.doubt = std::max(worst.doubt, error->doubt);
     }
+    return error.has_value();
 }
 
 } // namespace
@@ -233,36 +237,49 @@ RadiosityReference find_radiosity_reference(const Scene& scene, const PatchMesh&
         }
         return area / of.size();
     };
-    // Errors like h²: those of the fine patches from the difference to those of the coarse ones.
-    const double ratio = std::min(mean_area(mesh) / mean_area(coarser), 0.75);
+    // Errors like h^1.5 where walls touch (in smooth light h²): those of the fine patches from the difference
+    // to those of the coarse ones.
+    const double ratio = std::pow(std::min(mean_area(mesh) / mean_area(coarser), 0.75), 0.75);
     const double own = ratio / (1.0 - ratio);
 
     const Points spread = spread_points(scene, mesh, solution, count);
-    RowPlan plan = plan_rows(other, mesh.size());
-    plan.hemicube.resolution = point_resolution;
     std::vector<double> weights(mesh.size());
     for (std::uint32_t j = 0; j < mesh.size(); ++j) {
         weights[j] = *std::max_element(seen.begin() + std::ptrdiff_t{j} * channels,
                                        seen.begin() + (std::ptrdiff_t{j} + 1) * channels);
     }
+    const auto gather = [&](std::span<const SurfacePoint> points, const PointRowSink& sink) {
+        RowPlan plan = plan_rows(other, mesh.size());
+        plan.hemicube.resolution = point_resolution;
+        const auto engine = make_point_visibility_provider(mesh, points, plan.hemicube, other);
+        compute_point_rows(*engine, mesh, points, {ExchangeRule::standard, point_shadow_rays},
+                           scene.enclosure, weights, sink, [&observer](std::size_t done, std::size_t total) {
+                               return observer.progress(Phase::gather, done, total);
+                           });
+    };
     std::vector<double> light(spread.points.size() * channels, 0.0);
     std::vector<double> coarse_light(light.size(), 0.0);
     std::vector<std::uint8_t> buried(spread.points.size(), 0);
-    const auto engine = make_point_visibility_provider(mesh, spread.points, plan.hemicube, other);
-    compute_point_rows(
-        *engine, mesh, spread.points, {ExchangeRule::standard, point_shadow_rays}, scene.enclosure, weights,
-        [&](std::uint32_t index, const RowView& row) {
-            const std::size_t at = std::size_t{index} * channels;
-            gathered_radiosity(row, values, seen, spread.hosts[index],
-                               std::span(light).subspan(at, channels));
-            gathered_radiosity(row, values, coarse, spread.hosts[index],
-                               std::span(coarse_light).subspan(at, channels));
-            buried[index] = row.blocked > buried_above ? 1 : 0;
-        },
-        [&observer](std::size_t done, std::size_t total) {
-            return observer.progress(Phase::gather, done, total);
-        });
-    std::vector<PointErrors> own_errors(channels);
+    gather(spread.points, [&](std::uint32_t index, const RowView& row) {
+        const std::size_t at = std::size_t{index} * channels;
+        gathered_radiosity(row, values, seen, spread.hosts[index], std::span(light).subspan(at, channels));
+        gathered_radiosity(row, values, coarse, spread.hosts[index],
+                           std::span(coarse_light).subspan(at, channels));
+        buried[index] = row.blocked > buried_above ? 1 : 0;
+    });
+    // Some of them again with other rotations and rays.
+    std::vector<SurfacePoint> repeated;
+    for (std::size_t k = 0; k < spread.points.size(); k += repeated_every) {
+        repeated.push_back(spread.points[k]);
+    }
+    std::vector<double> light_again(repeated.size() * channels, 0.0);
+    other.seed = splitmix(*other.seed);
+    gather(repeated, [&](std::uint32_t index, const RowView& row) {
+        gathered_radiosity(row, values, seen, spread.hosts[std::size_t{index} * repeated_every],
+                           std::span(light_again).subspan(std::size_t{index} * channels, channels));
+    });
+    std::vector<PointErrors> of_patches(channels);
+    std::vector<PointErrors> of_rows(channels);
     for (std::uint32_t k = 0; k < spread.points.size(); ++k) {
         if (buried[k] != 0) {
             continue;
@@ -271,26 +288,31 @@ RadiosityReference find_radiosity_reference(const Scene& scene, const PatchMesh&
         reference.areas.push_back(spread.areas[k]);
         for (std::uint32_t c = 0; c < channels; ++c) {
             const std::size_t at = std::size_t{k} * channels + c;
+            const double reflected = light[at] - values.exitance[std::size_t{spread.hosts[k]} * channels + c];
             reference.radiosity.push_back(light[at]);
-            reference.reflected.push_back(light[at] -
-                                          values.exitance[std::size_t{spread.hosts[k]} * channels + c]);
-            own_errors[c].add(spread.areas[k], own * (coarse_light[at] - light[at]),
-                              reference.reflected.back());
+            reference.reflected.push_back(reflected);
+            of_patches[c].add(spread.areas[k], own * (coarse_light[at] - light[at]), reflected);
+            if (k % repeated_every == 0) {
+                const double again = light_again[std::size_t{k} / repeated_every * channels + c];
+                of_rows[c].add(spread.areas[k], (again - light[at]) / std::sqrt(2.0), reflected);
+            }
         }
     }
-    FieldError worst;
-    for (PointErrors& errors : own_errors) {
-        take_worst(worst, errors.summary());
+    FieldError worst_of_patches;
+    FieldError worst_of_rows;
+    for (std::uint32_t c = 0; c < channels; ++c) {
+        take_worst(worst_of_patches, of_patches[c].summary());
+        take_worst(worst_of_rows, of_rows[c].summary());
     }
-    reference.own_error = worst.rms;
+    reference.own_error = std::hypot(worst_of_patches.rms, worst_of_rows.rms);
     reference.seconds = watch.seconds();
     observer.detail(fmt::format("reference: {}, {} points, {}", plural(mesh.size(), "patch", "patches"),
                                 count_text(reference.points.size()), seconds_text(reference.seconds)));
     return reference;
 }
 
-RadiosityError judge_radiosity(const PatchMesh& mesh, const Solution& solution,
-                               const RadiosityReference& reference) {
+std::optional<RadiosityError> judge_radiosity(const PatchMesh& mesh, const Solution& solution,
+                                              const RadiosityReference& reference) {
     const std::uint32_t channels = reference.channels;
     const std::size_t values = std::size_t{mesh.size()} * channels;
     if (solution.channels != channels || solution.radiosity.size() != values ||
@@ -330,11 +352,12 @@ RadiosityError judge_radiosity(const PatchMesh& mesh, const Solution& solution,
         }
     }
     RadiosityError result;
+    bool lit = false;
     for (std::uint32_t c = 0; c < channels; ++c) {
-        take_worst(result.vertices, vertices[c].summary());
+        lit = take_worst(result.vertices, vertices[c].summary()) || lit;
         take_worst(result.field, field[c].summary());
     }
-    return result;
+    return lit ? std::optional(result) : std::nullopt;
 }
 
 } // namespace hemi

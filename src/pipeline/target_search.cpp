@@ -33,7 +33,7 @@ public:
                  const FactorSettings& base, double target, Observer& observer)
         : scene_(scene), mesh_(mesh), patches_(patches), target_(target), observer_(observer),
           memory_limit_(memory_limit(base)),
-          reference_(find_reference(mesh, patches, base, reference_seconds)),
+          reference_(find_reference(mesh, patches, base, reference_seconds, observer)),
           candidates_(all_candidates(base, mesh.size())) {}
 
     /// The cheapest candidate, whatever it is good for.
@@ -50,7 +50,7 @@ public:
                 continue;
             }
             const Measurement measurement =
-                try_on_sample(scene_, mesh_, candidate, reference_, patches_.size(), radiosity);
+                try_on_sample(scene_, mesh_, candidate, reference_, patches_.size(), radiosity, observer_);
             const double error = measurement.radiosity.value_or(measurement.error.row_rms);
             observer_.detail(fmt::format("{}: error {:.2g} on {}, {} for all rows", candidate.description(),
                                          error, plural(reference_.patches.size(), "row", "rows"),

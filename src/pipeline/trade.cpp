@@ -4,6 +4,7 @@
 #include "hemi/core/text.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 #include "pipeline/answers.hpp"
+#include "pipeline/failure.hpp"
 
 #include <fmt/format.h>
 
@@ -93,7 +94,7 @@ public:
         Trade trade;
         trade.entries = all_entries(base_, mesh_.size());
         const auto patches = all_patches(mesh_.size());
-        trade.reference = find_reference(mesh_, patches, base_, reference_share * budget_);
+        trade.reference = find_reference(mesh_, patches, base_, reference_share * budget_, observer_);
         observer_.note(fmt::format("reference: {} by {} sample points of resolution {}, in {}",
                                    plural(trade.reference.patches.size(), "row", "rows"),
                                    trade.reference.settings.eye_points, trade.reference.settings.resolution,
@@ -102,7 +103,7 @@ public:
         if (trade.unanswered.empty()) {
             answers_.solve_uniform([&](Preset preset) {
                 for (Trade::Entry& entry : trade.entries) {
-                    if (is_preset(entry.candidate, preset)) {
+                    if (entry.candidate.is_preset() && entry.candidate.settings.preset == preset) {
                         measure_all(entry, trade.reference);
                     }
                 }
@@ -112,7 +113,7 @@ public:
                                watch_.seconds() + least_factors_share * budget_);
         }
         for (Trade::Entry& entry : trade.entries) {
-            if (!entry.measurement) {
+            if (!entry.measurement && entry.omitted.empty()) {
                 measure(entry, trade.reference);
             }
         }
@@ -126,12 +127,6 @@ public:
 private:
     [[nodiscard]] double left() const { return budget_ - watch_.seconds(); }
 
-    static bool is_preset(const Candidate& candidate, Preset preset) {
-        const FactorSettings& settings = candidate.settings;
-        return settings.method == Method::hemicube && settings.preset == preset && !settings.eye_points &&
-               !settings.resolution && !settings.shadow_rays;
-    }
-
     /// On a sample first; then on all rows if half of what time is left will do.
     void measure(Trade::Entry& entry, const Reference& reference) {
         const Candidate& candidate = entry.candidate;
@@ -144,7 +139,13 @@ private:
             return;
         }
         observer_.detail(candidate.label());
-        entry.measurement = try_on_sample(scene_, mesh_, candidate, reference, mesh_.size(), radiosity_);
+        if (const auto why = failure([&] {
+                entry.measurement =
+                    try_on_sample(scene_, mesh_, candidate, reference, mesh_.size(), radiosity_, observer_);
+            })) {
+            entry.omitted = *why;
+            return;
+        }
         if (entry.measurement->seconds <= max_sample_share * left()) {
             measure_all(entry, reference);
         }
@@ -153,14 +154,24 @@ private:
     void measure_all(Trade::Entry& entry, const Reference& reference) {
         const Candidate& candidate = entry.candidate;
         FormFactors factors;
-        entry.measurement = try_on_all(scene_, mesh_, candidate, reference, radiosity_, &factors);
+        if (const auto why = failure([&] {
+                entry.measurement =
+                    try_on_all(scene_, mesh_, candidate, reference, radiosity_, &factors, observer_);
+            })) {
+            entry.omitted = *why; // of no matter where there is a sample
+            return;
+        }
         answers_.add_own(candidate, factors, entry.measurement->seconds, entry.measurement->error.row_rms);
         if (radiosity_.empty() && candidate.settings.method == Method::hemicube) {
-            factors.reference = reference.rows;
-            estimate_error(factors);
-            const Solution solution = solve_radiosity(scene_, mesh_, factors, {}, no_observer(), false);
-            radiosity_ = solution.radiosity;
-            entry.measurement->radiosity = solution.error->rms;
+            (void)failure([&] { // then nothing is said about radiosity
+                factors.reference = reference.rows;
+                estimate_error(factors);
+                const Solution solution = solve_radiosity(scene_, mesh_, factors, {}, observer_, false);
+                radiosity_ = solution.radiosity;
+                if (solution.error) {
+                    entry.measurement->radiosity = solution.error->rms;
+                }
+            });
         }
     }
 

@@ -149,20 +149,20 @@ TEST_CASE("error target: what cannot be met is status 5, what contradicts it is 
           2);
 }
 
-TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
+TEST_CASE("trade: table, drawing, JSON and advice", "[cli][slow]") {
     const Directory directory;
     Json box = cube(2);
     box["name"] = "Box <1> & more";
     const std::string scene = directory.write("cube.json", box);
     // More than it takes: all is measured, however slow the machine is.
-    const Outcome run =
-        run_hemi(on_cpu({"trade", scene, "--budget", "60s", "--json", "-o", directory.path("plot.svg")}));
+    const Outcome run = run_hemi(on_cpu({"trade", scene, "--patch-size", "1", "--budget", "20s", "--json",
+                                         "-o", directory.path("plot.svg")}));
     INFO(run.err);
     REQUIRE(run.status == 0);
     const Json trade = run.json();
     CHECK(trade["schema"] == "hemi/trade/1");
-    CHECK(trade["patches"] == 24);
-    CHECK(trade["budget"] == 60.0);
+    CHECK(trade["patches"] == 6);
+    CHECK(trade["budget"] == 20.0);
     CHECK(trade["reference"]["rows"] > 0);
     REQUIRE(trade["measurements"].size() > 4);
     CHECK(trade["omitted"].empty());
@@ -211,9 +211,17 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
         CHECK(solution["front"] == (error < least_error));
         least_error = std::min(error, least_error);
         methods.insert(solution["method"].get<std::string>());
-        refined = refined || solution["error_target"].is_number();
-        if (solution["patch_size"].is_number()) {
+        const std::string options = solution["options"];
+        if (solution["error_target"].is_number()) {
+            refined = true;
+            CHECK(options.find("--patch-size") == std::string::npos);
+        } else if (solution["patch_size"].is_number()) {
             sizes.insert(solution["patches"].get<std::uint32_t>());
+            CHECK(options.starts_with(solution["patches"] == 24 ? "--patch-size 0.5 --preset "
+                                                                : "--patch-size 0.25 --preset "));
+        } else {
+            CHECK((options.starts_with("--patch-size 1 --preset ") ||
+                   options.starts_with("--patch-size 1 --method ")));
         }
     }
     CHECK(refined);
@@ -234,9 +242,9 @@ TEST_CASE("trade: table, drawing, JSON and advice", "[cli]") {
     CHECK(legends > 3);
     CHECK(plot.find("seconds for the whole solution") != std::string::npos);
     CHECK(plot.find("seconds for all rows") != std::string::npos);
-    CHECK(plot.find("24 patches: Box &lt;1&gt; &amp; more") != std::string::npos);
+    CHECK(plot.find("6 patches: Box &lt;1&gt; &amp; more") != std::string::npos);
 
-    const Outcome text = run_hemi(on_cpu({"trade", scene, "--budget", "2s"}));
+    const Outcome text = run_hemi(on_cpu({"trade", scene, "--patch-size", "1", "--budget", "2s"}));
     CHECK(text.status == 0);
     CHECK(text.out_has("radiosity"));
     CHECK(text.out_has("Compared at"));
@@ -250,11 +258,12 @@ TEST_CASE("trade: where there is no light, form factors alone are compared, and 
     dark["materials"]["lamp"]["exitance"] = 0;
     Json black = cube(1);
     black["materials"]["white"]["reflectance"] = 0;
-    const Outcome text = run_hemi(on_cpu({"trade", directory.write("black.json", black), "--budget", "1s"}));
+    const Outcome text = run_hemi(on_cpu({"trade", directory.write("black.json", black), "--budget", "0.5s",
+                                          "--patches-per-face", "4", "--no-imprint"}));
     CHECK(text.status == 0);
     CHECK(text.out_has("Errors of form factors only: nothing in the scene reflects light."));
-    CHECK(text.out_has("Recommended: --"));
-    const Outcome run = run_hemi(on_cpu({"trade", directory.write("dark.json", dark), "--budget", "1s",
+    CHECK(text.out_has("Recommended: --patches-per-face 4 --no-imprint --"));
+    const Outcome run = run_hemi(on_cpu({"trade", directory.write("dark.json", dark), "--budget", "0.5s",
                                          "--json", "-o", directory.path("plot.svg")}));
     INFO(run.err);
     const Json trade = run.json();

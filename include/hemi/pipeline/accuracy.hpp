@@ -2,6 +2,7 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/pipeline/form_factors.hpp"
+#include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 
 #include <cstdint>
@@ -23,6 +24,8 @@ struct Candidate {
     [[nodiscard]] std::string label() const { return family + (variant.empty() ? "" : " " + variant); }
     /// The preset, or the method, and what was set over it, for a sentence.
     [[nodiscard]] std::string description() const;
+    /// Whether it is hemicubes by a preset with nothing set over it.
+    [[nodiscard]] bool is_preset() const;
 };
 /// Hemicubes by a preset, with what is set over it.
 /// @param base         device, jobs, seed, memory and repair
@@ -51,8 +54,10 @@ struct Reference {
 };
 /// Reference rows of as many of `patches`, spread over all, as fit into about `seconds`: 8 to 32; with more
 /// sample points than any preset has.
+/// @throws Cancelled if the observer stops it; as make_visibility_provider()
 [[nodiscard]] Reference find_reference(const PatchMesh& mesh, std::span<const std::uint32_t> patches,
-                                       const FactorSettings& base, double seconds);
+                                       const FactorSettings& base, double seconds,
+                                       Observer& observer = no_observer());
 
 /// How a candidate did.
 struct Measurement {
@@ -69,9 +74,11 @@ struct Measurement {
 /// @param reference  what it is judged by
 /// @param count      number of rows that `seconds` are to be for
 /// @param radiosity  N·channels of about what it is; may be empty
+/// @param observer   gets progress and may cancel
 [[nodiscard]] Measurement try_on_sample(const Scene& scene, const PatchMesh& mesh, const Candidate& candidate,
                                         const Reference& reference, std::size_t count,
-                                        std::span<const double> radiosity);
+                                        std::span<const double> radiosity,
+                                        Observer& observer = no_observer());
 /// Computes all rows of a candidate, prepares them, and judges them.
 /// @param scene      materials and enclosure
 /// @param mesh       its patches
@@ -79,9 +86,10 @@ struct Measurement {
 /// @param reference  what it is judged by
 /// @param radiosity  N·channels of about what it is; may be empty
 /// @param rows       gets the form factors; may be null
+/// @param observer   gets progress and may cancel
 [[nodiscard]] Measurement try_on_all(const Scene& scene, const PatchMesh& mesh, const Candidate& candidate,
                                      const Reference& reference, std::span<const double> radiosity,
-                                     FormFactors* rows = nullptr);
+                                     FormFactors* rows = nullptr, Observer& observer = no_observer());
 /// Bytes that all rows of a candidate need at least: its table of pairs. 0 where there is none.
 [[nodiscard]] std::uint64_t pair_table_bytes(const Candidate& candidate, std::uint32_t patches,
                                              std::size_t rows);

@@ -7,6 +7,7 @@
 #include "hemi/solver/solution.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace hemi {
@@ -30,9 +31,11 @@ struct RadiosityReference {
 ///
 /// Rows are those of `fast` with half as many texels again along an edge, and with shadow rays; those of the
 /// points, by which most light comes, have three times the texels of `default` along an edge and four times
-/// its shadow rays. Rotations and rays are others than those of the settings. The reference's own error is
-/// estimated from what the gathered light changes by when the radiosity is averaged over the coarser patches,
-/// which goes like the square of the patches' size.
+/// its shadow rays. Rotations and rays are others than those of the settings. The reference's own error has
+/// two parts: of the patches' size, from what the gathered light changes by when the radiosity is averaged
+/// over the coarser patches, taken to go like that size to the power of 1.5, as it does where walls touch (in
+/// smooth light, the square); and of the points' rows, from what the
+/// light changes by at one point in four when it is gathered again with other rotations and rays.
 /// @param scene     materials, environment, enclosure
 /// @param mesh      finer than those that are to be judged
 /// @param coarser   the finest of these, or one of about its size
@@ -58,8 +61,9 @@ struct RadiosityError {
 /// @param mesh       N patches
 /// @param solution   of the mesh; vertices are as gathered, or means over the patches that meet there
 /// @param reference  of the same scene
+/// @return nothing where no light is reflected at any of these points, or there are none
 /// @throws InvalidArgument if the solution has other channels or is of another mesh
-[[nodiscard]] RadiosityError judge_radiosity(const PatchMesh& mesh, const Solution& solution,
-                                             const RadiosityReference& reference);
+[[nodiscard]] std::optional<RadiosityError> judge_radiosity(const PatchMesh& mesh, const Solution& solution,
+                                                            const RadiosityReference& reference);
 
 } // namespace hemi

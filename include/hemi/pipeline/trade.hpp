@@ -74,7 +74,7 @@ struct Trade {
     std::vector<Answer> answers; ///< coarse patches first
     std::optional<RadiosityReference> answer_reference; ///< what these were judged by
     std::string unanswered; ///< why there are no answers, a sentence; empty: there are
-    /// Answers that there was no time for or that do not apply: what, and why.
+    /// Answers that there was no time or memory for, that failed, or that do not apply: what, and why.
     std::vector<std::pair<std::string, std::string>> omitted;
 
     /// Measured entries, quickest first.
@@ -92,9 +92,9 @@ struct Trade {
 /// Whole solutions come first: by the presets on uniform patches, from coarse ones down to the scene's own
 /// size and below, halving sizes as long as the budget allows; and on patches that are refined to several
 /// error targets. All are compared with light gathered from a mesh that is finer than each of them and
-/// nowhere coarser, see find_radiosity_reference(). Scenes without light or reflection have no such answers.
-/// Form factors are compared on the scene's own patches with rows of many sample points: each candidate on a
-/// sample first, then on all rows if half of what time is left will do.
+/// nowhere coarser, see find_radiosity_reference(). Scenes without light or reflection have no such answers,
+/// and what fails is left out. Form factors are compared on the scene's own patches with rows of many sample
+/// points: each candidate on a sample first, then on all rows if half of what time is left will do.
 /// @param scene         as read
 /// @param mesh          its patches
 /// @param subdivision   by which the mesh was made
@@ -102,7 +102,7 @@ struct Trade {
 /// @param base          device, workers, seed, memory
 /// @param budget        seconds
 /// @param observer      gets progress and may cancel
-/// @throws as compute_form_factors
+/// @throws as find_reference()
 [[nodiscard]] Trade measure_trade(const Scene& scene, const PatchMesh& mesh, const Subdivision& subdivision,
                                   bool with_imprint, const FactorSettings& base, double budget,
                                   Observer& observer = no_observer());

@@ -10,7 +10,7 @@ namespace hemi::cli {
 
 namespace {
 
-/// Options by which `solve` and `factors` do the same as a candidate.
+/// Options by which `solve` and `factors` do the same as a candidate, on whatever patches.
 std::string options_of(const FactorSettings& settings) {
     if (settings.method != Method::hemicube) {
         std::string text = fmt::format("--method {}", to_word(settings.method));
@@ -23,12 +23,30 @@ std::string options_of(const FactorSettings& settings) {
     return text;
 }
 
-std::string options_of(const Trade::Answer& answer) {
-    const std::string patches = answer.error_target
-                                    ? fmt::format("--error-target {:g}% ", 100.0 * *answer.error_target)
-                                : answer.patch_size ? fmt::format("--patch-size {:g} ", *answer.patch_size)
-                                                    : "";
-    return patches + options_of(answer.candidate.settings);
+/// Options by which the same patches are made, with a space after each.
+std::string options_of(const Subdivision& subdivision, bool imprint) {
+    std::string text;
+    text += subdivision.patch_size ? fmt::format("--patch-size {} ", *subdivision.patch_size) : "";
+    text += subdivision.patches_per_face
+                ? fmt::format("--patches-per-face {} ", *subdivision.patches_per_face)
+                : "";
+    return text + (imprint ? "" : "--no-imprint ");
+}
+
+std::string options_of(const Trade::Entry& entry, const SceneOptions& given) {
+    return options_of(given.subdivision, given.imprint) + options_of(entry.candidate.settings);
+}
+
+std::string options_of(const Trade::Answer& answer, const SceneOptions& given) {
+    Subdivision subdivision;
+    if (answer.patch_size) {
+        subdivision.patch_size = answer.patch_size;
+    } else if (!answer.error_target) {
+        subdivision = given.subdivision;
+    }
+    const std::string target =
+        answer.error_target ? fmt::format("--error-target {:g}% ", 100.0 * *answer.error_target) : "";
+    return target + options_of(subdivision, given.imprint) + options_of(answer.candidate.settings);
 }
 
 std::string percent(double value) {
@@ -42,56 +60,50 @@ std::string patches_of(const Trade::Answer& answer) {
                                : "the scene's own patches";
 }
 
-/// Whether a preset is used as it is.
-bool is_plain_preset(const FactorSettings& settings) {
-    return settings.method == Method::hemicube && !settings.eye_points && !settings.resolution &&
-           !settings.shadow_rays;
-}
-
 /// "fast", "plain 1x32", "hemisphere".
 std::string method_of(const Trade::Answer& answer) {
     const Candidate& candidate = answer.candidate;
-    return is_plain_preset(candidate.settings) ? std::string(to_word(candidate.settings.preset))
-                                               : candidate.label();
+    return candidate.is_preset() ? std::string(to_word(candidate.settings.preset)) : candidate.label();
 }
 
-std::string offer_text(const Trade::Answer& answer) {
+std::string offer_text(const Trade::Answer& answer, const SceneOptions& given) {
     return fmt::format("{} by {}: {} in {} ({})", patches_of(answer), answer.candidate.description(),
-                       percent(answer.vertices()), seconds_text(answer.seconds), options_of(answer));
+                       percent(answer.vertices()), seconds_text(answer.seconds), options_of(answer, given));
 }
 
-std::string offer_text(const Trade::Entry& entry) {
-    return fmt::format("{} ({} for a row error of {:.2g})", options_of(entry.candidate.settings),
+std::string offer_text(const Trade::Entry& entry, const SceneOptions& given) {
+    return fmt::format("{} ({} for a row error of {:.2g})", options_of(entry, given),
                        seconds_text(entry.seconds()), entry.error());
 }
 
 template <class Offered>
-std::string advice(const std::vector<const Offered*>& offers, const Recommendation& recommended) {
+std::string advice(const std::vector<const Offered*>& offers, const Recommendation& recommended,
+                   const SceneOptions& given) {
     if (!recommended.best) {
-        return "Nothing was measured: give more time with --budget.";
+        return "Nothing was measured: give more with --budget or --max-memory.";
     }
-    std::string text = "Recommended: " + offer_text(*offers[*recommended.best]);
+    std::string text = "Recommended: " + offer_text(*offers[*recommended.best], given);
     if (recommended.faster) {
-        text += "; where time matters more: " + offer_text(*offers[*recommended.faster]);
+        text += "; where time matters more: " + offer_text(*offers[*recommended.faster], given);
     }
     if (recommended.more_accurate) {
-        text += "; where accuracy matters more: " + offer_text(*offers[*recommended.more_accurate]);
+        text += "; where accuracy matters more: " + offer_text(*offers[*recommended.more_accurate], given);
     }
     return text + ".";
 }
 
-std::string advice(const Trade& trade) {
-    return trade.answers.empty() ? advice(trade.by_time(), trade.recommended_entries())
-                                 : advice(trade.answers_by_time(), trade.recommended_answers());
+std::string advice(const Trade& trade, const SceneOptions& given) {
+    return trade.answers.empty() ? advice(trade.by_time(), trade.recommended_entries(), given)
+                                 : advice(trade.answers_by_time(), trade.recommended_answers(), given);
 }
 
 /// Options of what is recommended.
-Json best_options(const Trade& trade) {
+Json best_options(const Trade& trade, const SceneOptions& given) {
     if (!trade.answers.empty()) {
-        return options_of(*trade.answers_by_time()[*trade.recommended_answers().best]);
+        return options_of(*trade.answers_by_time()[*trade.recommended_answers().best], given);
     }
     const auto best = trade.recommended_entries().best;
-    return best ? Json(options_of(trade.by_time()[*best]->candidate.settings)) : Json(nullptr);
+    return best ? Json(options_of(*trade.by_time()[*best], given)) : Json(nullptr);
 }
 
 /// A line of the table.
@@ -123,10 +135,10 @@ Json settings_json(const Candidate& candidate, std::uint32_t patches) {
             {"rays", settings.rays ? Json(*settings.rays) : Json(nullptr)}};
 }
 
-Json entry_json(const Trade::Entry& entry, std::uint32_t patches) {
+Json entry_json(const Trade::Entry& entry, std::uint32_t patches, const SceneOptions& given) {
     const Measurement& m = *entry.measurement;
     Json json = settings_json(entry.candidate, patches);
-    json.update({{"options", options_of(entry.candidate.settings)},
+    json.update({{"options", options_of(entry, given)},
                  {"rows", m.all_rows ? "all" : "sample"},
                  {"seconds", m.seconds},
                  {"rms", m.error.rms},
@@ -137,7 +149,7 @@ Json entry_json(const Trade::Entry& entry, std::uint32_t patches) {
     return json;
 }
 
-Json answer_json(const Trade::Answer& answer) {
+Json answer_json(const Trade::Answer& answer, const SceneOptions& given) {
     const auto field = [](const FieldError& error) {
         return Json{{"rms", error.rms}, {"p95", error.percentile95}};
     };
@@ -146,7 +158,7 @@ Json answer_json(const Trade::Answer& answer) {
     };
     Json json = settings_json(answer.candidate, answer.patches);
     json["label"] = patches_of(answer) + ", " + answer.candidate.label();
-    json.update({{"options", options_of(answer)},
+    json.update({{"options", options_of(answer, given)},
                  {"patches", answer.patches},
                  {"patch_size", optional(answer.patch_size)},
                  {"error_target", optional(answer.error_target)},
@@ -161,7 +173,7 @@ Json answer_json(const Trade::Answer& answer) {
 }
 
 /// Whole solutions, quickest first, and what they were judged by.
-Report answers_report(const Trade& trade) {
+Report answers_report(const Trade& trade, const SceneOptions& given) {
     if (!trade.answer_reference) {
         return {fmt::format("\nErrors of form factors only: {}.\n", trade.unanswered),
                 {{"solutions", Json::array()}, {"solution_reference", nullptr}}};
@@ -174,7 +186,7 @@ Report answers_report(const Trade& trade) {
                    count_text(answer->patches), fmt::format("{:.3g}", answer->seconds),
                    memory_text(answer->memory), percent(answer->vertices()), percent(answer->error.field.rms),
                    fmt::format("{:.1e}", answer->row_error)});
-        list.push_back(answer_json(*answer));
+        list.push_back(answer_json(*answer, given));
     }
     const RadiosityReference& reference = *trade.answer_reference;
     const std::string legend = fmt::format(
@@ -214,12 +226,12 @@ std::string legend(const Trade& trade) {
 }
 
 /// The table of all measurements, quickest first.
-Report measurements_report(const Trade& trade, std::uint32_t patches) {
+Report measurements_report(const Trade& trade, std::uint32_t patches, const SceneOptions& given) {
     Table table({"", "method", "settings", "seconds", "rms", "max", "row", "radiosity", "rows"}, 3);
     Json list = Json::array();
     for (const Trade::Entry* const entry : trade.by_time()) {
         table.add(entry_line(*entry));
-        list.push_back(entry_json(*entry, patches));
+        list.push_back(entry_json(*entry, patches, given));
     }
     return {fmt::format("\nForm factors of the scene's own patches\n{}\n{}", table.text(), legend(trade)),
             {{"measurements", list}}};
@@ -260,7 +272,8 @@ Report reference_report(const Reference& reference) {
 
 } // namespace
 
-Report trade_report(const Trade& trade, const LoadedScene& loaded, double budget, double seconds) {
+Report trade_report(const Trade& trade, const LoadedScene& loaded, const SceneOptions& given, double budget,
+                    double seconds) {
     const std::uint32_t patches = loaded.mesh.size();
     const std::string& renderer = trade.reference.renderer;
     Report report;
@@ -269,12 +282,12 @@ Report trade_report(const Trade& trade, const LoadedScene& loaded, double budget
     report.add("renderer", renderer, {{"renderer", renderer}});
     report.json.update({{"patches", patches}, {"budget", budget}, {"seconds", seconds}});
     report.add(reference_report(trade.reference));
-    report.add(answers_report(trade));
-    report.add(measurements_report(trade, patches));
+    report.add(answers_report(trade, given));
+    report.add(measurements_report(trade, patches, given));
     report.add(omitted_report(trade));
-    report.json["best"] = best_options(trade);
-    report.json["advice"] = advice(trade);
-    report.text += fmt::format("\n{}\n", advice(trade));
+    report.json["best"] = best_options(trade, given);
+    report.json["advice"] = advice(trade, given);
+    report.text += fmt::format("\n{}\n", advice(trade, given));
     report.select("hemi/trade/1",
                   {"scene", "renderer", "patches", "budget", "seconds", "reference", "measurements",
                    "solutions", "solution_reference", "omitted", "best", "advice"});
@@ -323,7 +336,7 @@ PlotPanel answers_panel(const Trade& trade) {
         if (answer.error_target) {
             point.family = fmt::format("refined, preset {}", to_word(settings.preset));
             point.label = fmt::format("to {:g} %", 100.0 * *answer.error_target);
-        } else if (is_plain_preset(settings)) {
+        } else if (answer.candidate.is_preset()) {
             point.family = fmt::format("preset {}", to_word(settings.preset));
             point.label = answer.patch_size ? fmt::format("size {:g}", *answer.patch_size) : "own size";
         } else {

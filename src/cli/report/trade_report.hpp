@@ -9,10 +9,11 @@
 namespace hemi::cli {
 
 /// Report of the measurements of `hemi trade`.
+/// @param given    options of the scene, which are part of what is recommended
 /// @param budget   seconds that were allowed
 /// @param seconds  that it took
-[[nodiscard]] Report trade_report(const Trade& trade, const LoadedScene& loaded, double budget,
-                                  double seconds);
+[[nodiscard]] Report trade_report(const Trade& trade, const LoadedScene& loaded, const SceneOptions& given,
+                                  double budget, double seconds);
 /// The measurements as an SVG, see trade_plot().
 [[nodiscard]] std::string trade_drawing(const Trade& trade, const LoadedScene& loaded);
 
