@@ -17,14 +17,14 @@ namespace hemi::cli {
 namespace {
 
 /// Rows of the --factors file, prepared, if it belongs to the patches of `mesh`.
-FormFactorMatrix read_rows(const ConvertArguments& arguments, const PatchMesh& mesh) {
+FormFactors read_rows(const ConvertArguments& arguments, const PatchMesh& mesh) {
     FormFactors factors = io::read_hff(*arguments.factors);
     if (factors.geometry_hash != mesh.geometry_hash() || factors.matrix.size() != mesh.size()) {
         throw InputError(fmt::format("{}: belongs to another geometry than {}", arguments.factors->string(),
                                      arguments.input.string()));
     }
     prepare_form_factors(factors, arguments.repair);
-    return std::move(factors.matrix);
+    return factors;
 }
 
 /// --json: what every conversion says, and `more`.
@@ -45,7 +45,7 @@ std::string output_name(const ConvertArguments& arguments) {
 void write_cells(const ConvertArguments& arguments, const io::ResultFile& result, const PatchMesh& mesh) {
     std::vector<io::CellArray> arrays = io::solution_arrays(result, mesh);
     if (arguments.factors) {
-        const FormFactorMatrix factors = read_rows(arguments, mesh);
+        const FormFactors factors = read_rows(arguments, mesh);
         for (const std::uint32_t row : arguments.rows) {
             arrays.push_back(io::row_array(factors, row));
         }
@@ -55,7 +55,9 @@ void write_cells(const ConvertArguments& arguments, const io::ResultFile& result
     for (const io::CellArray& array : arrays) {
         names.push_back(array.name);
     }
-    report(arguments, {{"patches", mesh.size()}, {"arrays", names}});
+    report(arguments, {{"patches", result.parts.any() ? result.parts.patches() : mesh.size()},
+                       {"parts", mesh.size()},
+                       {"arrays", names}});
 }
 
 void convert_result(const ConvertArguments& arguments, const Terminal& terminal) {
@@ -69,7 +71,8 @@ void convert_result(const ConvertArguments& arguments, const Terminal& terminal)
         write_cells(arguments, result, mesh);
     } else {
         io::write_radiosity_csv(arguments.output, result);
-        report(arguments, {{"patches", result.parts.any() ? result.parts.patches() : mesh.size()}});
+        report(arguments, {{"patches", result.parts.any() ? result.parts.patches() : mesh.size()},
+                           {"parts", mesh.size()}});
     }
     terminal.note(fmt::format(
         "not in {}: names of materials, subdivision, environment, camera, solver{}", output_name(arguments),

@@ -80,7 +80,7 @@ ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     }
     Report report = scene_size_report(loaded);
     report.add(rows_report(factors, sums, enclosure));
-    report.add(repair_report(*factors.repair, seconds["repair"]));
+    report.add(repair_report(factors, seconds["repair"]));
     report.add(seconds.report());
     const Report tables = exchange_report(factors.groups, exchange);
     report.json.update(tables.json);

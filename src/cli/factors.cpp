@@ -86,7 +86,7 @@ void show_groups(const FactorsArguments& arguments, const FormFactors& factors, 
         Report report{"", group_factors_json(factors.groups, groups)};
         report.json.update({{"renderer", factors.provenance.renderer}, {"patches", factors.patches()}});
         report.add(row_sum_report(row_sums(factors.matrix)));
-        report.add(repair_report(*factors.repair, seconds["repair"]));
+        report.add(repair_report(factors, seconds["repair"]));
         report.add(error_report(factors.error));
         report.add(seconds.report());
         report.select("hemi/factors-by-group/1",

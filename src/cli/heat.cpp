@@ -203,7 +203,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     }
     Report report = scene_size_report(loaded);
     report.add(rows_report(factors, sums, enclosure));
-    report.add(repair_report(*factors.repair, seconds["repair"]));
+    report.add(repair_report(factors, seconds["repair"]));
     report.add(seconds.report());
     report.add(heat_balance_report(solution));
     report.json.update(tables.json);

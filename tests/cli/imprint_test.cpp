@@ -114,6 +114,15 @@ TEST_CASE("imprint: factors are those of the scene's patches, with the area that
     CHECK(directory.read("stored.csv") == directory.read("direct.csv"));
     CHECK(table(directory.read("stored.csv")).at("area") == areas);
 
+    // In a .vtp parts are cells: that of patch 1 is its mean over its own parts.
+    const Outcome cells = run_hemi({"convert", directory.path("a.hres"), directory.path("a.vtp"), "--factors",
+                                    hff, "--row", "1", "--json"});
+    CHECK(cells.json()["patches"] == patches);
+    CHECK(cells.json()["parts"] > patches);
+    for (const char* array : {"patch_of", "F_1"}) {
+        CHECK(directory.read("a.vtp").find(array) != std::string::npos);
+    }
+
     // From a point above the floor, parts of a patch count as one.
     const Json seen = run_hemi({"factors", scene, "--from-point", "0.1,0.1,0.5,0,0,-1", "--json"}).json();
     CHECK(seen["patches"] == patches);

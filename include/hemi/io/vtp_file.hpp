@@ -40,10 +40,12 @@ void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
 /// @param result  what is shown
 /// @param mesh    its patches
 [[nodiscard]] std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh& mesh);
-/// What form factors know of single patches: row balance, and the estimated error of rows where there is one.
+/// What form factors know of single patches (of parts also which they are of, as "patch_of"): row balance,
+/// and the estimated error of rows where there is one.
 [[nodiscard]] std::vector<CellArray> factor_arrays(const FormFactors& factors);
-/// Row i of F, zeros included, as the array "F_i".
+/// Row i of F, zeros included, as the array "F_i": of patch i, where rows are those of parts, as a mean over
+/// its parts by area.
 /// @throws InvalidArgument for a row that is not there or was not computed
-[[nodiscard]] CellArray row_array(const FormFactorMatrix& factors, std::uint32_t row);
+[[nodiscard]] CellArray row_array(const FormFactors& factors, std::uint32_t patch);
 
 } // namespace hemi::io

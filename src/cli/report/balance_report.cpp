@@ -6,9 +6,10 @@ namespace hemi::cli {
 
 namespace {
 
-Json imbalance_json(const RowImbalance& rows, const Reciprocity& pairs) {
+Json imbalance_json(const RowImbalance& rows, const Reciprocity& pairs,
+                    std::span<const std::uint32_t> patch_of) {
     return {{"row_error", {{"max", rows.max}, {"rms", rows.rms}}},
-            {"reciprocity", pairs.pairs > 0 ? reciprocity_json(pairs) : Json(nullptr)}};
+            {"reciprocity", pairs.pairs > 0 ? reciprocity_json(pairs, patch_of) : Json(nullptr)}};
 }
 
 /// What was enforced, and how much that changed.
@@ -43,16 +44,22 @@ Report row_sum_report(const RowSums& sums) {
     return report;
 }
 
-Json reciprocity_json(const Reciprocity& reciprocity) {
+Json reciprocity_json(const Reciprocity& reciprocity, std::span<const std::uint32_t> patch_of) {
+    const auto number = [patch_of](std::uint32_t patch) {
+        return patch_of.empty() ? patch : patch_of[patch];
+    };
     return {{"rms", reciprocity.rms},
             {"max", reciprocity.max},
             {"relative_rms", reciprocity.relative_rms},
             {"relative_max", reciprocity.relative_max},
-            {"worst", reciprocity.pairs > 0 ? Json{reciprocity.worst_i, reciprocity.worst_j} : Json()},
+            {"worst",
+             reciprocity.pairs > 0 ? Json{number(reciprocity.worst_i), number(reciprocity.worst_j)} : Json()},
             {"pairs", reciprocity.pairs}};
 }
 
-Report repair_report(const RepairReport& repair, double seconds) {
+Report repair_report(const FormFactors& factors, double seconds) {
+    const RepairReport& repair = *factors.repair;
+    const std::span<const std::uint32_t> patch_of = factors.parts.patch_of;
     const RowImbalance& rows_before = repair.row_error_before;
     const RowImbalance& rows_after = repair.row_error_after;
     const Reciprocity& pairs_before = repair.reciprocity_before;
@@ -70,8 +77,8 @@ Report repair_report(const RepairReport& repair, double seconds) {
                                    pairs_before.relative_rms));
     }
     report.json["repair"] = {{"name", to_word(repair.repair)},
-                             {"before", imbalance_json(rows_before, pairs_before)},
-                             {"after", imbalance_json(rows_after, pairs_after)},
+                             {"before", imbalance_json(rows_before, pairs_before, patch_of)},
+                             {"after", imbalance_json(rows_after, pairs_after, patch_of)},
                              {"iterations", repair.iterations},
                              {"passes", repair.passes},
                              {"at_zero", repair.at_zero},

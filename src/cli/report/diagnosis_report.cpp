@@ -142,7 +142,7 @@ Report pairs_report(const Reciprocity& pairs, const PatchNames& names) {
     report.add("reciprocity",
                fmt::format("rms {:.3g}, relative rms {:.3g}, over {}", pairs.rms, pairs.relative_rms,
                            plural(pairs.pairs, "pair", "pairs")),
-               {{"reciprocity", reciprocity_json(pairs)}});
+               {{"reciprocity", reciprocity_json(pairs, names.patch_of)}});
     report.add("", fmt::format("worst {:.3g}: {} and {}", pairs.max, names.describe(pairs.worst_i),
                                names.describe(pairs.worst_j)));
     return report;
@@ -157,14 +157,14 @@ Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, 
     report.json["renderer"] = factors.provenance.renderer;
     report.add("rows",
                fmt::format("{} of {} computed", count_text(sums.known), count_text(names.group_of.size())),
-               {{"patches", factors.matrix.size()}, {"rows", sums.known}});
+               {{"patches", factors.patches()}, {"parts", factors.matrix.size()}, {"rows", sums.known}});
     report.add(row_sum_report(sums));
     report.json.update({{"environment_max", sums.environment_max}, {"blocked_max", sums.blocked_max}});
     report.add("row balance",
                fmt::format("row sum + environment share + back-face share differs from 1 by up to {:.3g}",
                            sums.balance_error_max),
                {{"balance_error", sums.balance_error_max}});
-    report.add(repair_report(*factors.repair, repair_seconds));
+    report.add(repair_report(factors, repair_seconds));
     report.add(
         "bounds",
         fmt::format("largest factor {}, {} above 1", number_text(diagnosis.largest_factor),
@@ -191,11 +191,12 @@ Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, 
                 {"failures", diagnosis.failures},
                 {"ok", diagnosis.failures.empty()}});
     report.select("hemi/check/1",
-                  {"renderer",        "imprint",     "patches",       "rows",           "row_sum",
-                   "environment_max", "blocked_max", "balance_error", "largest_factor", "above_one",
-                   "reciprocity",     "repair",      "enclosure",     "declared",       "leaking",
-                   "leaks",           "covered",     "blocked",       "straddled",      "near",
-                   "turned",          "unseen",      "max_row_error", "failures",       "ok"});
+                  {"renderer",  "imprint",         "patches",     "parts",         "rows",
+                   "row_sum",   "environment_max", "blocked_max", "balance_error", "largest_factor",
+                   "above_one", "reciprocity",     "repair",      "enclosure",     "declared",
+                   "leaking",   "leaks",           "covered",     "blocked",       "straddled",
+                   "near",      "turned",          "unseen",      "max_row_error", "failures",
+                   "ok"});
     return report;
 }
 

@@ -93,7 +93,7 @@ Report rows_report(const FormFactors& factors, const RowSums& sums, const Enclos
 Report prepared_rows_report(const FormFactors& factors, const RowSums& sums,
                             const EnclosureFinding& enclosure, double repair_seconds) {
     Report report = rows_report(factors, sums, enclosure);
-    report.add(repair_report(*factors.repair, repair_seconds));
+    report.add(repair_report(factors, repair_seconds));
     report.add(chosen_report(factors.provenance.chosen_for));
     report.add(error_report(factors.error));
     return report;

@@ -228,16 +228,17 @@ Report light_balance_report(const std::optional<LightBalance>& balance, double m
 Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
                     const Solution& solution, const std::optional<LightBalance>& balance,
                     const Seconds& seconds) {
-    const RepairReport& repair = *factors.repair;
     Report report = scene_size_report(loaded);
     report.add(rows);
-    report.add(repair_report(repair, seconds["repair"]));
+    report.add(repair_report(factors, seconds["repair"]));
     report.add(solution_report(solution, loaded.mesh));
     report.add(light_balance_report(balance, loaded.scene.unit.value_or(1.0)));
     report.add(seconds.report());
     report.json.update(group_means_json(loaded, factors.matrix, solution));
     report.json["reciprocity"] =
-        factors.matrix.all_known() ? reciprocity_json(repair.reciprocity_after) : Json(nullptr);
+        factors.matrix.all_known()
+            ? reciprocity_json(factors.repair->reciprocity_after, factors.parts.patch_of)
+            : Json(nullptr);
     report.select("hemi/solve/1", {"renderer", "patches", "parts", "channels", "groups", "areas", "radiosity",
                                    "exitance", "environment", "blocked", "solver", "row_sum", "reciprocity",
                                    "repair", "chosen_for", "error", "error_estimate", "balance", "seconds"});

@@ -16,6 +16,12 @@ std::vector<CellArray> balance_arrays(std::vector<double> row_sum, std::vector<d
             {"blocked", std::move(back_faces), {}}};
 }
 
+void add_patch_of(const PatchParts& parts, std::vector<CellArray>& arrays) {
+    if (parts.any()) {
+        arrays.push_back({"patch_of", {parts.patch_of.begin(), parts.patch_of.end()}, {}});
+    }
+}
+
 } // namespace
 
 std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh& mesh) {
@@ -39,6 +45,7 @@ std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh
         arrays.push_back({"radiosity_error_factors", solution.error->patches, names});
         arrays.push_back({"radiosity_error_patch_size", solution.patch_size_error->patches, names});
     }
+    add_patch_of(result.parts, arrays);
     return arrays;
 }
 
@@ -57,20 +64,34 @@ std::vector<CellArray> factor_arrays(const FormFactors& factors) {
     if (factors.error) {
         arrays.push_back({"row_error", factors.error->rows, {}});
     }
+    add_patch_of(factors.parts, arrays);
     return arrays;
 }
 
-CellArray row_array(const FormFactorMatrix& factors, std::uint32_t row) {
-    if (row >= factors.size() || !factors.known(row)) {
-        throw InvalidArgument(row >= factors.size() ? fmt::format("row {}: there are {} rows, counted from 0",
-                                                                  row, factors.size())
-                                                    : fmt::format("row {} was not computed", row),
-                              {"row"});
+CellArray row_array(const FormFactors& factors, std::uint32_t patch) {
+    if (patch >= factors.patches()) {
+        throw InvalidArgument(
+            fmt::format("row {}: there are {} rows, counted from 0", patch, factors.patches()), {"row"});
     }
-    CellArray array{fmt::format("F_{}", row), std::vector<double>(factors.size(), 0.0), {}};
-    const RowView view = factors.row(row);
-    for (std::size_t k = 0; k < view.columns.size(); ++k) {
-        array.values[view.columns[k]] = static_cast<double>(view.values[k]);
+    const FormFactorMatrix& matrix = factors.matrix;
+    std::vector<std::uint32_t> parts;
+    double area = 0.0;
+    for (std::uint32_t i = 0; i < matrix.size(); ++i) {
+        if ((factors.parts.any() ? factors.parts.patch_of[i] : i) == patch) {
+            parts.push_back(i);
+            area += factors.parts.any() ? factors.areas[i] : 0.0;
+        }
+    }
+    CellArray array{fmt::format("F_{}", patch), std::vector<double>(matrix.size(), 0.0), {}};
+    for (const std::uint32_t part : parts) {
+        if (!matrix.known(part)) {
+            throw InvalidArgument(fmt::format("row {} was not computed", patch), {"row"});
+        }
+        const double share = parts.size() == 1 ? 1.0 : factors.areas[part] / area;
+        const RowView view = matrix.row(part);
+        for (std::size_t k = 0; k < view.columns.size(); ++k) {
+            array.values[view.columns[k]] += share * static_cast<double>(view.values[k]);
+        }
     }
     return array;
 }
