@@ -86,7 +86,9 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
         throw InvalidArgument("--two-sided is not for JSON scenes, which say \"two_sided\": true");
     }
     Diagnostics diagnostics;
-    Scene scene = io::read_scene(options.path, options.reader, diagnostics);
+    std::vector<std::filesystem::path> paths{options.path};
+    paths.insert(paths.end(), options.also.begin(), options.also.end());
+    Scene scene = io::read_scenes(paths, options.reader, diagnostics);
     if (!options.reader.adiabatic) {
         radiate_by_temperature(scene, diagnostics);
     }

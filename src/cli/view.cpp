@@ -101,7 +101,10 @@ private:
 
     [[nodiscard]] viewer::ViewerInput scene(const std::filesystem::path& path) const {
         SceneOptions options = arguments_.scene;
-        options.path = path;
+        if (path != options.path) { // opened in the window
+            options.path = path;
+            options.also.clear();
+        }
         const auto loaded = std::make_shared<const LoadedScene>(load_scene(options, terminal_));
         Solution lamps;
         lamps.channels = static_cast<std::uint32_t>(loaded->scene.channels.size());
@@ -109,7 +112,11 @@ private:
             describe(path, std::shared_ptr<const Scene>(loaded, &loaded->scene),
                      std::shared_ptr<const PatchMesh>(loaded, &loaded->mesh), std::move(lamps));
         input.solution.radiosity = input.solution.exitance;
-        input.command = "hemi solve " + viewer::quoted(path.string()) + given_options(arguments_.common);
+        input.command = "hemi solve " + viewer::quoted(path.string());
+        for (const std::filesystem::path& more : options.also) {
+            input.command += " " + viewer::quoted(more.string());
+        }
+        input.command += given_options(arguments_.common);
         io::ResultFile stored = loaded->result({});
         input.subdivision = loaded->subdivision;
         input.surfaces_as_read = std::move(stored.surfaces_as_read);

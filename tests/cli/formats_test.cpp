@@ -259,6 +259,34 @@ TEST_CASE("Bake: as PLY, which hemi reads", "[cli]") {
     CHECK(run_hemi({"bake", scene, "-o", directory.path("a.obj")}).err_has(".glb, .ply"));
 }
 
+TEST_CASE("Mesh scenes: several files are one scene, each a group", "[cli]") {
+    const Directory directory;
+    const std::string floor = directory.write(
+        "floor.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n"
+                     "endloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\n"
+                     "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n");
+    const std::string lid = directory.write(
+        "lid.obj", "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\ng top\nf 1 2 3 4\ng other\nv 5 5 5\nv 6 5 5\n"
+                   "v 6 6 5\nf 5 6 7\n");
+    const Json json = run_hemi(quick({"factors", floor, lid, "--by-group", "--json", "--flip-group",
+                                      "lid/top", "--preset", "default"}))
+                          .json();
+    CHECK(json["groups"] == Json({"floor", "lid/top", "lid/other"}));
+    CHECK(json["factors"][1][0].get<double>() == Approx(0.199825).margin(1e-5));
+    CHECK(run_hemi({"info", floor, lid, "--json"}).json()["channels"] == Json({"red", "green", "blue"}));
+
+    const auto refused = [](const Words& words, int status, const std::string& message) {
+        const Outcome run = run_hemi(words);
+        INFO(run.err);
+        CHECK(run.status == status);
+        CHECK(run.err_has(message));
+    };
+    refused({"info", floor, floor}, 3, "another file is called floor");
+    refused({"info", floor, directory.write("room.json", cube(1))}, 2, "a JSON scene is read alone");
+    refused({"info", floor, directory.path("a.png")}, 2, "unexpected argument: " + directory.path("a.png"));
+    refused({"info", floor, lid, "--flip-group", "top"}, 2, "lid/top");
+}
+
 TEST_CASE("Mesh scenes: Gmsh, PLY and STL are solved like any other, bad ones are exit status 3", "[cli]") {
     const Directory directory;
     const std::string head = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";

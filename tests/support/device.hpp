@@ -5,11 +5,17 @@
 
 namespace hemi::test {
 
-/// The device that tests tagged [every-device] compute rows on: OSMesa; ctest runs them again on software EGL
-/// and on the CPU rasteriser, which the environment variable HEMI_TEST_DEVICE names.
+/// The device that tests tagged [every-device] compute rows on: OSMesa; ctest runs them again on software
+/// EGL, on OSMesa that transforms polygons as a GPU does and on the CPU rasteriser, which the environment
+/// variable HEMI_TEST_DEVICE names ("egl", "gpu-transform", "cpu").
 [[nodiscard]] inline std::string test_device() {
-    const char* const device = std::getenv("HEMI_TEST_DEVICE");
-    return device != nullptr ? device : "osmesa";
+    const char* const wanted = std::getenv("HEMI_TEST_DEVICE");
+    const std::string device = wanted != nullptr ? wanted : "osmesa";
+    if (device == "gpu-transform") {
+        setenv("HEMI_TRANSFORM", "gpu", 1);
+        return "osmesa";
+    }
+    return device;
 }
 
 /// Sets an environment variable until it goes out of scope.

@@ -5,6 +5,7 @@
 #include "hemi/scene/scene.hpp"
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,16 @@ struct SceneReaderOptions {
                                Diagnostics& diagnostics);
 /// The same by default options; warnings are not kept.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path);
+
+/// Reads several files as one scene: of each the groups are called FILE/GROUP, or FILE where it has one
+/// alone, FILE being its name without folder and extension. Files of one channel have the same values in all
+/// channels of the others. What a file says of its enclosure counts where all say the same; environments are
+/// dark.
+/// @param paths  one or more; of one it is read_scene()
+/// @throws as read_scene(); InputError for two files of one name or of other channels; InvalidArgument for a
+///   JSON scene among several
+[[nodiscard]] Scene read_scenes(std::span<const std::filesystem::path> paths,
+                                const SceneReaderOptions& options, Diagnostics& diagnostics);
 
 /// hemi's JSON: see the page on scenes. Meshes it names are read relative to the file.
 [[nodiscard]] Scene read_json_scene(const std::filesystem::path& path, const SceneReaderOptions& options,

@@ -57,10 +57,18 @@ void add_common(CLI::App& app, CommonOptions& common, bool json = true) {
 /// @param stored  extensions of stored files that do as well
 void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SCENE",
                const std::string& stored = "") {
-    add_positional(app, name, scene.path,
-                   stored.empty()
-                       ? fmt::format("scene: {}", io::scene_extensions())
-                       : fmt::format("scene ({}) or stored file ({})", io::scene_extensions(), stored));
+    app.add_option_function<std::vector<std::string>>(
+           name,
+           [&scene](const std::vector<std::string>& paths) {
+               scene.path = paths.front();
+               scene.also.assign(paths.begin() + 1, paths.end());
+           },
+           stored.empty() ? fmt::format("scene, one mesh or several: {}", io::scene_extensions())
+                          : fmt::format("scene, one mesh or several ({}), or stored file ({})",
+                                        io::scene_extensions(), stored))
+        ->required()
+        ->option_text(" ")
+        ->type_name(file_type);
     add_scene_options(app, scene);
 }
 
@@ -594,6 +602,9 @@ void add_command(CLI::App& app, const std::string& name, const std::string& help
                 values->common.words.emplace_back(spelling,
                                                   flag ? std::vector<std::string>() : option->results());
             }
+        }
+        if constexpr (requires { values->scene.also; }) {
+            check_files(values->scene);
         }
         if constexpr (requires { values->rows.factors.method; }) {
             check_method(values->rows, values->common.given);

@@ -37,7 +37,8 @@ struct CommonOptions {
 };
 
 struct SceneOptions {
-    std::filesystem::path path; ///< the scene, or the stored file where a command takes either
+    std::filesystem::path path;              ///< the scene, or the stored file where a command takes either
+    std::vector<std::filesystem::path> also; ///< more files of the scene
     Subdivision subdivision;
     std::optional<Enclosure> enclosure;
     std::vector<double>

@@ -2,6 +2,10 @@
 
 #include "cli/arguments/arguments.hpp"
 #include "cli/arguments/options.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/io/scene_reader.hpp"
+
+#include <fmt/format.h>
 
 namespace hemi::cli {
 
@@ -45,6 +49,18 @@ void add_scene_options(CLI::App& app, SceneOptions& scene) {
         ->option_text(" ")
         ->group("Scene")
         ->excludes(app.get_option("--flip-group"));
+}
+
+void check_files(const SceneOptions& scene) {
+    std::vector<std::filesystem::path> files = scene.also;
+    files.insert(files.begin(), scene.path);
+    for (const std::filesystem::path& file : files) {
+        if (files.size() > 1 && !io::is_scene_file(file)) {
+            throw InvalidArgument(
+                fmt::format("unexpected argument: {}; of several files all must be meshes ({})",
+                            file.string(), io::scene_extensions()));
+        }
+    }
 }
 
 } // namespace hemi::cli

@@ -10,4 +10,8 @@ struct SceneOptions;
 /// Subdivision, what is done to faces as people have them, and which way they look.
 void add_scene_options(CLI::App& app, SceneOptions& scene);
 
+/// Several files make up one scene, of meshes alone.
+/// @throws InvalidArgument for others among them
+void check_files(const SceneOptions& scene);
+
 } // namespace hemi::cli
