@@ -2,6 +2,7 @@
 
 #include "cli/arguments/completion.hpp"
 #include "cli/arguments/options.hpp"
+#include "cli/arguments/points_arguments.hpp"
 #include "cli/arguments/scene_arguments.hpp"
 #include "cli/arguments/usage_errors.hpp"
 #include "cli/arguments/version.hpp"
@@ -448,6 +449,19 @@ void add_exchange(CLI::App& app, ExchangeArguments& a) {
                "  hemi exchange room.obj --emissivity walls=0.9 -o room.csv");
 }
 
+void add_points(CLI::App& app, PointsArguments& a) {
+    add_scene(app, a.scene, "SCENE|RESULT", ".hres");
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_repair(app, a.rows.factors.repair);
+    add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
+    add_solver(app, a.solver);
+    add_heat_options(app, a.heat, true);
+    add_point_options(app, a);
+    add_common(app, a.common);
+}
+
 void add_render(CLI::App& app, RenderArguments& a) {
     add_positional(app, "RESULT", a.input, "stored solution: .hres");
     Options output(app, "Output");
@@ -624,6 +638,8 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
     add_command(app, "heat", "Net heat fluxes and temperatures", add_heat, chosen);
     add_command(app, "exchange", "Grey exchange between groups: Gebhart factors, script-F, conductances",
                 add_exchange, chosen);
+    add_command(app, "points", "Irradiance, view of the sky and radiant temperature at points", add_points,
+                chosen);
     add_command(app, "render", "Picture of a stored solution", add_render, chosen);
 #ifdef HEMI_WITH_VIEWER
     add_command(app, "view", "Window with an orbiting camera", add_view, chosen);
