@@ -315,7 +315,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     output.path("--result", "FILE.hres", a.result, "the whole solution, for `hemi render` and `hemi view`");
     output.path("--radiosity", "FILE.csv", a.radiosity,
                 "exitance, irradiance, radiosity and its error of every patch");
-    output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
+    output.path("--patches", "FILE.csv", a.patches, "area, centre, normal, environment share of every patch");
     add_picture(app, a.picture, picture);
     add_gather(app, a.gather);
     add_common(app, a.common);
@@ -338,7 +338,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
         "form factors: .hff .mtx .csv .npz .npy .h5, View3D's .txt .vf, Elmer's .dat .bin, EnergyPlus' .idf, "
         "ParaView's .vtp; - for .csv on stdout");
     add_resume(app, a.rows, file);
-    output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
+    output.path("--patches", "FILE.csv", a.patches, "area, centre, normal, environment share of every patch");
     auto* row = output.value("--row", "I", "print one row, largest first, with names",
                              [&a](const std::string& text) { a.row = to_index("--row", text, 0); });
     output.flag("--by-group", a.by_group, "sum over named groups: a table, or with -o FILE.csv the file");
