@@ -21,7 +21,9 @@ Report scene_info(const InfoArguments& arguments, const Terminal& terminal) {
     const FactorCost cost = measure_cost(loaded.mesh, arguments.rows.factors);
     Report more = imprint_report(loaded);
     more.add(cost_report(cost, loaded.mesh));
-    Report report = contents_report(loaded.uncut(), loaded.patches(), more);
+    Report report = contents_report(
+        loaded.uncut(), loaded.patches(),
+        loaded.as_read ? std::span<const double>(loaded.as_read->left.areas) : loaded.mesh.areas(), more);
     report.json["kind"] = "scene";
     report.select("hemi/info/1",
                   {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels", "bounds",
@@ -35,7 +37,8 @@ Report file_info(const std::filesystem::path& path) {
         io::ResultFile result = io::read_hres(path);
         const PatchMesh mesh(result.scene, result.subdivision);
         result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
-        Report report = contents_report(result.scene, mesh, stored_solution_report(result.solution, mesh));
+        Report report =
+            contents_report(result.scene, mesh, mesh.areas(), stored_solution_report(result.solution, mesh));
         report.json["kind"] = "result";
         report.select("hemi/info/1",
                       {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels",

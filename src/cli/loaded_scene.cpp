@@ -2,7 +2,6 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
-#include "hemi/core/nearest_word.hpp"
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
@@ -19,21 +18,6 @@
 namespace hemi::cli {
 
 namespace {
-
-void check_two_sided_groups(const Scene& scene, const SceneOptions& options) {
-    if (options.reader.two_sided_groups.empty()) {
-        return;
-    }
-    if (io::extension_of(options.path) == ".json") {
-        throw InvalidArgument("--two-sided is not for JSON scenes, which say \"two_sided\": true");
-    }
-    for (const std::string& name : options.reader.two_sided_groups) {
-        if (name != "*" && std::find(scene.groups.begin(), scene.groups.end(), name) == scene.groups.end()) {
-            throw InvalidArgument(fmt::format("--two-sided {}: {} has no such group{}", name,
-                                              options.path.string(), did_you_mean(name, scene.groups)));
-        }
-    }
-}
 
 void replace_environment(Scene& scene, const std::vector<double>& environment) {
     const std::size_t channels = scene.channels.size();
@@ -100,13 +84,15 @@ void warn_of_turned_faces(const Scene& scene, const Terminal& terminal) {
 
 LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     const Stopwatch watch;
+    if (!options.reader.two_sided_groups.empty() && io::extension_of(options.path) == ".json") {
+        throw InvalidArgument("--two-sided is not for JSON scenes, which say \"two_sided\": true");
+    }
     Diagnostics diagnostics;
     Scene scene = io::read_scene(options.path, options.reader, diagnostics);
     if (!options.reader.adiabatic) {
         radiate_by_temperature(scene, diagnostics);
     }
     terminal.warn(diagnostics);
-    check_two_sided_groups(scene, options);
     warn_of_turned_faces(scene, terminal);
     scene.enclosure = options.enclosure.value_or(scene.enclosure);
     if (!options.environment.empty()) {

@@ -68,6 +68,9 @@ void Terminal::warn(const Diagnostics& diagnostics) const {
     for (const std::string& warning : diagnostics.warnings()) {
         warn(warning);
     }
+    for (const std::string& told : diagnostics.notes()) {
+        note(told);
+    }
 }
 
 void Terminal::note(std::string_view message) const {

@@ -30,6 +30,7 @@ public:
 
     void error(std::string_view message) const;
     void warn(std::string_view message) const;
+    /// Its warnings, then its notes.
     void warn(const Diagnostics& diagnostics) const;
     /// A sentence that most people want to read; not with -q.
     void note(std::string_view message) const;

@@ -184,7 +184,8 @@ GroupFactors group_factors(const FormFactorMatrix& factors, std::span<const doub
     }
     for (std::uint32_t g = 0; g < groups; ++g) {
         if (result.areas[g] == 0.0) {
-            continue; // a group without patches: zero shares
+            result.blocked[g] = 1.0; // as the row of a covered patch
+            continue;
         }
         for (std::uint32_t h = 0; h < groups; ++h) {
             result.factors[std::size_t{g} * groups + h] /= result.areas[g];

@@ -24,9 +24,10 @@ public:
         const bool known = std::all_of(parts.begin(), parts.end(),
                                        [this](std::uint32_t part) { return factors_.matrix.known(part); });
         double environment = 0.0;
-        double blocked = parts.empty() ? 1.0 : 0.0;
+        const bool is_left = areas_[patch] > 0.0;
+        double blocked = is_left ? 0.0 : 1.0;
         for (const std::uint32_t part :
-             known ? std::span<const std::uint32_t>(parts) : std::span<const std::uint32_t>()) {
+             known&& is_left ? std::span<const std::uint32_t>(parts) : std::span<const std::uint32_t>()) {
             const double share = factors_.areas[part] / areas_[patch];
             const RowView row = factors_.matrix.row(part);
             for (std::size_t k = 0; k < row.columns.size(); ++k) {

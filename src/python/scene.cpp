@@ -471,6 +471,8 @@ Raises
 ------
 InputError
     ParseError among them: with file, place, value and what would be right.
+InvalidArgument
+    A group of two_sided that is not there.
 )");
     module.def("point_factors", &factors_of_point, py::arg("scene"), py::arg("point"), py::arg("normal"),
                py::kw_only(), py::arg("occlusion") = true, R"(

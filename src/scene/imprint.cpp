@@ -6,13 +6,12 @@
 #include "hemi/core/error.hpp"
 #include "scene/convex_polygon.hpp"
 #include "scene/rectangles.hpp"
+#include "scene/surroundings.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -25,8 +24,6 @@ namespace {
 constexpr std::uint32_t no_face = 0xFFFFFFFFu;
 /// Gaps up to this share of the scene's diagonal are none, as where corners are welded.
 constexpr double contact_share = 1e-7;
-/// Directions in which a piece must see backs alone to be covered.
-constexpr int directions = 64;
 /// What is buried is found from the outside inwards; nothing that people build is deeper.
 constexpr int max_rounds = 8;
 
@@ -57,14 +54,6 @@ struct CutFace {
     bool buried = false;                ///< parts of it see backs alone
 };
 
-/// What hides others: a face, or a piece of one.
-struct Occluder {
-    std::span<const Vec3> corners;
-    std::uint32_t face;
-    bool front; ///< radiates from its front
-    bool back;
-};
-
 /// Corners of faces, those in one place made one.
 struct WeldedFaces {
     std::vector<std::array<std::uint32_t, 4>> corners; ///< of every face; the fourth of a triangle is none
@@ -82,21 +71,6 @@ WeldedFaces weld(const Scene& scene, double tolerance) {
         }
     }
     result.vertex_count = welder.points().size();
-    return result;
-}
-
-/// Directions over a hemisphere about `normal`, evenly spread.
-std::vector<Vec3> hemisphere(const Vec3& normal) {
-    const Vec3 beside = std::abs(normal.x) < 0.5 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
-    const Vec3 u = glm::normalize(glm::cross(normal, beside));
-    const Vec3 v = glm::cross(normal, u);
-    std::vector<Vec3> result;
-    for (int k = 0; k < directions; ++k) {
-        const double height = (k + 0.5) / directions;
-        const double round = k * std::numbers::pi * (3.0 - std::sqrt(5.0)); // the golden angle
-        const double out = std::sqrt(1.0 - height * height);
-        result.push_back(height * normal + out * (std::cos(round) * u + std::sin(round) * v));
-    }
     return result;
 }
 
@@ -397,61 +371,101 @@ private:
         // by looking.
     }
 
-    /// Takes away sides that see backs alone.
-    /// @return whether there were any
-    bool bury() {
+    [[nodiscard]] Surroundings surroundings() const {
         std::vector<Occluder> occluders;
-        std::vector<Bounds> boxes;
         for (std::uint32_t f = 0; f < cut_.size(); ++f) {
-            const auto add = [&](std::span<const Vec3> corners, bool front, bool back) {
-                occluders.push_back({corners, f, front, back});
-                boxes.push_back(bounds_of(corners));
-            };
             if (cut_[f].pieces.empty()) {
-                add(face(f), true, scene_.surfaces[f].two_sided);
+                occluders.push_back(
+                    {face(f), normal(f), f, Occluder::whole, true, scene_.surfaces[f].two_sided});
             }
-            for (const Piece& piece : cut_[f].pieces) {
+            for (std::uint32_t k = 0; k < cut_[f].pieces.size(); ++k) {
+                const Piece& piece = cut_[f].pieces[k];
                 if (piece.is_left()) {
-                    add(piece.corners, piece.front, piece.back);
+                    occluders.push_back({piece.corners, normal(f), f, k, piece.front, piece.back});
                 }
             }
         }
-        const BoxTree tree(boxes);
-        std::vector<std::uint8_t> changed(cut_.size(), 0);
-        for_each_face([&](std::uint32_t f) { changed[f] = bury(f, tree, occluders) ? 1 : 0; });
-        return std::find(changed.begin(), changed.end(), 1) != changed.end();
+        return {std::move(occluders), tolerance_};
     }
 
-    bool bury(std::uint32_t f, const BoxTree& tree, std::span<const Occluder> occluders) {
+    /// A side that sees backs in at least half of all directions, and in the others pieces alone.
+    struct Enclosed {
+        PieceSide side;
+        std::vector<PieceSide> sees;
+    };
+
+    /// Takes away sides that see backs alone, or backs and such sides.
+    /// @return whether there were any
+    bool bury() {
+        const Surroundings around = surroundings();
+        std::vector<std::uint8_t> changed(cut_.size(), 0);
+        std::vector<std::vector<Enclosed>> enclosed(cut_.size());
+        for_each_face([&](std::uint32_t f) { changed[f] = bury(f, around, enclosed[f]) ? 1 : 0; });
+        const bool cavities = bury_cavities(enclosed);
+        return cavities || std::find(changed.begin(), changed.end(), 1) != changed.end();
+    }
+
+    bool bury(std::uint32_t f, const Surroundings& around, std::vector<Enclosed>& enclosed) {
         CutFace& face = cut_[f];
         if (face.pieces.empty()) {
             return false;
         }
         const std::vector<Vec3> before = hemisphere(normal(f));
         const std::vector<Vec3> behind = hemisphere(-normal(f));
-        const auto sees_backs = [&](const Piece& piece, const std::vector<Vec3>& rays, double side) {
-            const Vec3 eye = area_centroid(piece.corners) + 4.0 * side * tolerance_ * normal(f);
-            return sees_backs_alone(f, eye, rays, tree, occluders);
+        const auto look = [&](std::uint32_t k, bool back) {
+            const Vec3 away = (back ? -4.0 : 4.0) * tolerance_ * normal(f);
+            return around.look(f, area_centroid(face.pieces[k].corners) + away, back ? behind : before);
         };
-        std::vector<std::pair<bool, bool>> left;
+        const auto stays = [&](std::uint32_t k, bool back) {
+            Sight sight = look(k, back);
+            if (sight.only_backs()) {
+                return false;
+            }
+            if (!sight.open && sight.backs >= static_cast<int>(sight.sides.size())) {
+                enclosed.push_back({{f, k, back}, std::move(sight.sides)});
+            }
+            return true;
+        };
         bool any_changed = false;
-        for (const Piece& piece : face.pieces) {
-            bool front = piece.front && !sees_backs(piece, before, 1.0);
-            const bool back = piece.back && !sees_backs(piece, behind, -1.0);
-            if (front && is_faced(f, piece) && sees_backs(piece, behind, -1.0)) {
+        for (std::uint32_t k = 0; k < face.pieces.size(); ++k) {
+            Piece& piece = face.pieces[k];
+            bool front = piece.front && stays(k, false);
+            const bool back = piece.back && stays(k, true);
+            if (front && is_faced(f, piece) && look(k, true).only_backs()) {
                 front = false; // face to face with the body behind
             }
-            left.emplace_back(front, back);
             any_changed = any_changed || front != piece.front || back != piece.back;
+            piece.front = front;
+            piece.back = back;
         }
-        if (!any_changed) {
-            return false;
+        face.buried = face.buried || any_changed;
+        return any_changed;
+    }
+
+    /// Takes away sides in cavities: those that see, besides backs, only one another. The inside of a post
+    /// has the backs of its faces around, and above and below what it stands between.
+    bool bury_cavities(const std::vector<std::vector<Enclosed>>& enclosed) {
+        std::map<PieceSide, std::span<const PieceSide>> left;
+        for (const auto& sides : enclosed) {
+            for (const Enclosed& one : sides) {
+                left.emplace(one.side, one.sees);
+            }
         }
-        for (std::size_t k = 0; k < left.size(); ++k) {
-            std::tie(face.pieces[k].front, face.pieces[k].back) = left[k];
+        const auto side_of = [this](const PieceSide& side) -> bool& {
+            Piece& piece = cut_[side.face].pieces[side.piece];
+            return side.back ? piece.back : piece.front;
+        };
+        const auto sees_others = [&](const auto& one) {
+            return std::any_of(one.second.begin(), one.second.end(),
+                               [&](const PieceSide& seen) { return side_of(seen) && !left.contains(seen); });
+        };
+        while (std::erase_if(left, sees_others) > 0) {
         }
-        face.buried = true;
-        return true;
+        for (const auto& [side, sees] : left) {
+            side_of(side) = false;
+            cut_[side.face].buried = true;
+        }
+        return !left.empty();
     }
 
     /// Whether a one-sided face lies over a piece of a one-sided face in its plane that looks the other way.
@@ -591,27 +605,6 @@ private:
             }
             k += four ? 2 : 1;
         }
-    }
-
-    /// Whether all rays from a point beside face `f` meet backs that do not radiate.
-    [[nodiscard]] bool sees_backs_alone(std::uint32_t f, const Vec3& eye, std::span<const Vec3> rays,
-                                        const BoxTree& tree, std::span<const Occluder> occluders) const {
-        return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) {
-            double nearest = std::numeric_limits<double>::infinity();
-            bool back = false;
-            tree.along(eye, ray, [&](std::uint32_t index) {
-                const Occluder& other = occluders[index];
-                const Vec3& other_normal = normal(other.face);
-                const double towards = glm::dot(other_normal, ray);
-                const double distance = glm::dot(other.corners[0] - eye, other_normal) / towards;
-                if (other.face != f && distance > 0.0 && distance < nearest &&
-                    contains(other.corners, other_normal, eye + distance * ray, tolerance_)) {
-                    nearest = distance;
-                    back = towards > 0.0 ? !other.back : !other.front;
-                }
-            });
-            return back;
-        });
     }
 
     const Scene& scene_;

@@ -1,10 +1,13 @@
 #include "hemi/scene/orientation.hpp"
 
+#include "core/box_tree.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -207,6 +210,44 @@ bool can_be_decided(const Body& body) {
     return body.has_two_sides && body.volume != 0.0;
 }
 
+/// Finds watertight bodies that others may be within.
+class Containers {
+public:
+    explicit Containers(const Bodies& bodies) {
+        Bounds all;
+        for (const Body& body : bodies.all) {
+            if (body.watertight && can_be_decided(body)) {
+                bodies_.push_back(&body);
+                boxes_.push_back(body.bounds);
+                all.add(body.bounds.lower);
+                all.add(body.bounds.upper);
+            }
+        }
+        slack_ = boxes_.empty() ? 0.0 : 1e-9 * all.diagonal();
+        tree_.emplace(boxes_);
+    }
+
+    /// In how many the body is.
+    [[nodiscard]] std::size_t around(const Body& body, const Bodies& bodies, const Scene& scene) const {
+        std::size_t count = 0;
+        const Bounds near{body.bounds.lower - slack_, body.bounds.upper + slack_};
+        tree_->overlapping(near, [&](std::uint32_t index) {
+            const Body& other = *bodies_[index];
+            count += &other != &body && std::abs(other.volume) > std::abs(body.volume) &&
+                             is_within(body, other, bodies, scene)
+                         ? 1
+                         : 0;
+        });
+        return count;
+    }
+
+private:
+    std::vector<const Body*> bodies_;
+    std::vector<Bounds> boxes_;
+    std::optional<BoxTree> tree_;
+    double slack_ = 0.0;
+};
+
 } // namespace
 
 void turn_round(Surface& surface) {
@@ -222,19 +263,15 @@ OrientedFaces orient(Scene& scene, Orientation orientation) {
         return result;
     }
     const Bodies bodies = find_bodies(scene);
+    const Containers containers(bodies);
     std::vector<bool> turn(scene.surfaces.size(), false);
     for (const Body& body : bodies.all) {
         if (!can_be_decided(body)) {
             result.undecided += body.surfaces.size();
             continue;
         }
-        bool outwards = orientation == Orientation::out;
-        for (const Body& other : bodies.all) {
-            if (&other != &body && other.watertight && can_be_decided(other) &&
-                std::abs(other.volume) > std::abs(body.volume) && is_within(body, other, bodies, scene)) {
-                outwards = !outwards;
-            }
-        }
+        const bool swapped = containers.around(body, bodies, scene) % 2 == 1;
+        const bool outwards = (orientation == Orientation::out) != swapped;
         const bool first_turns = (body.volume > 0.0) != outwards;
         for (const std::uint32_t s : body.surfaces) {
             turn[s] = bodies.against[s] != first_turns;

@@ -173,6 +173,8 @@ TEST_CASE("imprint: info and check say what was cut", "[cli]") {
     REQUIRE(imprint["faces"].size() == 1);
     CHECK(imprint["faces"][0]["what"] == "cut");
     CHECK(imprint["faces"][0]["face"] == 0);
+    CHECK(info.json()["groups"][0]["name"] == "floor");
+    CHECK(info.json()["groups"][0]["area"].get<double>() == Approx(1.0 - foot)); // what is left
     const Outcome check = run_hemi(on_cpu({"check", scene}));
     CHECK(check.status == 0);
     CHECK(check.out_has("1 face is cut where others stand on it or pass through it: face 0 of floor"));
@@ -182,4 +184,37 @@ TEST_CASE("imprint: info and check say what was cut", "[cli]") {
     CHECK_FALSE(uncut.out_has("faces touch"));
     CHECK(uncut.out_has("buried        1 patch"));
     CHECK(run_hemi(on_cpu({"check", scene, "--no-imprint", "--json"})).json()["imprint"].is_null());
+}
+
+TEST_CASE("imprint: a group of which nothing is left is blocked, and its means are null", "[cli]") {
+    const Directory directory;
+    Json room = cube(1);
+    for (const char* name : {"mat", "rug"}) { // of equal faces in one place the last one is seen
+        room["surfaces"].push_back(
+            {{"name", name},
+             {"material", "white"},
+             {"polygon", Json::parse("[[0.2,0.2,0],[0.6,0.2,0],[0.6,0.6,0],[0.2,0.6,0]]")}});
+    }
+    const std::string scene = directory.write("rug.json", room);
+    const std::string hff = directory.path("rug.hff");
+    const Json info = run_hemi(on_cpu({"info", scene, "--json"})).json();
+    CHECK(info["groups"][6]["name"] == "mat");
+    CHECK(info["groups"][6]["area"] == 0.0);
+    const Outcome factors = run_hemi(on_cpu({"factors", scene, "--by-group", "--json", "-o", hff}));
+    REQUIRE(factors.status == 0);
+    const Json table = factors.json();
+    CHECK(table["areas"][6] == 0.0);
+    CHECK(table["blocked"][6] == 1.0);
+    CHECK(table["environment"][6] == 0.0);
+    CHECK(table["factors"][6] == Json::array({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
+    CHECK(run_hemi({"factors", hff, "--by-group", "--json"}).json()["blocked"][6] == 1.0);
+    const Json solution = run_hemi(on_cpu({"solve", scene, "--factors", hff, "--json"})).json();
+    CHECK(solution["radiosity"][6][0].is_null());
+    CHECK(solution["radiosity"][7][0].is_number());
+    const Json row = run_hemi(on_cpu({"factors", scene, "--row", "6", "--json"})).json();
+    CHECK(row["group"] == "mat");
+    CHECK(row["sum"] == 0.0);
+    CHECK(row["environment"] == 0.0);
+    CHECK(row["blocked"] == 1.0);
+    CHECK(row["entries"].empty());
 }

@@ -52,7 +52,23 @@ TEST_CASE("orientation: a cube inside out is told, and turned", "[cli]") {
         check_cube(run);
     }
     CHECK(run_hemi({"info", path, "--flip", "--flip-group", "floor"}).status == 2);
-    CHECK(run_hemi({"info", path, "--flip-group", "flor"}).err_has("did you mean \"floor\""));
+    for (const char* option : {"--flip-group", "--one-sided-group", "--two-sided"}) {
+        const Outcome wrong = run_hemi({"info", path, option, "flor"});
+        CHECK(wrong.status == 2);
+        CHECK(wrong.err_has("did you mean \"floor\""));
+    }
+    CHECK(run_hemi({"info", path, "--orient", "in"}).err_has("cube.obj: 6 of 6 faces turned round"));
+    CHECK(run_hemi({"info", path, "--orient", "out"}).err_has("cube.obj: 0 of 6 faces turned round"));
+    for (const std::vector<std::string>& turned : {std::vector<std::string>{"--flip"},
+                                                   {"--flip-group", "*"},
+                                                   {"--orient", "in"},
+                                                   {"--flip", "--one-sided-group", "*"}}) {
+        std::vector<std::string> words{"factors", path, "--json", "--from-point", "0.5,0.5,0.5,0,0,1"};
+        words.insert(words.end(), turned.begin(), turned.end());
+        const Outcome run = run_hemi(words);
+        REQUIRE(run.status == 0);
+        CHECK(run.json()["sum"].get<double>() == Approx(1.0));
+    }
     const std::string json =
         directory.write("cube.json", R"({"hemi": 1, "surfaces": [{"mesh": "cube.obj", "flip": true}]})");
     check_cube(run_hemi({"factors", json, "--by-group", "--json", "--device", "cpu"}));
@@ -81,9 +97,11 @@ TEST_CASE("orientation: a room of which everything is double-sided becomes one-s
     const Directory directory;
     const std::string path = directory.write("cube.obj", cube_of(""));
     CHECK(run_hemi({"info", path, "--two-sided", "*", "--json"}).json()["patches"] == 12);
-    CHECK(
-        run_hemi({"info", path, "--two-sided", "*", "--one-sided-group", "*", "--json"}).json()["patches"] ==
-        12);
+    const Outcome both = run_hemi({"info", path, "--two-sided", "*", "--one-sided-group", "floor"});
+    CHECK(both.status == 2);
+    CHECK(both.err_has("group \"floor\" cannot be made both two-sided and one-sided"));
+    CHECK(run_hemi({"info", path, "--two-sided", "west", "--one-sided-group", "floor", "--json"})
+              .json()["patches"] == 7);
     Json scene = Json::parse(R"({"hemi": 1, "materials": {"w": {"reflectance": 0.5}}, "surfaces": []})");
     for (const char* name : {"a", "b"}) {
         scene["surfaces"].push_back({{"name", name},

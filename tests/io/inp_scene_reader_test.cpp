@@ -93,6 +93,8 @@ TEST_CASE("Abaqus reader: what is wrong is named with its line, its value and wh
         {"*PART, NAME=b\n*INSTANCE, NAME=a, PART=b\n0\n1, 1, 1, 1, 1, 1, 3\n",
          {":4: the two points of the axis"}},
         {"*ELSET, ELSET=a, ELSET\n*PART\n", {"*ELSET without ELSET="}},
+        {"*PART, NAME=b\n*INSTANCE, NAME=a, PART=b\n*INSTANCE, NAME=A, PART=b\n",
+         {":3: instance \"A\" is there twice"}},
     };
     const Folder folder;
     REQUIRE_NOTHROW(read(folder, nodes + quad));
@@ -110,6 +112,25 @@ TEST_CASE("Abaqus reader: sets of sets that grow without end are refused", "[io]
                 std::to_string(k) + ", s" + std::to_string(k) + ", s" + std::to_string(k) + "\n";
     }
     require_parts(message_of<ParseError>([&] { read(folder, text); }), {"elements in sets"});
+}
+
+TEST_CASE(
+    "Abaqus reader: parts placed again and again are refused, a set named again in a surface counts once",
+    "[io]") {
+    const Folder folder;
+    std::string part = nodes + "*ELEMENT, TYPE=S4, ELSET=all\n";
+    for (int k = 1; k <= 2'100; ++k) {
+        part += std::to_string(k) + ", 1, 2, 3, 4\n";
+    }
+    std::string surface = part + "*SURFACE, NAME=shine\n";
+    std::string placed = "*PART, NAME=p\n" + part + "*END PART\n";
+    for (int k = 0; k < 10'000; ++k) {
+        surface += "all, SPOS\n";
+        placed += "*INSTANCE, NAME=i" + std::to_string(k) + ", PART=p\n";
+    }
+    CHECK(read(folder, surface).groups == std::vector<std::string>{"shine"});
+    require_parts(message_of<ParseError>([&] { read(folder, placed); }),
+                  {"more than 10000000 elements and instances in all"});
 }
 
 } // namespace hemi::io_test

@@ -145,6 +145,33 @@ TEST_CASE("mended faces: concave faces keep their area and their side, wherever 
     }
 }
 
+TEST_CASE("mended faces: outlines that cross themselves everywhere, and spikes, take little time", "[io]") {
+    // By the cube of the number of corners it would be minutes.
+    const Folder folder;
+    std::vector<Vec3> points;
+    std::uint32_t state = 1;
+    for (int k = 0; k < 4'000; ++k) {
+        const auto random = [&state] { return (state = state * 1664525u + 1013904223u) / 4294967296.0; };
+        const double x = random();
+        points.emplace_back(x, random(), 0.0);
+    }
+    require_parts(
+        message_of<ParseError>([&] { read(folder, "a.obj", vertices_of(points) + face_of(points.size())); }),
+        {"a.obj:4001: face: edges that cross each other"});
+    points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    constexpr int far = 100'000; // a square with a spike, from whose tip the outline begins
+    std::string face = fmt::format("f {}", far + 4);
+    for (int k = far - 1; k > 0; --k) {
+        face += fmt::format(" {}", k + 4);
+    }
+    face += " 1 2 3 4 1";
+    for (int k = 1; k <= far; ++k) {
+        points.emplace_back(-k, 0, 0);
+        face += k < far ? fmt::format(" {}", k + 4) : "\n";
+    }
+    CHECK(area(read(folder, "a.obj", vertices_of(points) + face)) == Vec3(0, 0, 1));
+}
+
 TEST_CASE("mended faces: holes are cut out of JSON polygons, also at the border and next to each other",
           "[io]") {
     const Folder folder;

@@ -169,6 +169,28 @@ TEST_CASE("Gmsh reader: parametric nodes of version 2.2, and second order read b
     check_warnings(diagnostics, {"room.msh:15: 1 6-node triangles taken as plane"});
 }
 
+TEST_CASE("Gmsh reader: a physical surface below 0, of a surface turned round, is that of its number",
+          "[io]") {
+    const Folder folder;
+    const auto text = [](const std::string& physical) {
+        return "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n" + names + "\n$Entities\n0 0 1 0\n1 0 0 0 1 1 0 1 " +
+               physical +
+               " 0\n$EndEntities\n$Nodes\n1 4 1 4\n2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n"
+               "$EndNodes\n$Elements\n1 1 1 1\n2 1 3 1\n1 1 2 3 4\n$EndElements\n";
+    };
+    const auto read = [&](const std::string& content) {
+        Diagnostics diagnostics;
+        return io::read_scene(folder.write("a.msh", content), {}, diagnostics);
+    };
+    CHECK(read(text("-9")).groups == std::vector<std::string>{"walls"});
+    CHECK(read("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + names +
+               "\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 1 1 0\n$EndNodes\n$Elements\n1\n1 2 2 -9 1 1 2 3\n"
+               "$EndElements\n")
+              .groups == std::vector<std::string>{"walls"});
+    require_parts(message_of<ParseError>([&] { (void)read(text("-9223372036854775808")); }),
+                  {"a.msh:11: physical group \"-9223372036854775808\"; must be a whole number of 32 bits"});
+}
+
 TEST_CASE("Gmsh reader: what is wrong in blocks is named with its line or byte", "[io]") {
     const Folder folder;
     const std::string sound = version_4(Output::Kind::text);

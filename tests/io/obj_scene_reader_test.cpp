@@ -163,7 +163,7 @@ TEST_CASE("OBJ reader: named groups become two-sided, unknown ones are refused",
     REQUIRE(scene.surfaces[0].two_sided);
     REQUIRE_FALSE(scene.surfaces[1].two_sided);
     const io::SceneReaderOptions wrong{.two_sided_groups = {"laef"}};
-    require_parts(message_of<InputError>([&] { read(folder, text, nullptr, wrong); }),
+    require_parts(message_of<InvalidArgument>([&] { read(folder, text, nullptr, wrong); }),
                   {"room.obj: no group \"laef\" to make two-sided; did you mean \"leaf\"?"});
 }
 

@@ -156,7 +156,7 @@ TEST_CASE("View3D reader: what is wrong is named with its line, its value and wh
         INFO(bad.text);
         require_parts(message_of<InputError>([&] { (void)read(folder, bad.text); }), bad.parts);
     }
-    require_parts(message_of<InputError>([&] {
+    require_parts(message_of<InvalidArgument>([&] {
                       (void)read(folder, square + "S 1 1 2 3 4 0 0 .9 floor\n", nullptr,
                                  {.two_sided_groups = {"flor"}});
                   }),

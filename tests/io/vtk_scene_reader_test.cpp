@@ -65,6 +65,29 @@ TEST_CASE("VTK reader: strips, pixels and cells of second order", "[io]") {
     const Scene curved = read(folder.write("a.vtu", cells("0 1 2 3 3 3", "6", "22")), &diagnostics);
     CHECK(curved.surfaces[0].vertex_count == 3);
     require_parts(diagnostics.warnings().at(0), {"a.vtu: 1 cells of second order or more taken as plane"});
+    struct Cell {
+        std::string nodes;
+        std::string count;
+        std::string type;
+        std::uint32_t corners;
+    };
+    for (const Cell& cell : {Cell{"0 1 2 3 3 3", "6", "30", 4}, Cell{"0 1 2 3 3 3 3 3", "8", "36", 4},
+                             Cell{"0 1 2 3 3 3", "6", "61", 3}, Cell{"0 1 2 3 3", "5", "62", 4},
+                             Cell{"0 1 2 3 3 3", "6", "76", 3}, Cell{"0 1 2 3 3", "5", "77", 4}}) {
+        INFO(cell.type);
+        Diagnostics told;
+        const Scene scene = read(folder.write("a.vtu", cells(cell.nodes, cell.count, cell.type)), &told);
+        CHECK(scene.surfaces.at(0).vertex_count == cell.corners);
+        require_parts(told.warnings().at(0), {"1 cells of second order or more taken as plane"});
+    }
+}
+
+TEST_CASE("VTK reader: values that are no numbers do not matter in arrays that are not used", "[io]") {
+    const Folder folder;
+    const Scene scene =
+        read(folder.write("a.vtk", legacy("POLYGONS 1 5\n4 0 1 2 3\nCELL_DATA 1\nSCALARS temp float 1\n"
+                                          "LOOKUP_TABLE default\nnan\nVECTORS flow double\n-inf 1 NaN\n")));
+    CHECK(scene.surfaces.size() == 1);
 }
 
 TEST_CASE("VTK reader: what is wrong is named with its place, its value and what would be right", "[io]") {
@@ -79,7 +102,11 @@ TEST_CASE("VTK reader: what is wrong is named with its place, its value and what
         {"a.vtk",
          "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\n",
          {":4: data set \"RECTILINEAR_GRID\"; must be POLYDATA or UNSTRUCTURED_GRID"}},
-        {"a.vtk", legacy("POLYGONS 1 5\n4 0 1 2 x\n"), {":8: \"x\"; must be a finite number"}},
+        {"a.vtk", legacy("POLYGONS 1 5\n4 0 1 2 x\n"), {":8: \"x\"; must be a number"}},
+        {"a.vtk", legacy("POLYGONS 1 5\n4 0 1 2 nan\n"), {":8: nan; must be a whole number"}},
+        {"a.vtk",
+         legacy("POLYGONS 1 5\n4 0 1 2 3\nCELL_DATA 1\nSCALARS group float\nLOOKUP_TABLE default\ninf\n"),
+         {"a.vtk: cell 0: \"group\" inf; must be a finite number"}},
         {"a.vtk",
          legacy("POLYGONS 1 5\n4 0 1 2 4\n"),
          {"a.vtk: cell 0: point 4; there are 4, counted from 0"}},

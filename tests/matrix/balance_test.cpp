@@ -208,12 +208,14 @@ TEST_CASE("group_factors: a finer grouping sums to a coarser one, and groups kee
     }
 }
 
-TEST_CASE("group_factors: a group without patches has zero shares", "[matrix]") {
+TEST_CASE("group_factors: a group of which nothing is left is blocked", "[matrix]") {
     const GroupFactors result =
         group_factors(dense_matrix({{0.0, 1.0}, {1.0, 0.0}}), std::vector<double>{1.0, 1.0},
                       std::vector<std::uint32_t>{0, 2}, 3);
     CHECK(result.areas == std::vector<double>{1.0, 0.0, 1.0});
     CHECK(result.factors == std::vector<double>{0, 0, 1, 0, 0, 0, 1, 0, 0});
+    CHECK(result.environment[1] == 0.0);
+    CHECK(result.blocked == std::vector<double>{0.0, 1.0, 0.0});
 }
 
 TEST_CASE("group_factors: refuses unknown rows, missing groups and sizes that differ", "[matrix]") {

@@ -71,6 +71,16 @@ TEST_CASE("Merged parts: sums where light arrives, means by area where it leaves
     }
 }
 
+TEST_CASE("Merged parts: a patch whose parts have no area is covered", "[matrix]") {
+    FormFactors factors = in_parts();
+    factors.areas = {0.0, 0.0, 2.0};
+    const FormFactors merged = merge_parts(std::move(factors));
+    REQUIRE(merged.matrix.known(0));
+    CHECK(merged.matrix.row(0).columns.empty());
+    CHECK(merged.matrix.row(0).environment == 0.0);
+    CHECK(merged.matrix.row(0).blocked == 1.0);
+}
+
 TEST_CASE("Merged parts: a row is known where those of all its parts are", "[matrix]") {
     FormFactors factors = in_parts();
     factors.matrix = test::forget_rows(factors.matrix, {1});

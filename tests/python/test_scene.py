@@ -97,7 +97,7 @@ def test_errors_of_files_name_file_and_place(tmp_path):
         hemi.read_scene(tmp_path / "missing.obj")
     with pytest.raises(hemi.InvalidArgument, match="JSON scenes"):
         hemi.read_scene(path, two_sided=["floor"])
-    with pytest.raises(hemi.InputError, match='did you mean "floor"'):
+    with pytest.raises(hemi.InvalidArgument, match='did you mean "floor"'):
         obj = tmp_path / "square.obj"
         obj.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\ng floor\nf 1 2 3\n")
         hemi.read_scene(obj, two_sided=["flor"])

@@ -170,6 +170,32 @@ TEST_CASE("Imprint: a block that passes through a floor is cut where it does, an
     CHECK(areas[1] == Approx(1.4 * 1.5)); // cut in two, both are there
 }
 
+TEST_CASE("Imprint: what stands between two faces closes a cavity with parts of both", "[imprint]") {
+    // A post without ends between a floor and a seat, in a foot without a bottom.
+    const auto sides = [](double x0, double y0, double x1, double y1, double top) {
+        std::vector<Surface> box = block(x0, y0, x1, y1, top);
+        box.erase(box.begin()); // the top
+        return box;
+    };
+    std::vector<Surface> surfaces = sides(-0.03, -0.03, 0.03, 0.03, 0.42);
+    for (const Surface& surface : block(-0.3, -0.1, 0.3, 0.1, 0.06)) {
+        surfaces.push_back(surface);
+    }
+    surfaces.push_back(plate(-1.0, -1.0, 1.0, 1.0, 0.0, {8, 8}));
+    surfaces.push_back(
+        face({{-0.24, -0.24, 0.42}, {-0.24, 0.24, 0.42}, {0.24, 0.24, 0.42}, {0.24, -0.24, 0.42}}, {4, 4}));
+    const auto cut = imprint(scene_of(surfaces));
+    REQUIRE(cut);
+    const auto areas = areas_of_faces(*cut, surfaces.size());
+    constexpr double post = 0.06 * 0.06;
+    CHECK(areas[surfaces.size() - 1] == Approx(0.48 * 0.48 - post));
+    CHECK(areas[surfaces.size() - 2] == Approx(4.0 - 0.6 * 0.2));
+    for (std::size_t f = 0; f < 4; ++f) {
+        CHECK(areas[f] == Approx(0.06 * 0.36)); // above the foot
+    }
+    CHECK(areas[4] == Approx(0.6 * 0.2 - post)); // the foot's top
+}
+
 TEST_CASE("Imprint: patches are cut along a sheet that stands on them, and nothing is left out",
           "[imprint]") {
     std::vector<Surface> surfaces{plate(0.0, 0.0, 4.0, 4.0, 0.0, {4, 4})};

@@ -70,13 +70,17 @@ class Factors:
                 @ parts.T).tocsr()
 
     def by_group(self):
-        """F between groups, area-weighted: [g, h] is the share of what leaves g that arrives at h."""
+        """F between groups, area-weighted: [g, h] is the share of what leaves g that arrives at h.
+
+        Rows of groups of which nothing is left, as faces that touch cover them, are 0.
+        """
         members = scipy.sparse.csr_matrix(
             (numpy.ones(len(self.areas)), (self.group_of, numpy.arange(len(self.areas)))),
             shape=(len(self.groups), len(self.areas)))
         leaving = members.multiply(self.areas[numpy.newaxis, :])
         sums = (leaving @ self.factors.astype(numpy.float64) @ members.T).toarray()
-        return sums / (members @ self.areas)[:, numpy.newaxis]
+        areas = members @ self.areas
+        return sums / numpy.where(areas > 0.0, areas, 1.0)[:, numpy.newaxis]
 
 
 def _chunks(path, magic, version):

@@ -14,9 +14,14 @@ public:
     void warn(std::string message) { warnings_.push_back(std::move(message)); }
     /// All warnings, in the order in which they were given.
     [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+    /// Adds a note on what was done as it was asked for: one sentence, without a line end.
+    void note(std::string message) { notes_.push_back(std::move(message)); }
+    /// All notes, in the order in which they were given.
+    [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
 private:
     std::vector<std::string> warnings_;
+    std::vector<std::string> notes_;
 };
 
 } // namespace hemi

@@ -47,7 +47,8 @@ struct Reciprocity {
 [[nodiscard]] bool is_reciprocal(const Reciprocity& reciprocity);
 
 /// F summed over groups of patches, area-weighted on the leaving side:
-/// F(g, h) = sum_{i in g} A_i sum_{j in h} F(i, j) / sum_{i in g} A_i.
+/// F(g, h) = sum_{i in g} A_i sum_{j in h} F(i, j) / sum_{i in g} A_i. A group of which nothing is left, of
+/// area 0, is blocked: b is 1, its other shares are 0.
 struct GroupFactors {
     std::uint32_t groups = 0;        ///< their number
     std::vector<double> areas;       ///< per group

@@ -42,12 +42,12 @@ struct Imprint {
 ///
 /// Faces are cut along edges of others that lie in their plane, and along lines where others pass through
 /// them: patches at these lines become convex pieces, each a surface of its own; the rest stays in rectangles
-/// of whole patches. What is left out: pieces that see nothing but backs, in all of 64 directions; where
-/// faces lie in one plane over each other, all but the smallest of them, or of equal ones but the one that is
-/// listed last; a side of a two-sided surface that lies on another one. Two one-sided faces of one material
-/// and group, alike subdivided, back to back in one place become one that is two-sided. Faces that do not
-/// touch others are as they were. Gaps up to 1e-7 of the scene's diagonal are none. Time: about N log N for N
-/// faces. Memory: about 300 bytes a face.
+/// of whole patches. What is left out: pieces that see nothing but backs, in all of 64 directions, or, in a
+/// cavity, nothing but backs and one another; where faces lie in one plane over each other, all but the
+/// smallest of them, or of equal ones but the one that is listed last; a side of a two-sided surface that
+/// lies on another one. Two one-sided faces of one material and group, alike subdivided, back to back in one
+/// place become one that is two-sided. Faces that do not touch others are as they were. Gaps up to 1e-7 of
+/// the scene's diagonal are none. Time: about N log N for N faces. Memory: about 300 bytes a face.
 /// @param scene        as read
 /// @param subdivision  as for PatchMesh, without parts
 /// @return nothing where there is nothing to cut: the scene is what it should be

@@ -13,12 +13,12 @@ std::vector<GroupSize> group_sizes(std::span<const double> areas, std::span<cons
     return sizes;
 }
 
-std::vector<GroupSize> group_sizes(const PatchMesh& mesh) {
+std::vector<GroupSize> group_sizes(const PatchMesh& mesh, std::span<const double> areas) {
     std::vector<std::uint32_t> group_of(mesh.size());
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         group_of[i] = mesh.group(i);
     }
-    return group_sizes(mesh.areas(), group_of, mesh.groups().size());
+    return group_sizes(areas, group_of, mesh.groups().size());
 }
 
 } // namespace hemi::cli

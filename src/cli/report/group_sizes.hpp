@@ -19,6 +19,7 @@ struct GroupSize {
 /// @param group_of  group of each of the N patches, below `groups`
 [[nodiscard]] std::vector<GroupSize> group_sizes(std::span<const double> areas,
                                                  std::span<const std::uint32_t> group_of, std::size_t groups);
-[[nodiscard]] std::vector<GroupSize> group_sizes(const PatchMesh& mesh);
+/// @param areas  of the mesh's patches
+[[nodiscard]] std::vector<GroupSize> group_sizes(const PatchMesh& mesh, std::span<const double> areas);
 
 } // namespace hemi::cli

@@ -41,14 +41,14 @@ Report surfaces_report(const PatchMesh& mesh) {
     return report;
 }
 
-Report groups_report(const PatchMesh& mesh) {
+Report groups_report(const PatchMesh& mesh, std::span<const double> areas) {
     Table table({"group", "surfaces", "patches", "area"});
     Json list = Json::array();
     std::vector<std::uint32_t> surfaces(mesh.groups().size(), 0);
     for (const Surface& surface : mesh.surfaces()) {
         ++surfaces[surface.group];
     }
-    const std::vector<GroupSize> sizes = group_sizes(mesh);
+    const std::vector<GroupSize> sizes = group_sizes(mesh, areas);
     double area = 0.0;
     for (std::size_t g = 0; g < sizes.size(); ++g) {
         const auto& [patches, group_area] = sizes[g];
@@ -149,7 +149,8 @@ Report imprint_report(const LoadedScene& loaded) {
     return report;
 }
 
-Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& more) {
+Report contents_report(const Scene& scene, const PatchMesh& mesh, std::span<const double> areas,
+                       const Report& more) {
     const auto& [lower, upper] = mesh.bounds();
     Report report;
     report.add("name", scene.name.empty() ? "-" : scene.name, {{"name", scene.name}});
@@ -163,7 +164,7 @@ Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& 
     report.add("environment", values_text(scene.environment), {{"environment", scene.environment}});
     report.add("camera", scene.camera ? "yes" : "no", {{"camera", scene.camera.has_value()}});
     report.add(more);
-    report.add(groups_report(mesh));
+    report.add(groups_report(mesh, areas));
     report.add(materials_report(scene));
     return report;
 }

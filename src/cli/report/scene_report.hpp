@@ -5,6 +5,8 @@
 #include "hemi/pipeline/cost.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
+#include <span>
+
 /// Report of a scene.
 namespace hemi::cli {
 
@@ -13,7 +15,9 @@ namespace hemi::cli {
 /// What was done to faces that touch; nothing where they do not.
 [[nodiscard]] Report imprint_report(const LoadedScene& loaded);
 /// Contents of a scene. `more` is added before the tables of groups and materials, the end of the text.
-[[nodiscard]] Report contents_report(const Scene& scene, const PatchMesh& mesh, const Report& more);
+/// @param areas  what is left of the mesh's patches
+[[nodiscard]] Report contents_report(const Scene& scene, const PatchMesh& mesh, std::span<const double> areas,
+                                     const Report& more);
 /// Memory and time that its form factors will need.
 [[nodiscard]] Report cost_report(const FactorCost& cost, const PatchMesh& mesh);
 

@@ -156,7 +156,7 @@ Report solution_report(const Solution& solution, const PatchMesh& mesh) {
 Json group_means_json(const LoadedScene& loaded, const FormFactorMatrix& factors, const Solution& solution) {
     const std::uint32_t channels = solution.channels;
     std::vector<double> areas;
-    for (const GroupSize& group : group_sizes(loaded.mesh)) {
+    for (const GroupSize& group : group_sizes(loaded.mesh, loaded.mesh.areas())) {
         areas.push_back(group.area);
     }
     return {{"channels", loaded.scene.channels},

@@ -53,12 +53,13 @@ std::vector<std::uint32_t> groups_with_patches(const GroupFactors& groups) {
     return used;
 }
 
-void warn_of_open_rows(const GroupFactors& groups, const std::vector<std::string>& names,
-                       Diagnostics& diagnostics) {
+/// @param used  groups that are in the file
+void warn_of_open_rows(const GroupFactors& groups, const std::vector<std::uint32_t>& used,
+                       const std::vector<std::string>& names, Diagnostics& diagnostics) {
     std::uint32_t open = 0;
-    std::uint32_t worst = 0;
+    std::uint32_t worst = used.empty() ? 0 : used[0];
     const auto lost = [&groups](std::uint32_t g) { return groups.environment[g] + groups.blocked[g]; };
-    for (std::uint32_t g = 0; g < groups.groups; ++g) {
+    for (const std::uint32_t g : used) {
         open += lost(g) > complete ? 1 : 0;
         worst = lost(g) > lost(worst) ? g : worst;
     }
@@ -79,8 +80,8 @@ void write_energyplus(const std::filesystem::path& path, const FormFactors& file
     check_groups(file.groups);
     const GroupFactors groups =
         group_factors(file.matrix, file.areas, file.group_of, static_cast<std::uint32_t>(file.groups.size()));
-    warn_of_open_rows(groups, file.groups, diagnostics);
     const std::vector<std::uint32_t> used = groups_with_patches(groups);
+    warn_of_open_rows(groups, used, file.groups, diagnostics);
     TextOutput output(path);
     output.print(
         FMT_COMPILE("! View factors by hemi {}: from surface, to surface, share of what leaves the first "

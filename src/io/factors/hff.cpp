@@ -135,13 +135,13 @@ FactorErrorEstimate read_error(const JsonNode& node) {
     return error;
 }
 
-/// Everything but the rows. The matrix is made only after the file proved long enough for that many.
 /// What the rows need beside what is in the file's own description.
 struct Layout {
     std::vector<std::uint32_t> reference_blocks; ///< their first rows
     std::optional<std::uint32_t> patches;        ///< that rows are parts of
 };
 
+/// Everything but the rows. The matrix is made only after the file proved long enough for that many.
 Layout read_header(ChunkReader& reader, FormFactors& file) {
     const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
     const JsonNode head(document, reader.file());

@@ -41,20 +41,20 @@ void drop_repeated(std::vector<Vec3>& corners) {
         }
         kept.push_back(corner);
     }
-    for (bool changed = true; changed && kept.size() > 2;) {
-        changed = false;
-        if (same(kept.front(), kept.back())) {
-            kept.pop_back();
-            changed = true;
-        } else if (same(kept.front(), kept[kept.size() - 2])) {
-            kept.resize(kept.size() - 2);
-            changed = true;
-        } else if (same(kept.back(), kept[1])) {
-            kept.erase(kept.begin(), kept.begin() + 2);
-            changed = true;
+    std::span<const Vec3> rest = kept;
+    for (bool changed = true; changed && rest.size() > 2;) {
+        changed = true;
+        if (same(rest.front(), rest.back())) {
+            rest = rest.first(rest.size() - 1);
+        } else if (same(rest.front(), rest[rest.size() - 2])) {
+            rest = rest.first(rest.size() - 2);
+        } else if (same(rest.back(), rest[1])) {
+            rest = rest.subspan(2);
+        } else {
+            changed = false;
         }
     }
-    corners = std::move(kept);
+    corners.assign(rest.begin(), rest.end());
 }
 
 bool all_in_a_line(std::span<const Vec3> corners) {

@@ -10,12 +10,16 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
 namespace hemi::io {
 
 namespace {
+
+constexpr std::uint64_t most_faces = 10'000'000; // instances share parts: a small file can ask for any number
 
 /// Names and words count in any case.
 std::string upper(std::string_view text) {
@@ -327,13 +331,10 @@ private:
         part_->elements.push_back(std::move(element));
     }
 
-    /// The elements that a name or number stands for; none that are not surfaces.
-    [[nodiscard]] static std::vector<std::uint64_t> elements_of(const Part& part, std::string_view word) {
-        if (const auto number = parse_integer<std::uint64_t>(word)) {
-            return {*number};
-        }
-        const auto found = part.sets.find(upper(word));
-        return found == part.sets.end() ? std::vector<std::uint64_t>{} : found->second;
+    /// The elements of a set; none where there is no such set.
+    [[nodiscard]] static std::span<const std::uint64_t> elements_of(const Part& part, std::string_view set) {
+        const auto found = part.sets.find(upper(set));
+        return found == part.sets.end() ? std::span<const std::uint64_t>() : found->second;
     }
 
     void read_set(const Keyword& keyword) {
@@ -341,16 +342,19 @@ private:
         const bool range = keyword.values.contains("GENERATE");
         const auto placed = keyword.values.find("INSTANCE");
         std::vector<std::uint64_t> members;
-        Part& part = placed == keyword.values.end() ? *part_ : placed_sets_[upper(placed->second)];
+        const bool is_placed = placed != keyword.values.end();
+        Part& part = is_placed ? placed_sets_[upper(placed->second)] : *part_;
         while (next_data()) {
             std::string_view rest = line_;
             if (range) {
-                add_range(rest, part, placed == keyword.values.end(), members);
+                add_range(rest, part, !is_placed, members);
                 continue;
             }
             while (!rest.empty()) {
                 const std::string_view word = next_field(rest);
-                if (!word.empty()) {
+                if (const auto number = parse_integer<std::uint64_t>(word)) {
+                    members.push_back(*number);
+                } else if (!word.empty()) {
                     const auto found = elements_of(part, word);
                     count(found.size());
                     members.insert(members.end(), found.begin(), found.end());
@@ -361,15 +365,18 @@ private:
             part.set_of.emplace(element, name);
         }
         auto& set = part.sets[upper(name)];
+        if (is_placed && set.empty()) {
+            placed_in_[upper(name)].push_back(upper(placed->second));
+        }
         set.insert(set.end(), members.begin(), members.end());
     }
 
-    /// Sets of sets grow fast.
+    /// Sets of sets, and surfaces of them, grow fast.
     void count(std::uint64_t members) {
         constexpr std::uint64_t most = 20'000'000;
         members_ += members;
         if (members_ > most) {
-            fail(fmt::format("more than {} elements in sets", most));
+            fail(fmt::format("more than {} elements in sets and surfaces", most));
         }
     }
 
@@ -402,21 +409,36 @@ private:
             skip_data();
             return;
         }
+        std::set<std::pair<std::string, bool>> done; // sets and their sides
         while (next_data()) {
             std::string_view rest = line_;
             const std::string_view word = next_field(rest);
             const Side side{name, upper(next_field(rest)) == "SNEG"};
-            for (const std::uint64_t element : elements_of(*part_, word)) {
-                mark(part_->sides, element, side);
+            if (const auto number = parse_integer<std::uint64_t>(word)) {
+                mark(part_->sides, *number, side); // of which instance it would be is not said
+                continue;
             }
-            for (Instance& instance : instances_) {
-                if (parse_integer<std::uint64_t>(word)) { // of which instance it would be is not said
-                    break;
-                }
-                for (const std::uint64_t element : elements_of(placed_sets_[upper(instance.name)], word)) {
-                    mark(instance.sides, element, side);
+            if (!done.emplace(upper(word), side.negative).second) {
+                continue;
+            }
+            mark(part_->sides, elements_of(*part_, word), side);
+            const auto placed = placed_in_.find(upper(word));
+            if (placed == placed_in_.end()) {
+                continue;
+            }
+            for (const std::string& instance : placed->second) {
+                if (const auto found = instance_of_.find(instance); found != instance_of_.end()) {
+                    mark(instances_[found->second].sides, elements_of(placed_sets_[instance], word), side);
                 }
             }
+        }
+    }
+
+    void mark(std::unordered_map<std::uint64_t, Side>& sides, std::span<const std::uint64_t> elements,
+              const Side& side) {
+        count(elements.size());
+        for (const std::uint64_t element : elements) {
+            mark(sides, element, side);
         }
     }
 
@@ -433,7 +455,13 @@ private:
             fail(fmt::format("part {}; there is no *PART of that name above", in_quotes(part)));
         }
         Instance instance{value_of(keyword, "NAME"), &found->second};
-        placed_sets_[upper(instance.name)].numbers = found->second.numbers;
+        if (!instance_of_.emplace(upper(instance.name), instances_.size()).second) {
+            fail(fmt::format("instance {} is there twice", in_quotes(instance.name)));
+        }
+        placed_faces_ += found->second.elements.size() + 1;
+        if (placed_faces_ > most_faces) {
+            fail(fmt::format("more than {} elements and instances in all", most_faces));
+        }
         if (next_data()) {
             std::string_view rest = line_;
             for (int axis = 0; axis < 3; ++axis) {
@@ -502,12 +530,15 @@ private:
     Part root_;
     std::map<std::string, Part> parts_;       ///< by upper-case names
     std::map<std::string, Part> placed_sets_; ///< sets of the assembly, by upper-case names of instances
+    std::map<std::string, std::vector<std::string>> placed_in_; ///< names of those sets -> of instances
     Part* part_ = &root_;
     std::vector<Instance> instances_;
+    std::map<std::string, std::size_t> instance_of_;                        ///< by upper-case names
     std::map<std::string, std::pair<std::uint64_t, std::size_t>> left_out_; ///< by type: count, first line
     std::uint64_t both_sides_ = 0;
     std::uint64_t curved_ = 0;
     std::uint64_t members_ = 0; ///< of all sets
+    std::uint64_t placed_faces_ = 0;
 };
 
 } // namespace

@@ -73,7 +73,7 @@ public:
 
     /// An `int` of Gmsh.
     std::int64_t integer(const char* what) {
-        return binary_ ? take<std::int32_t>(what) : parsed<std::int64_t>(what, "a whole number");
+        return binary_ ? take<std::int32_t>(what) : parsed<std::int32_t>(what, "a whole number of 32 bits");
     }
     /// A `size_t` of Gmsh.
     std::uint64_t size(const char* what) {

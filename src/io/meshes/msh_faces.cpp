@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -158,6 +159,7 @@ FaceMesh MshFaces::finish(Diagnostics& diagnostics) {
 }
 
 const MshFaces::Group& MshFaces::group_of(Tags tags) {
+    tags.physical = std::abs(tags.physical); // below 0: the surface is turned round, as its nodes are
     if (tags.physical != 0) {
         tags.elementary = 0;
     }

@@ -34,7 +34,7 @@ struct MshElementType {
 /// become faces. Faces of second order and more are read by their corners.
 class MshFaces {
 public:
-    /// What an element belongs to; 0: nothing.
+    /// What an element belongs to, numbers of 32 bits; 0: nothing.
     struct Tags {
         std::int64_t physical = 0;
         std::int64_t elementary = 0;

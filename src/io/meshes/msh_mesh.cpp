@@ -205,10 +205,10 @@ private:
         MshFaces::Tags tags;
         for (std::uint32_t k = 0; k < count; ++k) {
             const std::string_view word = next_word(rest);
-            const auto tag = parse_integer<std::int64_t>(word);
+            const auto tag = parse_integer<std::int32_t>(word);
             if (!tag) {
-                fail(fmt::format("element {}: tag {} of {} is {}; must be a whole number", number, k + 1,
-                                 count, in_quotes(word)));
+                fail(fmt::format("element {}: tag {} of {} is {}; must be a whole number of 32 bits", number,
+                                 k + 1, count, in_quotes(word)));
             }
             if (k < 2) {
                 (k == 0 ? tags.physical : tags.elementary) = *tag;

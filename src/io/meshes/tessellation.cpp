@@ -1,5 +1,6 @@
 #include "io/meshes/tessellation.hpp"
 
+#include "core/box_tree.hpp"
 #include "hemi/scene/scene.hpp"
 
 #include <GL/glu.h>
@@ -9,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <limits>
 #include <map>
 #include <memory>
@@ -20,7 +22,7 @@ namespace hemi::io {
 
 namespace {
 
-constexpr std::size_t most_corners = 10'000; // an outline that crosses itself takes time by their square
+constexpr std::size_t most_corners = 10'000; // takes time by their square, at worst
 using Corners = std::array<std::size_t, 3>;
 
 /// Points of a polygon, as it has them and in the plane that it is seen in, about one in size.
@@ -55,6 +57,7 @@ struct Triangles {
     Points& points;
     std::vector<std::size_t> corners;
     bool failed = false;
+    std::exception_ptr thrown; ///< by a callback: no exception may pass through the tessellator's C
 };
 
 Triangles& triangles_of(void* user) {
@@ -69,35 +72,55 @@ std::size_t index_of(const void* number) {
     return reinterpret_cast<std::uintptr_t>(number) - 1;
 }
 
+/// Calls a function that may throw for want of memory; after that, no other.
+template <class Function>
+void guard(void* user, const Function& function) noexcept {
+    Triangles& triangles = triangles_of(user);
+    if (triangles.thrown) {
+        return;
+    }
+    try {
+        function(triangles);
+    } catch (...) {
+        triangles.thrown = std::current_exception();
+    }
+}
+
 void take_vertex(void* number, void* user) noexcept {
-    triangles_of(user).corners.push_back(index_of(number));
+    guard(user, [number](Triangles& triangles) { triangles.corners.push_back(index_of(number)); });
 }
 
 /// Two edges meet: where corners of theirs lie upon each other, the corner is that of both.
 void take_combined(GLdouble place[3], void* numbers[4], GLfloat weights[4], void** result,
                    void* user) noexcept {
-    Points& points = triangles_of(user).points;
-    Vec3 point(0.0);
-    for (int k = 0; k < 4; ++k) {
-        if (numbers[k] == nullptr) {
-            continue;
+    *result = numbers[0];
+    guard(user, [&](Triangles& triangles) {
+        Points& points = triangles.points;
+        Vec3 point(0.0);
+        for (int k = 0; k < 4; ++k) {
+            if (numbers[k] == nullptr) {
+                continue;
+            }
+            const std::size_t index = index_of(numbers[k]);
+            if (std::hypot(points.seen[index].x - place[0], points.seen[index].y - place[1]) < 1e-9) {
+                *result = numbers[k];
+                return;
+            }
+            point += static_cast<double>(weights[k]) * points.at[index];
         }
-        const std::size_t index = index_of(numbers[k]);
-        if (std::hypot(points.seen[index].x - place[0], points.seen[index].y - place[1]) < 1e-9) {
-            *result = numbers[k];
-            return;
-        }
-        point += static_cast<double>(weights[k]) * points.at[index];
-    }
-    points.at.push_back(point);
-    points.seen.emplace_back(place[0], place[1], 0.0);
-    *result = number_of(points.at.size() - 1);
+        points.at.push_back(point);
+        points.seen.emplace_back(place[0], place[1], 0.0);
+        *result = number_of(points.at.size() - 1);
+    });
 }
 
 void take_edge_flag(GLboolean, void*) noexcept {} // with it, all is single triangles
 
-void take_error(GLenum, void* user) noexcept {
+void take_error(GLenum error, void* user) noexcept {
     triangles_of(user).failed = true;
+    if (error == GLU_OUT_OF_MEMORY) {
+        guard(user, [](Triangles&) { throw std::bad_alloc(); });
+    }
 }
 
 template <class Function>
@@ -107,6 +130,37 @@ _GLUfuncptr callback(Function* function) {
 
 double twice_area(const Vec3& a, const Vec3& b, const Vec3& c) {
     return glm::cross(b - a, c - a).z;
+}
+
+/// Whether edges of contours cross each other more often than there are corners, for which the tessellator
+/// would take time by the cube of their number. @param ends  of the contours' points
+bool crosses_itself_often(const Points& points, std::span<const std::size_t> ends) {
+    const std::vector<Vec3>& seen = points.seen;
+    std::vector<Bounds> boxes(seen.size());
+    std::vector<std::size_t> next(seen.size());
+    std::size_t first = 0;
+    for (const std::size_t end : ends) {
+        for (std::size_t k = first; k < end; ++k) {
+            next[k] = k + 1 < end ? k + 1 : first;
+            boxes[k].add(seen[k]);
+            boxes[k].add(seen[next[k]]);
+        }
+        first = end;
+    }
+    const BoxTree tree(boxes);
+    const auto parts = [&](std::size_t edge, std::size_t other) { // the ends of the other, clearly
+        constexpr double clearly = 1e-12;
+        const double a = twice_area(seen[edge], seen[next[edge]], seen[other]);
+        const double b = twice_area(seen[edge], seen[next[edge]], seen[next[other]]);
+        return std::min(a, b) < -clearly && std::max(a, b) > clearly;
+    };
+    std::size_t crossings = 0;
+    for (std::size_t k = 0; k < seen.size() && crossings <= seen.size(); ++k) {
+        tree.overlapping(boxes[k], [&](std::uint32_t other) {
+            crossings += other > k && parts(k, other) && parts(other, k) ? 1 : 0;
+        });
+    }
+    return crossings > seen.size();
 }
 
 /// Pairs of triangles at their longest common edges become quadrilaterals.
@@ -194,11 +248,17 @@ std::optional<std::string> tessellate(std::span<const Vec3> outline, std::span<c
             turns_left ? add_contour(hole.rbegin(), hole.rend()) : add_contour(hole.begin(), hole.end());
     }
 
+    const char* const crossed = holes.empty()
+                                    ? "edges that cross each other"
+                                    : "edges that cross each other, or a hole that does not lie in it";
+    if (crosses_itself_often(points, ends)) {
+        return crossed;
+    }
     const std::unique_ptr<GLUtesselator, decltype(&gluDeleteTess)> tessellator(gluNewTess(), &gluDeleteTess);
     if (!tessellator) {
         throw std::bad_alloc();
     }
-    Triangles result{points, {}};
+    Triangles result{points, {}, false, nullptr};
     GLUtesselator* const tess = tessellator.get();
     gluTessCallback(tess, GLU_TESS_VERTEX_DATA, callback(&take_vertex));
     gluTessCallback(tess, GLU_TESS_COMBINE_DATA, callback(&take_combined));
@@ -217,6 +277,9 @@ std::optional<std::string> tessellate(std::span<const Vec3> outline, std::span<c
         gluTessEndContour(tess);
     }
     gluTessEndPolygon(tess);
+    if (result.thrown) {
+        std::rethrow_exception(result.thrown);
+    }
 
     std::vector<Corners> triangles;
     double twice = 0.0;
@@ -230,8 +293,7 @@ std::optional<std::string> tessellate(std::span<const Vec3> outline, std::span<c
     }
     // Any crossing adds to the area that is covered, or takes from it.
     if (result.failed || !(std::abs(twice - wanted) <= 1e-7 * std::abs(wanted))) {
-        return holes.empty() ? "edges that cross each other"
-                             : "edges that cross each other, or a hole that does not lie in it";
+        return crossed;
     }
     join(points, triangles, pieces);
     return std::nullopt;

@@ -9,13 +9,15 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <span>
 
 namespace hemi::io {
 
 namespace {
 
-/// VTK's numbers of the cells that are surfaces, and how many of their first points are corners; 0: all.
+/// VTK's numbers of the cells that are surfaces, and how many of their first points are corners; 0: all, or
+/// the first half of those that are curved.
 struct CellType {
     int number;
     std::size_t corners;
@@ -27,8 +29,11 @@ constexpr std::array surfaces{CellType{5, 3, false}, CellType{triangle_strip, 0,
                               CellType{7, 0, false}, CellType{pixel, 4, false},
                               CellType{9, 4, false}, CellType{22, 3, true},
                               CellType{23, 4, true}, CellType{28, 4, true},
-                              CellType{34, 3, true}, CellType{69, 3, true},
-                              CellType{70, 4, true}};
+                              CellType{30, 4, true}, CellType{34, 3, true},
+                              CellType{36, 0, true}, CellType{61, 3, true},
+                              CellType{62, 4, true}, CellType{69, 3, true},
+                              CellType{70, 4, true}, CellType{76, 3, true},
+                              CellType{77, 4, true}};
 
 } // namespace
 
@@ -76,13 +81,14 @@ void VtkFaces::add(const VtkCells& cells) {
             begin = end;
             continue;
         }
-        const std::size_t wanted = type->corners == 0 ? 3 : type->corners;
+        const std::size_t wanted = type->corners != 0 ? type->corners : type->curved ? 6 : 3;
         if (size < wanted) {
             refuse(k,
                    fmt::format("{} points; a cell of type {} has at least {}", size, type->number, wanted));
         }
         corners.clear();
-        for (std::size_t c = 0; c < (type->corners == 0 ? size : wanted); ++c) {
+        const std::size_t count = type->corners != 0 ? wanted : type->curved ? size / 2 : size;
+        for (std::size_t c = 0; c < count; ++c) {
             const std::int64_t point = cells.nodes[static_cast<std::size_t>(begin) + c];
             if (point < 0 || point >= static_cast<std::int64_t>(cells.points.size())) {
                 refuse(k, fmt::format("point {}; there are {}, counted from 0", point, cells.points.size()));
@@ -90,6 +96,10 @@ void VtkFaces::add(const VtkCells& cells) {
             corners.push_back(cells.points[static_cast<std::size_t>(point)]);
         }
         curved_ += type->curved ? 1 : 0;
+        if (!cells.groups.empty() && !std::isfinite(cells.groups[k])) {
+            refuse(k, fmt::format("{} {}; must be a finite number", in_quotes(cells.group_array),
+                                  cells.groups[k]));
+        }
         const std::uint32_t group = faces_.group(
             cells.groups.empty() ? "default" : fmt::format("{}_{}", cells.group_array, cells.groups[k]));
         if (type->number == triangle_strip) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -201,9 +202,6 @@ private:
         }
         for (std::uint64_t k = 0; k < tuples * components; ++k) {
             values.push_back(binary_ ? binary_value(type, size) : text_value());
-            if (!(std::abs(values.back()) < 1e300)) {
-                fail(fmt::format("{}; must be a finite number", values.back()));
-            }
         }
         return values;
     }
@@ -217,11 +215,16 @@ private:
 
     double text_value() {
         const std::string_view word = need_word();
-        const auto value = parse_number(word);
-        if (!value) {
-            fail(fmt::format("{}; must be a finite number", in_quotes(word)));
+        if (const auto value = parse_number(word)) {
+            return *value;
         }
-        return *value;
+        // Not a number, or infinite, which arrays that are not used may be.
+        double value = 0.0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || end != word.data() + word.size()) {
+            fail(fmt::format("{}; must be a number", in_quotes(word)));
+        }
+        return value;
     }
 
     double binary_value(std::string_view type, std::size_t size) {

@@ -23,8 +23,8 @@ std::vector<bool> named_groups(const Scene& scene, const std::vector<std::string
         } else if (name == "*") {
             named.assign(scene.groups.size(), true);
         } else {
-            throw InputError(fmt::format("{}: no group {} to {}{}", file, in_quotes(name), purpose,
-                                         did_you_mean_or_list(name, scene.groups)));
+            throw InvalidArgument(fmt::format("{}: no group {} to {}{}", file, in_quotes(name), purpose,
+                                              did_you_mean_or_list(name, scene.groups)));
         }
     }
     return named;
@@ -37,10 +37,20 @@ void set_sides(Scene& scene, const SceneReaderOptions& options, const std::strin
     const auto one_sided = named_groups(scene, options.one_sided_groups, "make one-sided", file);
     const auto two_sided = named_groups(scene, options.two_sided_groups, "make two-sided", file);
     const auto flipped = named_groups(scene, options.flipped_groups, "turn round", file);
+    for (std::size_t g = 0; g < scene.groups.size(); ++g) {
+        if (one_sided[g] && two_sided[g]) {
+            throw InvalidArgument(fmt::format("{}: group {} cannot be made both two-sided and one-sided",
+                                              file, in_quotes(scene.groups[g])));
+        }
+    }
     for (Surface& surface : scene.surfaces) {
         surface.two_sided = two_sided[surface.group] || (surface.two_sided && !one_sided[surface.group]);
     }
     const OrientedFaces oriented = orient(scene, options.orientation);
+    if (options.orientation != Orientation::as_read) {
+        diagnostics.note(
+            fmt::format("{}: {} of {} faces turned round", file, oriented.turned, scene.surfaces.size()));
+    }
     if (oriented.undecided > 0) {
         diagnostics.warn(
             fmt::format("{}: {} faces enclose no volume and are not turned", file, oriented.undecided));

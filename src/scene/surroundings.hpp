@@ -1,0 +1,61 @@
+#pragma once
+
+#include "core/box_tree.hpp"
+#include "hemi/core/geometry.hpp"
+
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// One side of a piece of a face.
+struct PieceSide {
+    std::uint32_t face = 0;
+    std::uint32_t piece = 0;
+    bool back = false;
+
+    auto operator<=>(const PieceSide&) const = default;
+};
+
+/// What hides others: a face, or a piece of one.
+struct Occluder {
+    static constexpr std::uint32_t whole = 0xFFFFFFFFu; ///< no piece
+
+    std::span<const Vec3> corners;
+    Vec3 normal;
+    std::uint32_t face;
+    std::uint32_t piece; ///< or `whole`
+    bool front;          ///< radiates from its front
+    bool back;
+};
+
+/// What a point beside a face sees.
+struct Sight {
+    bool open = false;            ///< nothing in some direction, or a whole face: no more was looked at
+    int backs = 0;                ///< in so many directions it sees what does not radiate
+    std::vector<PieceSide> sides; ///< in the others sides of pieces, which do: one for every direction
+
+    [[nodiscard]] bool only_backs() const { return !open && sides.empty(); }
+};
+
+/// Directions over a hemisphere about `normal`, evenly spread: 64.
+[[nodiscard]] std::vector<Vec3> hemisphere(const Vec3& normal);
+
+/// All that hides others in a scene.
+class Surroundings {
+public:
+    /// @param slack  what is no farther from an occluder's border meets it
+    Surroundings(std::vector<Occluder> occluders, double slack);
+
+    /// @param face  is not seen itself
+    [[nodiscard]] Sight look(std::uint32_t face, const Vec3& eye, std::span<const Vec3> rays) const;
+
+private:
+    std::vector<Occluder> occluders_;
+    BoxTree tree_;
+    double slack_;
+};
+
+} // namespace hemi
