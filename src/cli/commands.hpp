@@ -13,6 +13,7 @@ namespace hemi::cli {
 [[nodiscard]] ExitStatus run(const TradeArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const HeatArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal);
+[[nodiscard]] ExitStatus run(const PointsArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const RenderArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ViewArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const BakeArguments& arguments, const Terminal& terminal);

@@ -121,9 +121,6 @@ ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, c
     const LoadedScene loaded = load_scene(arguments.scene, terminal);
     seconds["load"] = loaded.seconds;
     FormFactors factors = compute(arguments, loaded, terminal, checkpoint, seconds);
-    if (arguments.patches) {
-        loaded.write_patches(*arguments.patches);
-    }
     Diagnostics diagnostics;
     const bool raw = writes_rows(arguments) && holds_raw_rows(*arguments.output);
     if (raw) {
@@ -134,6 +131,9 @@ ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, c
     const Stopwatch repair_watch;
     prepare_form_factors(factors, arguments.rows.factors.repair);
     seconds["repair"] = repair_watch.seconds();
+    if (arguments.patches) {
+        loaded.write_patches(*arguments.patches, factors.matrix);
+    }
     if (writes_rows(arguments) && !raw) {
         write_prepared(*arguments.output, factors, loaded, diagnostics);
     }

@@ -5,12 +5,14 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/io/vtp_file.hpp"
 #include "hemi/scene/orientation.hpp"
 #include "hemi/scene/thermal_exitance.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace hemi::cli {
@@ -151,6 +153,16 @@ io::ResultFile LoadedScene::result(Solution solution) const {
 
 void LoadedScene::write_patches(const std::filesystem::path& path) const {
     io::write_patches_csv(path, patches(), as_read ? as_read->left : io::PatchPlaces());
+}
+
+void LoadedScene::write_patches(const std::filesystem::path& path, const FormFactorMatrix& factors) const {
+    std::vector<double> environment;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        environment.push_back(factors.known(i) ? factors.row(i).environment
+                                               : std::numeric_limits<double>::quiet_NaN());
+    }
+    const std::vector<io::CellArray> arrays{{"environment", means(environment, 1), {}}};
+    io::write_patch_table(path, patches(), arrays, as_read ? as_read->left : io::PatchPlaces());
 }
 
 void refuse_chosen_settings(const CommonOptions& common, const RowOptions& rows) {

@@ -4,6 +4,7 @@
 #include "cli/report/text.hpp"
 #include "cli/terminal.hpp"
 #include "hemi/io/result_file.hpp"
+#include "hemi/matrix/form_factor_matrix.hpp"
 #include "hemi/scene/imprint.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
@@ -60,6 +61,8 @@ struct LoadedScene {
     [[nodiscard]] io::ResultFile result(Solution solution) const;
     /// --patches
     void write_patches(const std::filesystem::path& path) const;
+    /// The same with what the rows of the mesh say: environment shares, empty where rows are not known.
+    void write_patches(const std::filesystem::path& path, const FormFactorMatrix& factors) const;
 };
 
 /// Reads the scene and cuts it into patches, after its faces were cut where they touch;

@@ -237,7 +237,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     report_no_fronts(sums, factors.matrix, terminal);
     report_buried(sums, terminal);
     if (arguments.patches) {
-        loaded.write_patches(*arguments.patches);
+        loaded.write_patches(*arguments.patches, factors.matrix);
     }
     // Stored before what may be cancelled, and again with it.
     write_solution(arguments, loaded, solution, true);

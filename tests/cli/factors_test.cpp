@@ -117,8 +117,18 @@ TEST_CASE("factors: the summary, patches and formats", "[cli]") {
     CHECK(summary.out_has("row sums"));
     const auto patches = lines_of(directory.read("p.csv"));
     REQUIRE(patches.size() == 25);
-    CHECK(patches[0] == "index,group,area,cx,cy,cz,nx,ny,nz");
-    CHECK(patches[1] == "0,floor,0.25,0.25,0.25,0,0,0,1");
+    CHECK(patches[0] == "index,group,area,cx,cy,cz,nx,ny,nz,environment");
+    CHECK(patches[1].starts_with("0,floor,0.25,0.25,0.25,0,0,0,1,"));
+    // Where the ceiling is missing, what it would get is the environment's: the mean over the floor.
+    REQUIRE(run_hemi({"factors", directory.write("open.json", open_cube(2, "open")), "--patches",
+                      directory.path("open.csv"), "--device", "cpu"})
+                .status == 0);
+    double sky = 0.0;
+    for (const std::string& line : lines_of(directory.read("open.csv"))) {
+        sky +=
+            line.find(",floor,") != std::string::npos ? std::stod(line.substr(line.rfind(',') + 1)) / 4 : 0.0;
+    }
+    CHECK(sky == Approx(0.19982).margin(1e-3));
 
     const Outcome csv = run_hemi(quick({"factors", scene, "-o", "-"}));
     CHECK(csv.out.rfind("i,j,F\n0,", 0) == 0);

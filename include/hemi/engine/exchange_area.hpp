@@ -24,6 +24,13 @@ namespace hemi {
 /// SIGGRAPH 1989.
 [[nodiscard]] double point_factor(const Vec3& at, const Vec3& normal, std::span<const Vec3> polygon);
 
+/// Solid angle of a polygon's front, unoccluded, in steradians, up to 2 pi. 0 from its back or in its plane.
+/// @param at       position of the observer, scene units
+/// @param polygon  3 to 6 corners, planar, convex, counter-clockwise about its front.
+/// Source: A. Van Oosterom, J. Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30,
+/// 1983.
+[[nodiscard]] double solid_angle(const Vec3& at, std::span<const Vec3> polygon);
+
 /// Exchange areas A_i F(i, j) of all pairs of patches, unoccluded, in scene units squared.
 ///
 /// Only the parts of two patches that lie in front of each other count. Far pairs are integrated over both

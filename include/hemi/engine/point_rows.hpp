@@ -13,11 +13,16 @@
 
 namespace hemi {
 
-/// A place on a surface that receives light, with a direction that it faces.
+/// SurfacePoint::surface of a point anywhere in space.
+inline constexpr std::uint32_t no_surface = 0xFFFFFFFF;
+
+/// A place that receives light, on a surface or anywhere else, with a direction that it faces.
 struct SurfacePoint {
     Vec3 position{0.0};         ///< scene units
     Vec3 normal{0.0, 0.0, 1.0}; ///< of unit length
-    std::uint32_t surface = 0;  ///< index of the surface that it lies on: its plane hides nothing
+    /// Index of the surface that it lies on, which hides nothing; or no_surface. Surfaces in whose plane the
+    /// point lies, to rounding, hide nothing either.
+    std::uint32_t surface = 0;
 };
 
 /// Visibility of the patches from points, by one hemicube each: row k is that of point k, its columns are the

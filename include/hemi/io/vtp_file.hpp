@@ -24,9 +24,18 @@ struct CellArray {
 /// @throws InvalidArgument for arrays of another length, values that are not finite; IoError
 void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::span<const CellArray> arrays);
 
-/// The same as a table: one line a patch with index,group,area,cx,cy,cz,nx,ny,nz (index from 0; shortest
-/// digits that read back equal), then a column for every component of the arrays, `name` or `name_component`.
-/// Cells of values that are not a number are empty.
+/// Points as PolyData (.vtp), each a vertex; point data are `normals`, where there are any, and `arrays`.
+/// @param path       of the file
+/// @param positions  P
+/// @param normals    P, or none
+/// @param arrays     values of points in place of patches
+/// @throws InvalidArgument for arrays of another length, values that are not finite; IoError
+void write_points_vtp(const std::filesystem::path& path, std::span<const Vec3> positions,
+                      std::span<const Vec3> normals, std::span<const CellArray> arrays);
+
+/// The same as write_vtp() as a table: one line a patch with index,group,area,cx,cy,cz,nx,ny,nz (index from
+/// 0; shortest digits that read back equal), then a column for every component of the arrays, `name` or
+/// `name_component`. Cells of values that are not a number are empty.
 /// @param path    of the file
 /// @param mesh    N patches
 /// @param arrays  columns

@@ -19,6 +19,7 @@ enum class Phase {
     gather,         ///< radiosity at vertices; units are vertices
     error_estimate, ///< better rows of a sample
     preview,        ///< a coarse solution; units are rows
+    points,         ///< values at points; units are rows
 };
 
 /// Words of Phase, for people.
@@ -31,7 +32,8 @@ struct Names<Phase> {
                                                   {Phase::radiosity, "radiosity"},
                                                   {Phase::gather, "gather"},
                                                   {Phase::error_estimate, "estimate of errors"},
-                                                  {Phase::preview, "coarse preview"}};
+                                                  {Phase::preview, "coarse preview"},
+                                                  {Phase::points, "points"}};
 };
 
 /// What long work tells, and asks, while it goes on. All calls come from the thread that started the work;

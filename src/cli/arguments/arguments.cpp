@@ -2,6 +2,7 @@
 
 #include "cli/arguments/completion.hpp"
 #include "cli/arguments/options.hpp"
+#include "cli/arguments/points_arguments.hpp"
 #include "cli/arguments/scene_arguments.hpp"
 #include "cli/arguments/usage_errors.hpp"
 #include "cli/arguments/version.hpp"
@@ -322,7 +323,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     output.path("--result", "FILE.hres", a.result, "the whole solution, for `hemi render` and `hemi view`");
     output.path("--radiosity", "FILE.csv", a.radiosity,
                 "exitance, irradiance, radiosity and its error of every patch");
-    output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
+    output.path("--patches", "FILE.csv", a.patches, "area, centre, normal, environment share of every patch");
     add_picture(app, a.picture, picture);
     add_gather(app, a.gather);
     add_common(app, a.common);
@@ -345,7 +346,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
         "form factors: .hff .mtx .csv .npz .npy .h5, View3D's .txt .vf, Elmer's .dat .bin, EnergyPlus' .idf, "
         "ParaView's .vtp; - for .csv on stdout");
     add_resume(app, a.rows, file);
-    output.path("--patches", "FILE.csv", a.patches, "index, group, area, centre and normal of every patch");
+    output.path("--patches", "FILE.csv", a.patches, "area, centre, normal, environment share of every patch");
     auto* row = output.value("--row", "I", "print one row, largest first, with names",
                              [&a](const std::string& text) { a.row = to_index("--row", text, 0); });
     output.flag("--by-group", a.by_group, "sum over named groups: a table, or with -o FILE.csv the file");
@@ -454,6 +455,19 @@ void add_exchange(CLI::App& app, ExchangeArguments& a) {
     app.footer("Examples:\n"
                "  hemi exchange scenes/furnace-hot.json\n"
                "  hemi exchange room.obj --emissivity walls=0.9 -o room.csv");
+}
+
+void add_points(CLI::App& app, PointsArguments& a) {
+    add_scene(app, a.scene, "SCENE|RESULT", ".hres");
+    add_enclosure(app, a.scene, a.rows);
+    add_rows(app, a.rows);
+    add_repair(app, a.rows.factors.repair);
+    add_max_memory(app, a.rows);
+    add_environment(app, a.scene);
+    add_solver(app, a.solver);
+    add_heat_options(app, a.heat, true);
+    add_point_options(app, a);
+    add_common(app, a.common);
 }
 
 void add_render(CLI::App& app, RenderArguments& a) {
@@ -635,6 +649,8 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
     add_command(app, "heat", "Net heat fluxes and temperatures", add_heat, chosen);
     add_command(app, "exchange", "Grey exchange between groups: Gebhart factors, script-F, conductances",
                 add_exchange, chosen);
+    add_command(app, "points", "Irradiance, view of the sky and radiant temperature at points", add_points,
+                chosen);
     add_command(app, "render", "Picture of a stored solution", add_render, chosen);
 #ifdef HEMI_WITH_VIEWER
     add_command(app, "view", "Window with an orbiting camera", add_view, chosen);

@@ -6,6 +6,7 @@
 #include "hemi/display/picture.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/matrix/repair.hpp"
+#include "hemi/pipeline/points.hpp"
 #include "hemi/pipeline/refinement.hpp"
 #include "hemi/pipeline/settings.hpp"
 #include "hemi/scene/patch_mesh.hpp"
@@ -137,6 +138,29 @@ struct ExchangeArguments {
     std::optional<std::filesystem::path> output; ///< .csv
 };
 
+struct PointsArguments {
+    CommonOptions common;
+    SceneOptions scene;
+    RowOptions rows;
+    SolverSettings solver;
+    HeatOptions heat;
+    std::optional<std::filesystem::path> points; ///< .csv
+    struct Grid {
+        std::string group;
+        double spacing = 0.0;
+        double height = 0.0;
+    };
+    std::optional<Grid> grid;
+    bool spheres = false; ///< points have no normals
+    std::optional<Posture> posture;
+    std::optional<double> facing; ///< degrees
+    std::optional<std::filesystem::path> output;
+    bool by_group = false;
+    std::string show;                           ///< column of the map; empty: the first irradiance
+    std::optional<std::array<double, 2>> range; ///< of the map
+    std::optional<std::filesystem::path> factors;
+};
+
 struct RenderArguments {
     CommonOptions common;
     std::filesystem::path input;
@@ -184,7 +208,7 @@ struct DevicesArguments {
 };
 
 using Arguments = std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments,
-                               HeatArguments, ExchangeArguments, RenderArguments,
+                               HeatArguments, ExchangeArguments, PointsArguments, RenderArguments,
 #ifdef HEMI_WITH_VIEWER
                                ViewArguments,
 #endif

@@ -158,6 +158,26 @@ double point_factor(const Vec3& at, const Vec3& normal, std::span<const Vec3> po
     return std::max(0.0, -sum / (2.0 * std::numbers::pi));
 }
 
+double solid_angle(const Vec3& at, std::span<const Vec3> polygon) {
+    if (polygon.size() < 3 || glm::dot(area_vector(polygon), at - polygon[0]) <= 0.0) {
+        return 0.0;
+    }
+    // Seen from the front the triple product is negative.
+    const Vec3 a = polygon[0] - at;
+    const double length_a = glm::length(a);
+    double sum = 0.0;
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+        const Vec3 b = polygon[k] - at;
+        const Vec3 c = polygon[k + 1] - at;
+        const double length_b = glm::length(b);
+        const double length_c = glm::length(c);
+        const double below = length_a * length_b * length_c + glm::dot(a, b) * length_c +
+                             glm::dot(a, c) * length_b + glm::dot(b, c) * length_a;
+        sum += 2.0 * std::atan2(-glm::dot(a, glm::cross(b, c)), below);
+    }
+    return std::max(0.0, sum);
+}
+
 ExchangeAreas::ExchangeAreas(const PatchMesh& mesh, ExchangeRule rule)
     : rule_(rule), origin_(mesh.bounds().centre()), rounding_(coordinate_rounding(mesh.bounds())),
       far_(rule == ExchangeRule::standard ? standard_reach[0].distance : exact_reach[0].distance),

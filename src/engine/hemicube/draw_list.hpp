@@ -84,6 +84,11 @@ struct DrawList {
     std::vector<std::uint32_t> item_of_id;               ///< draw id -> item
     std::vector<PolygonRange> polygons_of_surface;       ///< those that show the surface
     double tolerance = 0.0;                              ///< lengths below are rounding: scene units
+
+    /// Those that an eye on a surface lies on; none for one that is on no surface.
+    [[nodiscard]] PolygonRange polygons_at(std::uint32_t surface) const {
+        return surface < polygons_of_surface.size() ? polygons_of_surface[surface] : PolygonRange();
+    }
 };
 
 /// @throws InvalidArgument if a surface is cut more than 65,535 ways along an edge.

@@ -14,7 +14,7 @@ struct EyePoint {
     Vec3 position{0.0};
     Vec3 normal{0.0};
     double share = 1.0;        ///< of its patch that it stands for; a patch's shares sum to 1
-    std::uint32_t surface = 0; ///< the surface that it lies on
+    std::uint32_t surface = 0; ///< the surface that it lies on; another number: none
     std::uint32_t index = 0;   ///< among the eye points of its patch
 };
 

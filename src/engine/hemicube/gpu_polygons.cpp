@@ -252,8 +252,9 @@ void GpuPolygons::add(const EyePoint& eye, const EyeFrame& frame, std::uint32_t 
     FaceView view;
     view.eye_high = position.high;
     view.eye_low = position.low;
-    view.own_polygon = list_.polygons_of_surface[eye.surface].first;
-    view.own_count = list_.polygons_of_surface[eye.surface].count;
+    const PolygonRange own = list_.polygons_at(eye.surface);
+    view.own_polygon = own.first;
+    view.own_count = own.count;
     view.texel = 2.0f / static_cast<float>(atlas_.resolution);
     view.tolerance = static_cast<float>(list_.tolerance * coordinates_.scale);
     view.near = 0.5f * view.tolerance; // what comes nearer lies on the eye, and is not drawn

@@ -105,7 +105,7 @@ std::unique_ptr<RawRowProvider> make_raw_engine(const PatchMesh& mesh, const Hem
 EyePoints eyes_at(std::span<const SurfacePoint> points, const PatchMesh& mesh) {
     EyePoints eyes;
     for (const SurfacePoint& point : points) {
-        if (point.surface >= mesh.surfaces().size()) {
+        if (point.surface != no_surface && point.surface >= mesh.surfaces().size()) {
             throw InvalidArgument(fmt::format("point {} lies on surface {}; there are {}", eyes.first.size(),
                                               point.surface, mesh.surfaces().size()));
         }

@@ -84,7 +84,7 @@ void ViewBuilder::transform(const EyePoint& eye, const EyeFrame& frame) {
 
 void ViewBuilder::cull(const EyePoint& eye) {
     seen_.clear();
-    const PolygonRange own = list_.polygons_of_surface[eye.surface];
+    const PolygonRange own = list_.polygons_at(eye.surface);
     for (std::uint32_t p = 0; p < list_.polygons.size(); ++p) {
         const DrawPolygon& polygon = list_.polygons[p];
         const Vec3 to_eye = eye.position - polygon.centre;

@@ -53,7 +53,7 @@ public:
               Coverage* coverage) override {
         projection_.set(eye, frame);
         target_.clear(weights, coverage);
-        own_ = scene_.list.polygons_of_surface[eye.surface];
+        own_ = scene_.list.polygons_at(eye.surface);
         small_.count = 0;
         if (coverage != nullptr) {
             draw_all<true>();

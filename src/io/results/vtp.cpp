@@ -80,11 +80,11 @@ void begin(BinaryOutput& body, std::uint64_t numbers) {
     body.put(numbers * sizeof(std::uint64_t));
 }
 
-void check(const CellArray& array, std::size_t patches) {
+void check(const CellArray& array, std::size_t count, const char* what) {
     const std::size_t components = std::max<std::size_t>(array.components.size(), 1);
-    if (array.values.size() != patches * components) {
-        throw InvalidArgument(fmt::format("{}: {} values for {} patches of {} components", array.name,
-                                          array.values.size(), patches, components));
+    if (array.values.size() != count * components) {
+        throw InvalidArgument(fmt::format("{}: {} values for {} {} of {} components", array.name,
+                                          array.values.size(), count, what, components));
     }
     if (!std::all_of(array.values.begin(), array.values.end(), [](double v) { return std::isfinite(v); })) {
         throw InvalidArgument(fmt::format("{}: a value that is not finite", array.name));
@@ -104,7 +104,7 @@ std::uint64_t count_points(const PatchMesh& mesh) {
 
 void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::span<const CellArray> arrays) {
     for (const CellArray& array : arrays) {
-        check(array, mesh.size());
+        check(array, mesh.size(), "patches");
     }
     const std::uint64_t size = mesh.size();
     const std::uint64_t points = count_points(mesh);
@@ -173,6 +173,72 @@ void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::sp
     for (std::uint32_t i = 0; i < size; ++i) {
         end += mesh.surfaces()[mesh.surface_of()[i]].vertex_count;
         body.put(end);
+    }
+    body.text("\n</AppendedData>\n</VTKFile>\n");
+    body.commit();
+}
+
+void write_points_vtp(const std::filesystem::path& path, std::span<const Vec3> positions,
+                      std::span<const Vec3> normals, std::span<const CellArray> arrays) {
+    const std::uint64_t size = positions.size();
+    if (!normals.empty() && normals.size() != size) {
+        throw InvalidArgument(fmt::format("{} normals for {} points", normals.size(), size));
+    }
+    for (const CellArray& array : arrays) {
+        check(array, size, "points");
+    }
+    Head head;
+    head.open("?xml version=\"1.0\"?");
+    head.open("VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"");
+    head.open("PolyData");
+    head.open(fmt::format("Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
+                          "NumberOfStrips=\"0\" NumberOfPolys=\"0\"",
+                          size));
+    head.open("PointData");
+    if (!normals.empty()) {
+        head.array("Float64", "normals", 3 * size, {}, 3);
+    }
+    for (const CellArray& array : arrays) {
+        head.array("Float64", array.name, array.values.size(), array.components);
+    }
+    head.close("PointData");
+    head.open("Points");
+    head.array("Float64", "Points", 3 * size, {}, 3);
+    head.close("Points");
+    head.open("Verts");
+    head.array("Int64", "connectivity", size);
+    head.array("Int64", "offsets", size);
+    head.close("Verts");
+    head.close("Piece");
+    head.close("PolyData");
+
+    BinaryOutput body(path);
+    body.text(head.text() + "<AppendedData encoding=\"raw\">\n_");
+    const auto put_vectors = [&body](std::span<const Vec3> vectors) {
+        begin(body, 3 * vectors.size());
+        for (const Vec3& vector : vectors) {
+            body.put(vector.x);
+            body.put(vector.y);
+            body.put(vector.z);
+        }
+    };
+    if (!normals.empty()) {
+        put_vectors(normals);
+    }
+    for (const CellArray& array : arrays) {
+        begin(body, array.values.size());
+        for (const double value : array.values) {
+            body.put(value);
+        }
+    }
+    put_vectors(positions);
+    begin(body, size);
+    for (std::uint64_t p = 0; p < size; ++p) {
+        body.put(p);
+    }
+    begin(body, size);
+    for (std::uint64_t p = 0; p < size; ++p) {
+        body.put(p + 1);
     }
     body.text("\n</AppendedData>\n</VTKFile>\n");
     body.commit();

@@ -1,0 +1,385 @@
+#include "hemi/pipeline/points.hpp"
+#include "cli/commands.hpp"
+#include "cli/factor_source.hpp"
+#include "cli/heat_factors.hpp"
+#include "cli/output_paths.hpp"
+#include "cli/point_source.hpp"
+#include "cli/report/factor_report.hpp"
+#include "cli/report/points_report.hpp"
+#include "cli/report/seconds.hpp"
+#include "cli/terminal_observer.hpp"
+#include "hemi/core/buried.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/core/nearest_word.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/display/value_map.hpp"
+#include "hemi/io/image_file.hpp"
+#include "hemi/io/result_file.hpp"
+#include "hemi/io/scene_reader.hpp"
+#include "hemi/io/vtp_file.hpp"
+#include "hemi/pipeline/form_factors.hpp"
+#include "hemi/pipeline/light_balance.hpp"
+#include "hemi/pipeline/radiosity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace hemi::cli {
+
+namespace {
+
+/// What radiates, and what is known of it.
+struct Lit {
+    PatchMesh mesh;
+    Enclosure enclosure = Enclosure::automatic;
+    std::vector<std::string> channels;
+    Radiation radiation;
+    bool heat = false;
+    ExitStatus status = ExitStatus::ok;
+};
+
+/// The points, once the faces are known.
+struct Points {
+    std::vector<Receiver> points;
+    std::vector<PointGrid::Plane> planes; ///< of a grid
+};
+
+bool is_map(const PointsArguments& arguments) {
+    return arguments.output && extension_of(*arguments.output) == ".png";
+}
+
+Outputs check_outputs(const PointsArguments& arguments) {
+    if (arguments.points.has_value() == arguments.grid.has_value()) {
+        throw InvalidArgument("points needs points: --points FILE.csv or --grid GROUP SPACING HEIGHT");
+    }
+    Outputs outputs;
+    outputs.keep(arguments.scene.path);
+    for (const auto& input : {arguments.points, arguments.heat.table}) {
+        if (input) {
+            outputs.keep(*input);
+        }
+    }
+    if (arguments.factors) {
+        if (extension_of(*arguments.factors) != ".hff") {
+            throw InvalidArgument(
+                fmt::format("--factors {}: the name must end in .hff", arguments.factors->string()));
+        }
+        check_factor_input(outputs, {arguments.factors, std::nullopt});
+    }
+    if (arguments.output) {
+        outputs.add("-o", *arguments.output, {".csv", ".vtp", ".png"}, true);
+    }
+    if (is_map(arguments) && !arguments.grid) {
+        throw InvalidArgument(
+            fmt::format("-o {}: a map is that of a grid (--grid)", arguments.output->string()));
+    }
+    for (const auto& [option, given] :
+         {std::pair{"--show", !arguments.show.empty()}, std::pair{"--range", arguments.range.has_value()}}) {
+        if (given && !is_map(arguments)) {
+            throw InvalidArgument(fmt::format("{} is for maps: -o FILE.png", option));
+        }
+    }
+    outputs.refuse_with_json(arguments.common.json);
+    return outputs;
+}
+
+/// Whether something is said of heat, on the command line or in the scene.
+bool is_thermal(const PointsArguments& arguments) {
+    const HeatOptions& heat = arguments.heat;
+    if (!heat.temperature.empty() || !heat.heat_flux.empty() || !heat.power.empty() || heat.table) {
+        return true;
+    }
+    bool thermal = false;
+    if (extension_of(arguments.scene.path) == ".json") {
+        io::SceneReaderOptions reader = arguments.scene.reader;
+        reader.adiabatic = true;
+        Diagnostics ignored; // the scene is read again
+        const Scene scene = io::read_scene(arguments.scene.path, reader, ignored);
+        thermal = scene.thermal && !scene.thermal->conditions.empty();
+    }
+    if (!thermal && (!heat.emissivity.empty() || heat.environment || heat.unit)) {
+        throw InvalidArgument(fmt::format("--emissivity, --environment-temperature and --unit are for scenes "
+                                          "with temperatures; nothing is said of those of {}",
+                                          arguments.scene.path.string()));
+    }
+    return thermal;
+}
+
+Points find_points(const PointsArguments& arguments, const PatchMesh& faces) {
+    Points found;
+    if (arguments.points) {
+        found.points = read_points(*arguments.points);
+    } else {
+        PointGrid grid = points_of_grid(faces, *arguments.grid);
+        found.points = std::move(grid.points);
+        found.planes = std::move(grid.planes);
+    }
+    for (Receiver& point : found.points) {
+        if (arguments.spheres) {
+            point.normal.reset();
+        }
+    }
+    const bool any_sphere = std::any_of(found.points.begin(), found.points.end(),
+                                        [](const Receiver& point) { return !point.normal; });
+    if (arguments.posture && !any_sphere) {
+        throw InvalidArgument("--person needs points without normals; --spheres leaves those of a grid out");
+    }
+    return found;
+}
+
+Lit light_by_heat(const PointsArguments& arguments, LoadedScene& loaded, Observer& observer,
+                  const Terminal& terminal, Seconds& seconds) {
+    const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);
+    const FormFactors factors =
+        find_heat_rows(arguments.common, arguments.rows, {arguments.factors, std::nullopt}, loaded, observer,
+                       terminal, seconds);
+    report_buried(row_sums(factors.matrix), terminal);
+    const Stopwatch watch;
+    const HeatSolution solution = solve_heat(factors, problem, {}, observer);
+    seconds["solve"] = watch.seconds();
+    const EnclosureFinding enclosure = find_leaks(factors, arguments.rows.max_row_error);
+    report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, arguments.rows.max_row_error,
+                 terminal);
+    Lit lit{std::move(loaded.mesh),
+            loaded.scene.enclosure,
+            {},
+            radiation_of(problem, solution),
+            true,
+            enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance};
+    lit.channels = problem.bands > 1 ? loaded.scene.channels : std::vector<std::string>{"total"};
+    return lit;
+}
+
+Lit light(const PointsArguments& arguments, LoadedScene& loaded, Observer& observer, const Terminal& terminal,
+          Seconds& seconds) {
+    const PatchValues values = patch_values(loaded.scene, loaded.mesh);
+    const auto shines = [](double value) { return value > 0.0; };
+    const bool dark = std::none_of(values.exitance.begin(), values.exitance.end(), shines) &&
+                      std::none_of(values.environment.begin(), values.environment.end(), shines);
+    Radiation radiation{values.channels, values.exitance, values.environment};
+    ExitStatus status = ExitStatus::ok;
+    if (dark) {
+        terminal.detail("nothing radiates: no radiosity is computed");
+    } else if (arguments.factors || !reflecting_patches(loaded.scene, loaded.mesh).empty()) {
+        SolveArguments solve;
+        solve.common = arguments.common;
+        solve.rows = arguments.rows;
+        solve.factors = arguments.factors;
+        const Stopwatch rows_watch;
+        FormFactors factors = find_rows(
+            solve, loaded, arguments.factors ? all_patches(loaded.mesh.size()) : shining_patches(values),
+            observer, terminal, nullptr);
+        seconds["factors"] = rows_watch.seconds();
+        const Stopwatch repair_watch;
+        prepare_form_factors(factors, arguments.rows.factors.repair);
+        seconds["repair"] = repair_watch.seconds();
+        report_buried(row_sums(factors.matrix), terminal);
+        const Solution solution =
+            solve_radiosity(loaded.scene, loaded.mesh, factors, arguments.solver, observer, false);
+        seconds["solve"] = solution.seconds;
+        radiation = radiation_of(loaded.mesh, values, solution);
+        const EnclosureFinding enclosure = find_leaks(factors, arguments.rows.max_row_error);
+        report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, arguments.rows.max_row_error,
+                     terminal);
+        status = enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
+    }
+    return {std::move(loaded.mesh),
+            loaded.scene.enclosure,
+            loaded.scene.channels,
+            std::move(radiation),
+            false,
+            status};
+}
+
+/// @param find  gets the faces, before the work
+Lit light_of_scene(const PointsArguments& arguments, Observer& observer, const Terminal& terminal,
+                   Seconds& seconds, const std::function<void(const PatchMesh&)>& find) {
+    const bool heat = is_thermal(arguments);
+    if (arguments.posture && !heat) {
+        throw InvalidArgument(
+            fmt::format("--person needs temperatures, which neither {} nor --temperature has",
+                        arguments.scene.path.string()));
+    }
+    SceneOptions options = arguments.scene;
+    options.reader.adiabatic = heat;
+    LoadedScene loaded = heat ? load_thermal_scene("points", options, {arguments.factors, std::nullopt},
+                                                   arguments.heat, true, terminal)
+                              : load_scene(options, terminal);
+    seconds["load"] = loaded.seconds;
+    find(loaded.patches());
+    return heat ? light_by_heat(arguments, loaded, observer, terminal, seconds)
+                : light(arguments, loaded, observer, terminal, seconds);
+}
+
+Lit light_of_result(const PointsArguments& arguments, Seconds& seconds,
+                    const std::function<void(const PatchMesh&)>& find) {
+    const std::filesystem::path& path = arguments.scene.path;
+    if (extension_of(path) != ".hres") {
+        throw InvalidArgument(fmt::format("{}: points needs a scene ({}) or a stored solution (.hres)",
+                                          path.string(), io::scene_extensions()));
+    }
+    refuse_all_but(arguments.common,
+                   std::vector<std::string>{"--points", "--grid", "--spheres", "--output", "--by-group",
+                                            "--show", "--range", "--preset", "--resolution", "--shadow-rays",
+                                            "--seed", "--no-merge", "--device", "--jobs"},
+                   path);
+    const Stopwatch watch;
+    const io::ResultFile result = io::read_hres(path);
+    PatchMesh mesh(result.scene, result.subdivision);
+    find(result.surfaces_as_read.empty() ? mesh : PatchMesh(result.scene_as_read()));
+    Radiation radiation = radiation_of(mesh, patch_values(result.scene, mesh), result.solution);
+    seconds["load"] = watch.seconds();
+    return {std::move(mesh), result.scene.enclosure, result.scene.channels, std::move(radiation),
+            false,           ExitStatus::ok};
+}
+
+/// Values without those that are not numbers, which the format does not have.
+std::vector<io::CellArray> arrays_of(const PointColumns& columns) {
+    std::vector<io::CellArray> arrays;
+    for (std::size_t c = 0; c < columns.names.size(); ++c) {
+        std::vector<double> values = columns.values[c];
+        std::replace_if(
+            values.begin(), values.end(), [](double value) { return !std::isfinite(value); }, 0.0);
+        arrays.push_back({columns.names[c], std::move(values), {}});
+    }
+    return arrays;
+}
+
+void write_vtp(const std::filesystem::path& path, const std::vector<Receiver>& points,
+               const PointColumns& columns) {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;
+    bool any = false;
+    for (const Receiver& point : points) {
+        positions.push_back(point.position);
+        normals.push_back(point.normal.value_or(Vec3(0.0)));
+        any = any || point.normal;
+    }
+    io::write_points_vtp(path, positions, any ? normals : std::vector<Vec3>(), arrays_of(columns));
+}
+
+std::size_t shown_column(const PointsArguments& arguments, const PointColumns& columns) {
+    if (arguments.show.empty()) {
+        return 0;
+    }
+    const auto found = std::find(columns.names.begin(), columns.names.end(), arguments.show);
+    if (found == columns.names.end()) {
+        throw InvalidArgument(fmt::format("--show {}: there is no such column{}", arguments.show,
+                                          did_you_mean_or_list(arguments.show, columns.names)));
+    }
+    return static_cast<std::size_t>(found - columns.names.begin());
+}
+
+/// Writes the map. @return report of it
+Report write_map(const PointsArguments& arguments, const Points& points, const PointColumns& columns) {
+    const std::size_t column = shown_column(arguments, columns);
+    const std::vector<double>& values = columns.values[column];
+    std::array<double, 2> range{0.0, 1.0};
+    if (arguments.range) {
+        range = *arguments.range;
+    } else {
+        bool first = true;
+        for (const double value : values) {
+            if (std::isfinite(value)) {
+                range = first ? std::array{value, value}
+                              : std::array{std::min(range[0], value), std::max(range[1], value)};
+                first = false;
+            }
+        }
+        range[1] = range[0] < range[1] ? range[1] : range[0] + std::max(1e-6, 1e-6 * std::abs(range[0]));
+    }
+    std::vector<GridValues> grids;
+    auto next = values.begin();
+    for (const PointGrid::Plane& plane : points.planes) {
+        const auto end = next + static_cast<std::ptrdiff_t>(plane.cell.size());
+        grids.push_back({plane.columns, plane.rows, plane.cell, {next, end}});
+        next = end;
+    }
+    const ValueMap map = make_value_map(grids, range);
+    io::write_png(*arguments.output, map.width, map.height, map.rgb);
+    Report report;
+    report.add("map",
+               fmt::format("{} from {} (dark) to {} (bright)", columns.names[column], number_text(range[0]),
+                           number_text(range[1])),
+               {{"map", {{"column", columns.names[column]}, {"range", range}}}});
+    return report;
+}
+
+/// Writes what is asked for. @return report of it
+Report write(const PointsArguments& arguments, const Points& points, const PointColumns& columns) {
+    if (!arguments.output) {
+        return {};
+    }
+    if (is_map(arguments)) {
+        return write_map(arguments, points, columns);
+    }
+    if (extension_of(*arguments.output) == ".vtp") {
+        write_vtp(*arguments.output, points.points, columns);
+    } else {
+        io::write_table(*arguments.output, point_table(points.points, columns));
+    }
+    return {};
+}
+
+void report_points_inside(const PointValues& values, const Terminal& terminal) {
+    const auto inside = std::count_if(values.blocked.begin(), values.blocked.end(),
+                                      [](double share) { return share > buried_above; });
+    if (inside > 0) {
+        terminal.warn(
+            fmt::format("{} mostly backs of faces (\"blocked\"), such as points inside of bodies do",
+                        plural(static_cast<std::size_t>(inside), "point sees", "points see")));
+    }
+}
+
+std::string table_text(const io::TextTable& table) {
+    Table text(table.columns, 0);
+    for (const std::vector<std::string>& row : table.rows) {
+        std::vector<std::string> cells;
+        for (const std::string& cell : row) {
+            cells.push_back(cell.empty() ? "-" : number_text(std::stod(cell)));
+        }
+        text.add(std::move(cells));
+    }
+    return text.text();
+}
+
+} // namespace
+
+ExitStatus run(const PointsArguments& arguments, const Terminal& terminal) {
+    const Outputs outputs = check_outputs(arguments);
+    Seconds seconds({"load", "factors", "estimate", "repair", "solve", "points"});
+    TerminalObserver observer(terminal);
+    Points points;
+    const auto find = [&](const PatchMesh& faces) { points = find_points(arguments, faces); };
+    const Lit lit = io::is_scene_file(arguments.scene.path)
+                        ? light_of_scene(arguments, observer, terminal, seconds, find)
+                        : light_of_result(arguments, seconds, find);
+    const Stopwatch watch;
+    const PointValues values =
+        compute_point_values(lit.mesh, points.points, lit.radiation, lit.enclosure, arguments.rows.factors,
+                             arguments.facing.value_or(0.0), observer);
+    seconds["points"] = watch.seconds();
+    const PointsAsked asked{lit.channels, arguments.by_group ? lit.mesh.groups() : std::vector<std::string>(),
+                            lit.heat, arguments.posture, arguments.facing.has_value()};
+    const PointColumns columns = point_columns(points.points, values, asked);
+    Report report;
+    report.add("points", count_text(points.points.size()));
+    report.add(write(arguments, points, columns));
+    report.add(seconds.report());
+    Json json{{"schema", "hemi/points/1"}};
+    json.update(points_json(points.points, values, asked));
+    json.update(report.json);
+    report.json = std::move(json);
+    if (!arguments.output) {
+        report.text += "\n" + table_text(point_table(points.points, columns));
+    }
+    outputs.show(report, arguments.common.json, terminal);
+    report_points_inside(values, terminal);
+    return lit.status;
+}
+
+} // namespace hemi::cli

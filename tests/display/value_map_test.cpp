@@ -1,0 +1,57 @@
+#include "hemi/display/value_map.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <limits>
+
+using namespace hemi;
+
+namespace {
+
+/// The middle of a cell, of a map whose cells are 32 pixels wide.
+std::array<int, 3> colour_at(const ValueMap& map, std::uint32_t column, std::uint32_t row) {
+    const std::size_t at = (std::size_t{row} * 32 + 16) * map.width + column * 32 + 16;
+    return {map.rgb[at * 3], map.rgb[at * 3 + 1], map.rgb[at * 3 + 2]};
+}
+
+int brightness(const std::array<int, 3>& colour) {
+    return colour[0] + colour[1] + colour[2];
+}
+
+} // namespace
+
+TEST_CASE("value map: the first row is at the bottom, grids below each other, gaps white", "[display]") {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    const std::array<GridValues, 2> grids{GridValues{2, 2, {0, 1, 3}, {0.0, 10.0, none}},
+                                          GridValues{1, 1, {0}, {5.0}}};
+    const ValueMap map = make_value_map(grids, {0.0, 10.0});
+    REQUIRE(map.width == 64);
+    REQUIRE(map.height == 32 * 4); // two rows, one between, one row
+    const std::array<int, 3> white{255, 255, 255};
+    CHECK(colour_at(map, 0, 0) == white); // not in the grid
+    CHECK(colour_at(map, 1, 0) == white); // not a number
+    CHECK(colour_at(map, 0, 2) == white);
+    CHECK(colour_at(map, 1, 3) == white);
+    const int dark = brightness(colour_at(map, 0, 1));
+    const int middle = brightness(colour_at(map, 0, 3));
+    const int bright = brightness(colour_at(map, 1, 1));
+    CHECK(dark < middle);
+    CHECK(middle < bright);
+    // Values beyond the range have the colours of its ends.
+    const std::array<GridValues, 1> beyond{GridValues{2, 1, {0, 1}, {-5.0, 50.0}}};
+    const ValueMap ends = make_value_map(beyond, {0.0, 10.0});
+    CHECK(colour_at(ends, 0, 0) == colour_at(map, 0, 1));
+    CHECK(colour_at(ends, 1, 0) == colour_at(map, 1, 1));
+}
+
+TEST_CASE("value map: wide grids have small cells, and what does not fit is refused", "[display]") {
+    GridValues wide{500, 1, {499}, {1.0}};
+    CHECK(make_value_map(std::array{wide}, {0.0, 1.0}).width == 500);
+    wide.columns = 100;
+    CHECK_THROWS_AS(make_value_map(std::array{wide}, {0.0, 1.0}), InvalidArgument);
+    CHECK_THROWS_AS(make_value_map({}, {0.0, 1.0}), InvalidArgument);
+    CHECK_THROWS_AS(make_value_map(std::array{GridValues{1, 1, {0}, {1.0}}}, {1.0, 1.0}), InvalidArgument);
+    CHECK_THROWS_AS(make_value_map(std::array{GridValues{1, 1, {0}, {}}}, {0.0, 1.0}), InvalidArgument);
+}
