@@ -535,3 +535,49 @@ TEST_CASE("hemi exchange: conductances are reciprocal and balance", "[cli][heat]
     CHECK_FALSE(large.err_has("temperature"));
     CHECK(large.json()["seconds"]["estimate"] == 0.0);
 }
+
+TEST_CASE("hemi exchange --min: small conductances go to the others", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3, 2);
+    scene.erase("groups");
+    const std::string file = directory.write("box.json", scene);
+    const std::string table = directory.path("box.csv");
+    const Json whole = run_hemi(on_cpu({"exchange", file, "--json"})).json();
+    CHECK(whole["cutoff"].is_null());
+    const Outcome run = run_hemi(on_cpu({"exchange", file, "--json", "--min", "0.2", "-o", table}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json cut = run.json();
+    std::uint64_t dropped = 0;
+    double change = 0.0;
+    for (std::size_t g = 0; g < 6; ++g) {
+        double sum = cut["environment"][g].get<double>();
+        for (std::size_t h = 0; h < 6; ++h) {
+            const double was = whole["conductance"][g][h].get<double>();
+            const double is = cut["conductance"][g][h].get<double>();
+            sum += cut["script_f"][g][h].get<double>();
+            CHECK(is == cut["conductance"][h][g].get<double>());
+            CHECK((g == h || is == 0.0 || is >= 0.2));
+            dropped += g < h && is == 0.0 ? 1 : 0;
+            change = g != h && is > 0.0 ? std::max(change, std::abs(is / was - 1.0)) : change;
+        }
+        CHECK(sum == Approx(cut["emissivity"][g].get<double>()).epsilon(1e-9));
+    }
+    CHECK(dropped > 0);
+    CHECK(dropped < 15);
+    CHECK(cut["cutoff"]["min"] == 0.2);
+    CHECK(cut["cutoff"]["dropped"] == dropped);
+    CHECK(cut["cutoff"]["kept"] == 15 - dropped);
+    CHECK(cut["cutoff"]["largest_change"].get<double>() == Approx(change).epsilon(1e-9));
+    const std::string lines =
+        directory.read("box.csv"); // a line of names, groups with themselves, pairs both ways
+    CHECK(std::count(lines.begin(), lines.end(), '\n') ==
+          1 + 6 + 2 * (15 - static_cast<std::int64_t>(dropped)));
+    const Outcome told = run_hemi(on_cpu({"exchange", file, "--min", "0.2"}));
+    CHECK(told.out_has(std::to_string(dropped) + " of 15 conductances below 0.2 m²"));
+    const Outcome apart = run_hemi(on_cpu({"exchange", file, "--min", "100"}));
+    CHECK(apart.status == 0);
+    CHECK(apart.err_has("nothing is left between bottom, top, left, right, front, back"));
+    CHECK(run_hemi({"exchange", file, "--min", "0"}).status == 2);
+    CHECK(run_hemi({"exchange", file, "--min", "small"}).status == 2);
+}

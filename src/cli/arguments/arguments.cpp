@@ -439,13 +439,11 @@ void add_heat(CLI::App& app, HeatArguments& a) {
 void add_exchange(CLI::App& app, ExchangeArguments& a) {
     add_rows_of_heat(app, a.scene, a.rows, a.input);
     add_heat_options(app, a.heat, false);
-    Options(app, "Output")
-        .path("-o,--output", "FILE.csv", a.output,
-              "from, to, Gebhart factor, script-F and conductance of every pair; - for stdout");
+    add_exchange_output(app, a);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi exchange scenes/furnace-hot.json\n"
-               "  hemi exchange room.obj --emissivity walls=0.9 -o room.csv");
+               "  hemi exchange room.obj --emissivity walls=0.9 --min 1e-3 -o room.csv");
 }
 
 void add_render(CLI::App& app, RenderArguments& a) {

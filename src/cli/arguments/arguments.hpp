@@ -133,6 +133,7 @@ struct ExchangeArguments {
     RowOptions rows;
     HeatOptions heat;
     FactorInput input;
+    std::optional<double> min;                   ///< m², of conductances that are kept
     std::optional<std::filesystem::path> output; ///< .csv
 };
 

@@ -106,4 +106,13 @@ void add_heat_output(CLI::App& app, HeatArguments& a) {
                 "powers, where the scene has these) for every group named in its first line");
 }
 
+void add_exchange_output(CLI::App& app, ExchangeArguments& a) {
+    Options output(app, "Output");
+    output.path("-o,--output", "FILE.csv", a.output,
+                "from, to, Gebhart factor, script-F and conductance of every pair; - for stdout");
+    output.value("--min", "M2",
+                 "leave out conductances below this, m², and give what they carried to the others",
+                 [&a](const std::string& text) { a.min = parse_positive("--min", text); });
+}
+
 } // namespace hemi::cli
