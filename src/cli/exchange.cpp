@@ -7,6 +7,7 @@
 #include "cli/report/scene_report.hpp"
 #include "cli/terminal_observer.hpp"
 #include "hemi/core/stopwatch.hpp"
+#include "hemi/io/exchange_file.hpp"
 #include "hemi/io/table_file.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +27,7 @@ Outputs check_outputs(const ExchangeArguments& arguments) {
         outputs.keep(*arguments.heat.table);
     }
     if (arguments.output) {
-        outputs.add("-o", *arguments.output, {".csv"}, true);
+        outputs.add("-o", *arguments.output, {".csv", ".npz", ".txt"}, true);
     }
     outputs.refuse_with_json(arguments.common.json);
     return outputs;
@@ -58,6 +59,21 @@ io::TextTable exchange_table(const std::vector<std::string>& names, const HeatEx
                               number(environment * exchange.areas[g])});
     }
     return table;
+}
+
+void write_exchange(const std::filesystem::path& path, const FormFactors& factors,
+                    const HeatExchange& exchange, bool cut) {
+    const io::ExchangeTables tables{factors.groups,       factors.enclosure,   exchange.areas,
+                                    exchange.emissivity,  exchange.gebhart,    exchange.script_f,
+                                    exchange.conductance, exchange.environment};
+    const std::string extension = extension_of(path);
+    if (extension == ".npz") {
+        io::write_exchange_npz(path, tables);
+    } else if (extension == ".txt") {
+        io::write_exchange_view3d(path, tables);
+    } else {
+        io::write_table(path, exchange_table(factors.groups, exchange, !cut));
+    }
 }
 
 void warn_of_isolated(const std::vector<std::string>& names, const ExchangeCutoff& cutoff,
@@ -101,7 +117,7 @@ ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     }
     seconds["solve"] = watch.seconds();
     if (arguments.output) {
-        io::write_table(*arguments.output, exchange_table(factors.groups, exchange, !cutoff));
+        write_exchange(*arguments.output, factors, exchange, cutoff.has_value());
     }
     Report report = scene_size_report(loaded);
     report.add(rows_report(factors, sums, enclosure));

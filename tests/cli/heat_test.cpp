@@ -2,8 +2,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 using namespace hemi::cli_test;
 
@@ -580,4 +582,82 @@ TEST_CASE("hemi exchange --min: small conductances go to the others", "[cli][hea
     CHECK(apart.err_has("nothing is left between bottom, top, left, right, front, back"));
     CHECK(run_hemi({"exchange", file, "--min", "0"}).status == 2);
     CHECK(run_hemi({"exchange", file, "--min", "small"}).status == 2);
+}
+
+TEST_CASE("hemi exchange -o: a NumPy archive, View3D's table with reflection", "[cli][heat]") {
+    const Directory directory;
+    // Infinite plates but for what leaves at the rim: 2000 wide and 1 apart.
+    Json scene = {{"hemi", 1},
+                  {"materials", {{"hot", {{"emissivity", 0.8}}}, {"cold", {{"emissivity", 0.3}}}}},
+                  {"surfaces",
+                   {face("oben ü", "hot", {{0, 0, 1}, {0, 2000, 1}, {2000, 2000, 1}, {2000, 0, 1}}, 1),
+                    face("unten", "cold", {{0, 0, 0}, {2000, 0, 0}, {2000, 2000, 0}, {0, 2000, 0}}, 1)}},
+                  {"unit", "m"}};
+    const std::string file = directory.write("plates.json", scene);
+    const std::string npz = directory.path("plates.npz");
+    const Outcome run = run_hemi(on_cpu({"exchange", file, "--json", "--preset", "exact", "-o", npz}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json exchange = run.json();
+    CHECK(exchange["script_f"][0][1].get<double>() ==
+          Approx(1.0 / (1.0 / 0.8 + 1.0 / 0.3 - 1.0)).epsilon(2e-3));
+    const std::string archive = directory.read("plates.npz");
+    CHECK(archive.starts_with("PK"));
+    for (const char* name : {"groups.npy", "areas.npy", "emissivity.npy", "gebhart.npy", "script_f.npy",
+                             "conductance.npy", "environment.npy"}) {
+        CHECK(archive.find(name) != std::string::npos);
+    }
+    CHECK(archive.find("'descr': '<U6', 'fortran_order': False, 'shape': (2,)") != std::string::npos);
+    CHECK(archive.find("'descr': '<f8', 'fortran_order': False, 'shape': (2, 2)") != std::string::npos);
+    const double area = exchange["areas"][0].get<double>();
+    CHECK(archive.find(std::string(reinterpret_cast<const char*>(&area), sizeof(area))) != std::string::npos);
+    // Program, version, text, open or closed, reflection, N; areas, script-F, emissivities.
+    REQUIRE(run_hemi(on_cpu({"exchange", file, "--preset", "exact", "-o", directory.path("plates.txt")}))
+                .status == 0);
+    std::istringstream table(directory.read("plates.txt"));
+    std::string program;
+    std::string version;
+    std::array<int, 4> head{};
+    table >> program >> version >> head[0] >> head[1] >> head[2] >> head[3];
+    CHECK(head == std::array<int, 4>{0, 0, 1, 2});
+    std::vector<double> numbers;
+    for (double number = 0.0; table >> number;) {
+        numbers.push_back(number);
+    }
+    REQUIRE(numbers.size() == 8);
+    CHECK(numbers[0] == area);
+    for (std::size_t k = 0; k < 4; ++k) {
+        CHECK(numbers[2 + k] == exchange["script_f"][k / 2][k % 2].get<double>());
+    }
+    CHECK(numbers[6] == Approx(0.8).epsilon(1e-12));
+    CHECK(numbers[7] == Approx(0.3).epsilon(1e-12));
+    CHECK(run_hemi({"factors", directory.path("plates.txt")}).status != 0);
+    CHECK(run_hemi({"heat", file, "--factors", directory.path("plates.txt")}).err_has("include reflection"));
+    CHECK(run_hemi({"exchange", file, "-o", directory.path("plates.mtx")}).status == 2);
+}
+
+TEST_CASE("hemi heat -o PICTURE.png: temperatures and fluxes in false colours", "[cli][heat][gl]") {
+    const Directory directory;
+    const std::string file = directory.write("box.json", box(1, 2, 3, 2));
+    const std::string kelvin = directory.path("kelvin.png");
+    const auto draw = [&](const std::string& path, const Words& more) {
+        Words words{"heat", file, "--device", "osmesa", "--no-estimate", "--size", "240x200", "-o", path};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_hemi(words);
+    };
+    const Outcome run = draw(kelvin, {});
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    CHECK(run.out_has("kelvin.png (240 x 200, temperature)"));
+    CHECK(directory.read("kelvin.png").substr(1, 3) == "PNG");
+    CHECK(draw(directory.path("celsius.png"), {"--celsius"}).status == 0);
+    CHECK(draw(directory.path("flux.png"), {"--show", "flux"}).out_has("(240 x 200, flux)"));
+    CHECK(directory.read("celsius.png") != directory.read("kelvin.png")); // by the legend alone
+    CHECK(directory.read("flux.png") != directory.read("kelvin.png"));
+    CHECK(draw(directory.path("flux.png"), {"--show", "flux", "--celsius"}).status == 2);
+    CHECK(draw(directory.path("flux.png"), {"--show", "power"}).err_has("temperature"));
+    const Outcome table = run_hemi({"heat", file, "-o", directory.path("box.vtp"), "--outlines"});
+    CHECK(table.status == 2);
+    CHECK(table.err_has("--outlines is for a picture"));
+    CHECK(run_hemi({"heat", file, "--show", "flux"}).status == 2);
 }
