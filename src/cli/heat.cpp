@@ -172,6 +172,13 @@ Report draw_heat(const HeatArguments& arguments, const LoadedScene& loaded, cons
     FalseColours shown;
     if (arguments.picture.shown == HeatShown::flux) {
         shown = {solution.net_flux, "Net flux", "W/m²"};
+        const auto is_long = [](double flux) { return std::abs(flux) >= 1e4; };
+        if (std::any_of(shown.values.begin(), shown.values.end(), is_long)) {
+            shown.unit = "kW/m²"; // the legend has room for short numbers
+            for (double& value : shown.values) {
+                value /= 1000.0;
+            }
+        }
     } else {
         shown = {solution.temperature, "Temperature", arguments.picture.celsius ? "°C" : "K"};
         for (double& value : shown.values) {

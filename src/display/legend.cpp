@@ -154,7 +154,7 @@ bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view ti
     const int s = canvas.scale();
     const int margin = 6 * s;
     const int pad = 6 * s;
-    const int box_width = std::min(std::max(260 * s, canvas.width_of(title) + 2 * pad), width - 2 * margin);
+    const int box_width = std::min(std::max(220 * s, canvas.width_of(title) + 2 * pad), width - 2 * margin);
     const int box_height = 2 * pad + 2 * line_height * s + 14 * s;
     const int left = margin;
     const int top = height - margin - box_height;
@@ -185,7 +185,7 @@ bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view ti
         }
         return free_from > left + box_width + 4 * s;
     };
-    for (std::size_t most = 6; most > 0 && (marks.empty() || is_crowded()); --most) {
+    for (std::size_t most = 8; most > 0 && (marks.empty() || is_crowded()); --most) {
         marks = round_marks(scale.low, scale.high, most);
     }
     for (const double mark : marks) {
