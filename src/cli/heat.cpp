@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/heat_factors.hpp"
 #include "cli/output_paths.hpp"
+#include "cli/picture_output.hpp"
 #include "cli/report/balance_report.hpp"
 #include "cli/report/factor_report.hpp"
 #include "cli/report/heat_report.hpp"
@@ -9,8 +10,10 @@
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
+#include "hemi/display/false_colours.hpp"
 #include "hemi/io/table_file.hpp"
 #include "hemi/io/vtp_file.hpp"
+#include "hemi/pipeline/picture.hpp"
 
 #include <fmt/format.h>
 
@@ -77,6 +80,10 @@ HeatSchedule schedule_of(const std::filesystem::path& path, const io::TextTable&
     return schedule;
 }
 
+bool is_picture(const std::filesystem::path& path) {
+    return extension_of(path) == ".png";
+}
+
 Outputs check_outputs(const HeatArguments& arguments) {
     Outputs outputs;
     outputs.keep(arguments.scene.path);
@@ -88,7 +95,18 @@ Outputs check_outputs(const HeatArguments& arguments) {
         outputs.keep(*arguments.series);
     }
     if (arguments.output) {
-        outputs.add("-o", *arguments.output, {".vtp"});
+        outputs.add("-o", *arguments.output, {".vtp", ".png"});
+        if (!is_picture(*arguments.output)) {
+            for (const std::string& option : arguments.picture.options) {
+                const auto& given = arguments.common.given;
+                if (std::find(given.begin(), given.end(), option) != given.end()) {
+                    throw InvalidArgument(fmt::format("{} is for a picture, and -o is {}; a .png is one",
+                                                      option, arguments.output->string()));
+                }
+            }
+        } else if (arguments.picture.celsius && arguments.picture.shown == HeatShown::flux) {
+            throw InvalidArgument("--celsius is for temperatures, and --show is flux");
+        }
     }
     if (arguments.fluxes) {
         outputs.add("--fluxes", *arguments.fluxes, {".csv"}, true);
@@ -138,7 +156,7 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
         io::write_patch_table(*arguments.fluxes, loaded.patches(), of_patches(arrays, loaded),
                               loaded.as_read ? loaded.as_read->left : io::PatchPlaces());
     }
-    if (arguments.output) {
+    if (arguments.output && !is_picture(*arguments.output)) {
         for (io::CellArray& array : arrays) {
             for (double& value : array.values) {
                 value = std::isfinite(value) ? value : 0.0; // the format has numbers only
@@ -146,6 +164,42 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
         }
         io::write_vtp(*arguments.output, loaded.mesh, arrays);
     }
+}
+
+/// In false colours, with a legend. @return what `heat` reports of it
+Report draw_heat(const HeatArguments& arguments, const LoadedScene& loaded, const HeatSolution& solution) {
+    constexpr double zero_celsius = 273.15;
+    FalseColours shown;
+    if (arguments.picture.shown == HeatShown::flux) {
+        shown = {solution.net_flux, "Net flux", "W/m²"};
+        const auto is_long = [](double flux) { return std::abs(flux) >= 1e4; };
+        if (std::any_of(shown.values.begin(), shown.values.end(), is_long)) {
+            shown.unit = "kW/m²"; // the legend has room for short numbers
+            for (double& value : shown.values) {
+                value /= 1000.0;
+            }
+        }
+    } else {
+        shown = {solution.temperature, "Temperature", arguments.picture.celsius ? "°C" : "K"};
+        for (double& value : shown.values) {
+            value -= arguments.picture.celsius ? zero_celsius : 0.0;
+        }
+    }
+    for (std::size_t i = 0; i < shown.values.size(); ++i) {
+        if (solution.buried[i] != 0) {
+            shown.values[i] = std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+    const PictureOptions& options = arguments.picture.picture;
+    const std::string& device = arguments.rows.factors.engine.device;
+    const Picture picture =
+        draw_false_colours(loaded.mesh, shown, choose_camera(loaded.scene, loaded.mesh, options),
+                           picture_settings(options), device == "cpu" ? "auto" : device);
+    hemi::write_picture(*arguments.output, picture);
+    Report report;
+    report.add("picture", fmt::format("{} ({} x {}, {})", arguments.output->string(), picture.width,
+                                      picture.height, to_word(arguments.picture.shown)));
+    return report;
 }
 
 } // namespace
@@ -188,6 +242,10 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
                                                       : "solved one by one: the problem is not linear"));
     }
     write_patches(arguments, loaded, problem, solution);
+    Report picture;
+    if (arguments.output && is_picture(*arguments.output)) {
+        picture = draw_heat(arguments, loaded, solution);
+    }
     std::vector<double> errors(factors.groups.size(), std::numeric_limits<double>::quiet_NaN());
     if (arguments.rows.factors.estimate_error && factors.error) {
         const Stopwatch estimate_watch;
@@ -206,6 +264,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     report.add(repair_report(factors, seconds["repair"]));
     report.add(seconds.report());
     report.add(heat_balance_report(solution));
+    report.add(picture);
     report.json.update(tables.json);
     report.json["bands"] = problem.bands;
     report.json["unit"] = problem.unit;

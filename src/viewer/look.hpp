@@ -86,13 +86,7 @@ struct Field {
 /// Median over the rows of their largest factor: few are far above it, where patches touch.
 [[nodiscard]] double usual_largest_factor(const FormFactorMatrix& factors);
 
-/// `base` with a colour for every patch, display linear, to be drawn flat with linear tone mapping.
-[[nodiscard]] PictureMesh painted(const PictureMesh& base, std::span<const std::array<float, 3>> colours);
-/// What has no value is dark grey.
-[[nodiscard]] std::vector<std::array<float, 3>> field_colours(const Field& field, const PatchMesh& mesh);
 [[nodiscard]] std::vector<std::array<float, 3>> item_colours(const PatchMesh& mesh);
-/// Greys by the direction that a patch faces, so that shapes can be told.
-[[nodiscard]] std::vector<std::array<float, 3>> plain_colours(const PatchMesh& mesh);
 
 /// Radiosity of every patch of `mesh` as the picture shows it in its flat shading; display linear.
 [[nodiscard]] std::vector<std::array<float, 3>> light_colours(const PictureMesh& mesh, double exposure,

@@ -1,5 +1,7 @@
 #include "viewer/scene_view.hpp"
 
+#include "display/painted.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,7 +14,7 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
     field_ = make_field(look, input, document.light(), picked, document.usual_factor());
     colours_.clear();
     if (field_) {
-        colours_ = field_colours(*field_, *input.mesh);
+        colours_ = value_colours(field_->values, field_->scale, *input.mesh);
     } else if (look.quantity == Quantity::items) {
         colours_ = item_colours(*input.mesh);
     } else if (look.quantity == Quantity::outlines) {

@@ -84,7 +84,7 @@ TEST_CASE("View3D reader: what changes a meaning is told as a warning", "[io]") 
                              &diagnostics, {.two_sided_groups = {"b"}});
     REQUIRE(diagnostics.warnings().size() == 6);
     const std::vector<std::vector<std::string>> parts{
-        {"room.vs3:1: emit = 1", "form factors are without it"},
+        {"room.vs3:1: emit = 1", "`hemi exchange` has them", "form factors are without it"},
         {"room.vs3:1: row = 2 is not used"},
         {"room.vs3:1: the control word \"maxD\" is not known and not used"},
         {"room.vs3:6: emissivity 0 taken as 0.001"},

@@ -191,4 +191,25 @@ struct HeatExchange {
                                          const HeatSettings& settings = {},
                                          Observer& observer = no_observer());
 
+/// What leaving out small conductances did.
+struct ExchangeCutoff {
+    double min = 0.0;            ///< m², what every conductance between groups is at least, unless it is 0
+    std::uint64_t dropped = 0;   ///< pairs that were left out, those with the environment too
+    std::uint64_t kept = 0;      ///< pairs that are left, likewise
+    double largest_share = 0.0;  ///< of what a group emits, that it gave to what was left out, the largest
+    double largest_change = 0.0; ///< of a conductance that is kept, over what it was, the largest
+    std::vector<std::uint32_t> isolated; ///< groups that are left with themselves alone, and were not before
+};
+/// Leaves out conductances between groups, and of groups with the environment, that are below a value, and
+/// gives what they carried to those that are kept: K' = D (K + S) D with a diagonal D by which every row,
+/// the environment's too, has the sum that it had. S is diagonal: the share of a row that was dropped,
+/// squared, times its sum, so that there is such a D whatever is dropped, and of what little is dropped next
+/// to nothing goes to the group itself. What falls below the value is left out as well. What groups absorb
+/// of their own, the diagonal, is not dropped. Source: scaling of symmetric matrices to given row sums, R.
+/// Sinkhorn, P. Knopp, Pacific J. Math. 21, 1967; here by Newton's method.
+/// @param exchange  changed in place; symmetric and balanced as it was, and not below 0
+/// @param min       m², above 0
+/// @throws InvalidArgument for another `min`; NotConverged
+ExchangeCutoff drop_small_conductances(HeatExchange& exchange, double min);
+
 } // namespace hemi

@@ -2,6 +2,7 @@
 
 #include "cli/arguments/completion.hpp"
 #include "cli/arguments/options.hpp"
+#include "cli/arguments/picture_arguments.hpp"
 #include "cli/arguments/points_arguments.hpp"
 #include "cli/arguments/scene_arguments.hpp"
 #include "cli/arguments/usage_errors.hpp"
@@ -248,61 +249,6 @@ void add_solver(CLI::App& app, SolverSettings& solver) {
                   });
 }
 
-/// Channels, shading and exposure of a solution that is shown.
-std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture) {
-    Options options(app, "Picture");
-    std::vector<CLI::Option*> added;
-    added.push_back(options.value("--show", "A,B,C", "channels shown as red, green, blue; or one, as grey",
-                                  [&picture](const std::string& text) { picture.show = parse_list(text); }));
-    options.flag("--flat", picture.flat, "one colour a patch instead of smooth shading");
-    added.push_back(app.get_option("--flat"));
-    added.push_back(options.value("--exposure", "X", "factor on radiosity, or auto (the default)",
-                                  [&picture](const std::string& text) {
-                                      picture.exposure.reset();
-                                      if (text != "auto") {
-                                          picture.exposure = parse_positive("--exposure", text);
-                                      }
-                                  }));
-    return added;
-}
-
-void add_gather(CLI::App& app, Gather& gather) {
-    Options(app, "Picture")
-        .choice<Gather>("--gather", "auto|on|off",
-                        "radiosity at vertices by rows of their own: crisp shadows", gather);
-}
-
-/// @param output  the option without which these make no sense; may be none.
-void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
-    std::vector<CLI::Option*> added = add_shown(app, picture);
-    Options options(app, "Picture");
-    added.push_back(options.value(
-        "--size", "WxH", fmt::format("size in pixels ({}x{})", picture.size[0], picture.size[1]),
-        [&picture](const std::string& text) { picture.size = parse_picture_size("--size", text); }));
-    added.push_back(options.value(
-        "--camera", "EYE:TARGET[:UP][:FOV]", "camera, such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
-        [&picture](const std::string& text) { picture.camera = parse_camera("--camera", text); }));
-    added.push_back(options.choice<ToneMapping>("--tone-mapping", "NAME", "filmic (the default) or linear",
-                                                [&picture](ToneMapping value) {
-                                                    picture.tone_mapping = value;
-                                                    picture.tone_mapping_given = true;
-                                                }));
-    options.flag("--orthographic", picture.orthographic, "parallel rays, at the scale of the target's depth");
-    options.flag("--outlines", picture.outlines, "draw outlines of patches");
-    options.flag("--backs", picture.backs, "show the backs of one-sided surfaces, striped");
-    for (const char* name : {"--orthographic", "--outlines", "--backs"}) {
-        added.push_back(app.get_option(name));
-    }
-    added.push_back(options.value(
-        "--samples", "N", "supersamples along each edge of a pixel, 1 to 8 (4)",
-        [&picture](const std::string& text) { picture.samples = to_index("--samples", text, 1, 8); }));
-    for (CLI::Option* option : added) {
-        if (output != nullptr) {
-            option->needs(output);
-        }
-    }
-}
-
 void add_solve(CLI::App& app, SolveArguments& a) {
     a.rows.error_of = ErrorOf::vertices;
     add_scene(app, a.scene);
@@ -448,13 +394,11 @@ void add_heat(CLI::App& app, HeatArguments& a) {
 void add_exchange(CLI::App& app, ExchangeArguments& a) {
     add_rows_of_heat(app, a.scene, a.rows, a.input);
     add_heat_options(app, a.heat, false);
-    Options(app, "Output")
-        .path("-o,--output", "FILE.csv", a.output,
-              "from, to, Gebhart factor, script-F and conductance of every pair; - for stdout");
+    add_exchange_output(app, a);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi exchange scenes/furnace-hot.json\n"
-               "  hemi exchange room.obj --emissivity walls=0.9 -o room.csv");
+               "  hemi exchange room.obj --emissivity walls=0.9 --min 1e-3 -o room.csv");
 }
 
 void add_points(CLI::App& app, PointsArguments& a) {

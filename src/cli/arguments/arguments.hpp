@@ -118,13 +118,35 @@ struct TradeArguments {
     double budget = 60.0; ///< seconds
 };
 
+/// What a picture of heat shows.
+enum class HeatShown { temperature, flux };
+} // namespace hemi::cli
+
+/// Words of HeatShown.
+template <>
+struct hemi::Names<hemi::cli::HeatShown> {
+    static constexpr NamedValue<cli::HeatShown> table[] = {{cli::HeatShown::temperature, "temperature"},
+                                                           {cli::HeatShown::flux, "flux"}};
+};
+
+namespace hemi::cli {
+
+/// In false colours; the picture's path is that of the command's output.
+struct HeatPicture {
+    PictureOptions picture;
+    HeatShown shown = HeatShown::temperature;
+    bool celsius = false;
+    std::vector<std::string> options; ///< names of all that only pictures have
+};
+
 struct HeatArguments {
     CommonOptions common;
     SceneOptions scene;
     RowOptions rows;
     HeatOptions heat;
     FactorInput input;
-    std::optional<std::filesystem::path> output; ///< .vtp
+    std::optional<std::filesystem::path> output; ///< .vtp or .png
+    HeatPicture picture;
     std::optional<std::filesystem::path> fluxes; ///< .csv by patch
     std::optional<std::filesystem::path> series; ///< .csv that is read
 };
@@ -135,7 +157,8 @@ struct ExchangeArguments {
     RowOptions rows;
     HeatOptions heat;
     FactorInput input;
-    std::optional<std::filesystem::path> output; ///< .csv
+    std::optional<double> min;                   ///< m², of conductances that are kept
+    std::optional<std::filesystem::path> output; ///< .csv, .npz or .txt
 };
 
 struct PointsArguments {

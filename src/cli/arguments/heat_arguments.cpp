@@ -2,6 +2,7 @@
 
 #include "cli/arguments/arguments.hpp"
 #include "cli/arguments/options.hpp"
+#include "cli/arguments/picture_arguments.hpp"
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/length_unit.hpp"
 
@@ -98,12 +99,24 @@ CLI::Option* add_factor_input(CLI::App& app, FactorInput& input) {
 
 void add_heat_output(CLI::App& app, HeatArguments& a) {
     Options output(app, "Output");
-    output.path("-o,--output", "FILE.vtp", a.output,
-                "temperature, fluxes, irradiation and radiosity of every patch, for ParaView");
+    auto* file = output.path("-o,--output", "FILE", a.output,
+                             "temperature, fluxes, irradiation and radiosity of every patch, for ParaView: "
+                             ".vtp; or a picture: .png");
     output.path("--fluxes", "FILE.csv", a.fluxes, "the same as a table; - for stdout");
     output.path("--series", "FILE.csv", a.series,
                 "solve for every line of this table: a time, and a column of temperatures (or fluxes, or "
                 "powers, where the scene has these) for every group named in its first line");
+    a.picture.options = add_heat_picture(app, a.picture, file);
+}
+
+void add_exchange_output(CLI::App& app, ExchangeArguments& a) {
+    Options output(app, "Output");
+    output.path("-o,--output", "FILE", a.output,
+                "Gebhart factor, script-F and conductance of every pair: .csv, NumPy's .npz; script-F in "
+                "View3D's .txt; - for .csv on stdout");
+    output.value("--min", "M2",
+                 "leave out conductances below this, m², and give what they carried to the others",
+                 [&a](const std::string& text) { a.min = parse_positive("--min", text); });
 }
 
 } // namespace hemi::cli

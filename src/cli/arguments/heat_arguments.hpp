@@ -11,6 +11,7 @@
 /// What the command line says of heat.
 namespace hemi::cli {
 
+struct ExchangeArguments;
 struct HeatArguments;
 
 /// Properties of groups over those of the scene: pairs of name and value, as given.
@@ -34,6 +35,8 @@ struct FactorInput {
 void add_heat_options(CLI::App& app, HeatOptions& heat, bool conditions);
 /// `-o`, `--fluxes`, `--series`.
 void add_heat_output(CLI::App& app, HeatArguments& a);
+/// `-o` and `--min`.
+void add_exchange_output(CLI::App& app, ExchangeArguments& a);
 /// `--factors` and `--areas`. @return the first
 CLI::Option* add_factor_input(CLI::App& app, FactorInput& input);
 

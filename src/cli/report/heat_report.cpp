@@ -203,6 +203,27 @@ Report exchange_report(std::span<const std::string> names, const HeatExchange& e
     return report;
 }
 
+Report cutoff_report(const std::optional<ExchangeCutoff>& cutoff) {
+    Report report;
+    report.json["cutoff"] = nullptr;
+    if (cutoff) {
+        report.add("cutoff",
+                   fmt::format(
+                       "{} of {} below {} m²; they carried up to {:.2g} % of a group's; of those kept "
+                       "none changed by more than {:.2g} %",
+                       cutoff->dropped, plural(cutoff->dropped + cutoff->kept, "conductance", "conductances"),
+                       cutoff->min, 100.0 * cutoff->largest_share, 100.0 * cutoff->largest_change),
+                   {{"cutoff",
+                     {{"min", cutoff->min},
+                      {"dropped", cutoff->dropped},
+                      {"kept", cutoff->kept},
+                      {"largest_share", cutoff->largest_share},
+                      {"largest_change", cutoff->largest_change},
+                      {"isolated", cutoff->isolated}}}});
+    }
+    return report;
+}
+
 void show_with_tables(const Outputs& outputs, Report summary, const Report& tables, bool json,
                       const Terminal& terminal) {
     if (!json && terminal.quiet() && !outputs.uses_standard_output()) {

@@ -6,6 +6,7 @@
 #include "hemi/matrix/form_factors.hpp"
 #include "hemi/pipeline/heat.hpp"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ namespace hemi::cli {
 /// Table of conductances; the keys of `exchange --json` but "seconds".
 /// @param names  of the groups
 [[nodiscard]] Report exchange_report(std::span<const std::string> names, const HeatExchange& exchange);
+
+/// What `--min` did; key "cutoff", null without it.
+[[nodiscard]] Report cutoff_report(const std::optional<ExchangeCutoff>& cutoff);
 
 /// Prints the JSON object, or the summary with tables behind it; the tables alone with -q.
 void show_with_tables(const Outputs& outputs, Report summary, const Report& tables, bool json,

@@ -114,7 +114,7 @@ Head read_head(std::string_view line, std::string_view bytes, bool text, const s
         fail(fmt::format("format {}; must be {}, as the name's extension says", *format, text ? 0 : 1));
     }
     if (*emission != 0) {
-        fail("the factors include reflection (emit = 1); must be without it");
+        fail("the factors include reflection (emit = 1, as `hemi exchange` writes them); must be without it");
     }
     const std::uint64_t least = text ? 2 : sizeof(float); // bytes a number
     if (*size > most_rows || *size * (*size + 2) > (bytes.size() - line.size()) / least) {

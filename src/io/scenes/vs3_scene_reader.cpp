@@ -312,9 +312,10 @@ private:
         if (same(name, "encl")) {
             scene_.enclosure = value != 0.0 ? Enclosure::closed : Enclosure::open;
         } else if (same(name, "emit") && value != 0.0) {
-            diagnostics_.warn(fmt::format("{}:{}: emit = {} asks for factors that include reflection; form "
-                                          "factors are without it, solving adds it",
-                                          file_, lines_.number(), value));
+            diagnostics_.warn(
+                fmt::format("{}:{}: emit = {} asks for exchange factors, which include reflection: "
+                            "`hemi exchange` has them (-o FILE.txt); form factors are without it",
+                            file_, lines_.number(), value));
         } else if ((same(name, "row") || same(name, "col")) && value != 0.0) {
             diagnostics_.warn(fmt::format("{}:{}: {} = {} is not used: all rows count", file_,
                                           lines_.number(), name, value));

@@ -1,0 +1,96 @@
+#include "cli/arguments/picture_arguments.hpp"
+
+#include "cli/arguments/arguments.hpp"
+#include "cli/arguments/options.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace hemi::cli {
+
+namespace {
+
+/// Size, camera and what is drawn beside the patches. @return all of them
+std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture) {
+    std::vector<CLI::Option*> added;
+    Options options(app, "Picture");
+    added.push_back(options.value(
+        "--size", "WxH", fmt::format("size in pixels ({}x{})", picture.size[0], picture.size[1]),
+        [&picture](const std::string& text) { picture.size = parse_picture_size("--size", text); }));
+    added.push_back(options.value(
+        "--camera", "EYE:TARGET[:UP][:FOV]", "camera, such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
+        [&picture](const std::string& text) { picture.camera = parse_camera("--camera", text); }));
+    options.flag("--orthographic", picture.orthographic, "parallel rays, at the scale of the target's depth");
+    options.flag("--outlines", picture.outlines, "draw outlines of patches");
+    options.flag("--backs", picture.backs, "show the backs of one-sided surfaces, striped");
+    for (const char* name : {"--orthographic", "--outlines", "--backs"}) {
+        added.push_back(app.get_option(name));
+    }
+    added.push_back(options.value("--samples", "N", "supersamples along each edge of a pixel, 1 to 8 (4)",
+                                  [&picture](const std::string& text) {
+                                      picture.samples =
+                                          static_cast<std::uint32_t>(parse_whole("--samples", text, 1, 8));
+                                  }));
+    return added;
+}
+
+} // namespace
+
+std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture) {
+    Options options(app, "Picture");
+    std::vector<CLI::Option*> added;
+    added.push_back(options.value("--show", "A,B,C", "channels shown as red, green, blue; or one, as grey",
+                                  [&picture](const std::string& text) { picture.show = parse_list(text); }));
+    options.flag("--flat", picture.flat, "one colour a patch instead of smooth shading");
+    added.push_back(app.get_option("--flat"));
+    added.push_back(options.value("--exposure", "X", "factor on radiosity, or auto (the default)",
+                                  [&picture](const std::string& text) {
+                                      picture.exposure.reset();
+                                      if (text != "auto") {
+                                          picture.exposure = parse_positive("--exposure", text);
+                                      }
+                                  }));
+    return added;
+}
+
+void add_gather(CLI::App& app, Gather& gather) {
+    Options(app, "Picture")
+        .choice<Gather>("--gather", "auto|on|off",
+                        "radiosity at vertices by rows of their own: crisp shadows", gather);
+}
+
+void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
+    std::vector<CLI::Option*> added = add_shown(app, picture);
+    const std::vector<CLI::Option*> drawn = add_drawn(app, picture);
+    added.insert(added.end(), drawn.begin(), drawn.end());
+    added.push_back(Options(app, "Picture")
+                        .choice<ToneMapping>("--tone-mapping", "NAME", "filmic (the default) or linear",
+                                             [&picture](ToneMapping value) {
+                                                 picture.tone_mapping = value;
+                                                 picture.tone_mapping_given = true;
+                                             }));
+    for (CLI::Option* option : added) {
+        if (output != nullptr) {
+            option->needs(output);
+        }
+    }
+}
+
+std::vector<std::string> add_heat_picture(CLI::App& app, HeatPicture& picture, CLI::Option* output) {
+    Options options(app, "Picture");
+    std::vector<CLI::Option*> added = add_drawn(app, picture.picture);
+    added.push_back(options.choice<HeatShown>(
+        "--show", "NAME", "temperature (the default) or flux, the net flux leaving positive",
+        [&picture](HeatShown value) { picture.shown = value; }));
+    options.flag("--celsius", picture.celsius, "temperatures of the picture's legend in °C instead of K");
+    added.push_back(app.get_option("--celsius"));
+    std::vector<std::string> names;
+    for (CLI::Option* option : added) {
+        option->needs(output);
+        names.push_back(option->get_name());
+    }
+    return names;
+}
+
+} // namespace hemi::cli

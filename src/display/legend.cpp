@@ -1,0 +1,199 @@
+#include "display/legend.hpp"
+
+#include <fmt/format.h>
+#include <stb_easy_font.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace hemi {
+
+namespace {
+
+using Colour = std::array<std::uint8_t, 3>;
+
+constexpr Colour ground{22, 24, 26};
+constexpr Colour ink{235, 235, 235};
+constexpr int line_height = 12; // of the font, pixels before scaling
+constexpr int raised = 2;
+
+std::uint8_t srgb_of(float linear) {
+    const float srgb =
+        linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(srgb, 0.0F, 1.0F)));
+}
+
+/// A piece of a text: what the font has, or a raised letter in place of what it has not.
+struct Run {
+    std::string text;
+    bool small = false;
+};
+
+std::vector<Run> runs_of(std::string_view text) {
+    constexpr std::string_view squared = "²";
+    constexpr std::string_view degree = "°";
+    std::vector<Run> runs;
+    while (!text.empty()) {
+        if (text.starts_with(squared) || text.starts_with(degree)) {
+            runs.push_back({text.starts_with(squared) ? "2" : "o", true});
+            text.remove_prefix(squared.size());
+            continue;
+        }
+        if (runs.empty() || runs.back().small) {
+            runs.emplace_back();
+        }
+        runs.back().text += text.front();
+        text.remove_prefix(1);
+    }
+    return runs;
+}
+
+class Canvas {
+public:
+    explicit Canvas(Picture& picture)
+        : picture_(picture), scale_(std::max(1, static_cast<int>(picture.height) / 400)) {}
+
+    [[nodiscard]] int scale() const { return scale_; }
+
+    void fill(int left, int top, int right, int bottom, const Colour& colour) {
+        const int width = static_cast<int>(picture_.width);
+        const int height = static_cast<int>(picture_.height);
+        for (int y = std::max(top, 0); y < std::min(bottom, height); ++y) {
+            for (int x = std::max(left, 0); x < std::min(right, width); ++x) {
+                const auto at =
+                    (static_cast<std::size_t>(y) * picture_.width + static_cast<std::size_t>(x)) * 3;
+                std::copy(colour.begin(), colour.end(),
+                          picture_.srgb.begin() + static_cast<std::ptrdiff_t>(at));
+            }
+        }
+    }
+
+    [[nodiscard]] int width_of(std::string_view text) const {
+        int width = 0;
+        for (Run& run : runs_of(text)) {
+            width += stb_easy_font_width(run.text.data()) * scale_of(run);
+        }
+        return width;
+    }
+
+    void text(int left, int top, std::string_view text) {
+        for (Run& run : runs_of(text)) {
+            const int scale = scale_of(run);
+            print(left, run.small ? top - (scale == scale_ ? raised * scale : 0) : top, run.text, scale);
+            left += stb_easy_font_width(run.text.data()) * scale;
+        }
+    }
+
+private:
+    [[nodiscard]] int scale_of(const Run& run) const { return run.small ? (scale_ + 1) / 2 : scale_; }
+
+    /// The font is made of rectangles: four corners of three floats and a colour each.
+    void print(int left, int top, std::string& text, int scale) {
+        constexpr std::size_t corner_bytes = 16;
+        std::vector<char> bytes((text.size() + 1) * 16 * 4 * corner_bytes); // no letter has 16 rectangles
+        const int quads = stb_easy_font_print(0.0F, 0.0F, text.data(), nullptr, bytes.data(),
+                                              static_cast<int>(bytes.size()));
+        for (int quad = 0; quad < quads; ++quad) {
+            std::array<float, 2> first{};
+            std::array<float, 2> last{};
+            const char* const start = bytes.data() + static_cast<std::size_t>(quad) * 4 * corner_bytes;
+            std::memcpy(first.data(), start, sizeof(first));
+            std::memcpy(last.data(), start + 2 * corner_bytes, sizeof(last));
+            const auto pixel = [scale](float value) { return static_cast<int>(std::lround(value)) * scale; };
+            fill(left + pixel(first[0]), top + pixel(first[1]), left + pixel(last[0]), top + pixel(last[1]),
+                 ink);
+        }
+    }
+
+    Picture& picture_;
+    int scale_;
+};
+
+} // namespace
+
+std::vector<double> round_marks(double low, double high, std::size_t most) {
+    const auto first = [low](double step) { return std::ceil(low / step - 1e-9); };
+    const auto last = [high](double step) { return std::floor(high / step + 1e-9); };
+    double step = round_up((high - low) / static_cast<double>(most));
+    while (last(step) - first(step) + 1.0 > static_cast<double>(most)) {
+        step = round_up(1.5 * step);
+    }
+    std::vector<double> marks;
+    for (double k = first(step); k <= last(step); k += 1.0) {
+        marks.push_back(k * step + 0.0); // no -0
+    }
+    if (marks.empty()) {
+        marks.push_back(0.5 * (low + high));
+    }
+    return marks;
+}
+
+std::string mark_text(double mark, const std::vector<double>& marks) {
+    const double step = marks.size() > 1 ? marks[1] - marks[0] : std::abs(mark);
+    const double largest = std::max(std::abs(marks.front()), std::abs(marks.back()));
+    if (largest >= 1e7 || (largest > 0.0 && step < 1e-4)) {
+        return fmt::format("{:.3g}", mark);
+    }
+    const int decimals =
+        step > 0.0 ? std::clamp(-static_cast<int>(std::floor(std::log10(step) + 1e-9)), 0, 6) : 0;
+    return fmt::format("{:.{}f}", mark, decimals);
+}
+
+bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title) {
+    constexpr int least_width = 200;
+    constexpr int least_height = 160;
+    const int width = static_cast<int>(picture.width);
+    const int height = static_cast<int>(picture.height);
+    if (width < least_width || height < least_height) {
+        return false;
+    }
+    Canvas canvas(picture);
+    const int s = canvas.scale();
+    const int margin = 6 * s;
+    const int pad = 6 * s;
+    const int box_width = std::min(std::max(220 * s, canvas.width_of(title) + 2 * pad), width - 2 * margin);
+    const int box_height = 2 * pad + 2 * line_height * s + 14 * s;
+    const int left = margin;
+    const int top = height - margin - box_height;
+    canvas.fill(left, top, left + box_width, top + box_height, ground);
+    canvas.text(left + pad, top + pad, title);
+    const int bar_left = left + pad + 14 * s;
+    const int bar_right = left + box_width - pad - 20 * s;
+    const int bar_top = top + pad + line_height * s + s;
+    const int bar_bottom = bar_top + 8 * s;
+    for (int x = bar_left; x < bar_right; ++x) {
+        const std::array<float, 3> linear =
+            scale_colour((x + 0.5 - bar_left) / static_cast<double>(bar_right - bar_left));
+        canvas.fill(x, bar_top, x + 1, bar_bottom,
+                    {srgb_of(linear[0]), srgb_of(linear[1]), srgb_of(linear[2])});
+    }
+    const auto place = [&](double mark) {
+        return bar_left + static_cast<int>(std::lround(scale.position(mark) * (bar_right - bar_left - 1)));
+    };
+    std::vector<double> marks;
+    const auto is_crowded = [&] {
+        int free_from = left;
+        for (const double mark : marks) {
+            const int half = canvas.width_of(mark_text(mark, marks)) / 2;
+            if (place(mark) - half < free_from) {
+                return true;
+            }
+            free_from = place(mark) + half + 4 * s;
+        }
+        return free_from > left + box_width + 4 * s;
+    };
+    for (std::size_t most = 8; most > 0 && (marks.empty() || is_crowded()); --most) {
+        marks = round_marks(scale.low, scale.high, most);
+    }
+    for (const double mark : marks) {
+        canvas.fill(place(mark), bar_bottom, place(mark) + s, bar_bottom + 3 * s, ink);
+        const std::string words = mark_text(mark, marks);
+        canvas.text(place(mark) - canvas.width_of(words) / 2, bar_bottom + 5 * s, words);
+    }
+    return true;
+}
+
+} // namespace hemi

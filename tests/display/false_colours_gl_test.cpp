@@ -1,0 +1,101 @@
+#include "hemi/display/false_colours.hpp"
+
+#include "display/display_fixtures.hpp"
+#include "display/legend.hpp"
+#include "hemi/core/error.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+using namespace hemi;
+
+namespace {
+
+using Pixel = std::array<int, 3>;
+
+Pixel pixel(const Picture& picture, std::uint32_t x, std::uint32_t y) {
+    const std::size_t at = (std::size_t{y} * picture.width + x) * 3;
+    return {picture.srgb[at], picture.srgb[at + 1], picture.srgb[at + 2]};
+}
+
+/// What a position of the scale looks like, within rounding.
+bool is_scale(const Pixel& pixel, double position) {
+    const std::array<float, 3> linear = scale_colour(position);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float value = linear[c];
+        const float srgb =
+            value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;
+        if (std::abs(static_cast<float>(pixel[c]) - 255.0F * srgb) > 1.5F) {
+            return false;
+        }
+    }
+    return true;
+}
+
+constexpr Pixel legend_ground{22, 24, 26};
+
+} // namespace
+
+TEST_CASE("Legend: marks are round, in range, few, and told from each other", "[display]") {
+    CHECK(round_marks(293.15, 1273.15, 5) == std::vector<double>{400.0, 600.0, 800.0, 1000.0, 1200.0});
+    CHECK(round_marks(-45000.0, 52000.0, 5) ==
+          std::vector<double>{-40000.0, -20000.0, 0.0, 20000.0, 40000.0});
+    CHECK(round_marks(0.0, 1.0, 2) == std::vector<double>{0.0, 1.0});
+    CHECK(round_marks(3.1, 3.9, 1) == std::vector<double>{3.5});
+    const std::vector<double> fine = round_marks(20.15, 20.85, 4);
+    REQUIRE(fine.size() == 4);
+    CHECK(mark_text(fine[0], fine) == "20.2");
+    CHECK(mark_text(500.0, {500.0, 1000.0}) == "500");
+    CHECK(mark_text(-20000.0, {-20000.0, 0.0}) == "-20000");
+    CHECK(mark_text(2e9, {0.0, 2e9}) == "2e+09");
+}
+
+TEST_CASE("False colours: the lowest and the highest value have the ends of the scale", "[display][gl]") {
+    test::SceneBuilder builder;
+    builder.floor("floor", -1.0, -1.0, 1.0, 1.0, {4, 1});
+    const PatchMesh mesh = builder.mesh();
+    // Sees from -1 to 1: 80 pixels a patch.
+    const Camera camera{{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 2.0 * std::atan(0.25) * 180.0 / std::numbers::pi};
+    PictureSettings settings;
+    settings.width = 320;
+    settings.height = 320;
+    settings.samples = 1;
+    settings.exposure = 7.0; // must not count
+    FalseColours shown{{300.0, 350.0, 400.0, std::numeric_limits<double>::quiet_NaN()}, "Temperature", "K"};
+    REQUIRE(mesh.centres()[0].x < mesh.centres()[3].x);
+    const Picture picture = draw_false_colours(mesh, shown, camera, settings, "osmesa");
+    CHECK(is_scale(pixel(picture, 40, 100), 0.0));
+    CHECK(is_scale(pixel(picture, 120, 100), 0.5));
+    CHECK(is_scale(pixel(picture, 200, 100), 1.0));
+    const Pixel grey = pixel(picture, 280, 100);
+    CHECK((grey[0] == grey[1] && grey[1] == grey[2]));
+    CHECK(pixel(picture, 7, 312) == legend_ground);
+    // The scale in the legend has its own ends and writing in it.
+    bool low = false;
+    bool high = false;
+    bool ink = false;
+    for (std::uint32_t y = 250; y < 320; ++y) {
+        for (std::uint32_t column = 6; column < 226; ++column) {
+            const Pixel here = pixel(picture, column, y);
+            low = low || is_scale(here, 0.0);
+            high = high || is_scale(here, 1.0);
+            ink = ink || here == Pixel{235, 235, 235};
+        }
+    }
+    CHECK((low && high && ink));
+    // One value alone is the middle, and what is small has no legend.
+    settings.width = 150;
+    shown.values.assign(4, 300.0);
+    const Picture small = draw_false_colours(mesh, shown, camera, settings, "osmesa");
+    CHECK(is_scale(pixel(small, 75, 160), 0.5));
+    CHECK(pixel(small, 7, 312) != legend_ground);
+    shown.values.pop_back();
+    CHECK_THROWS_AS(draw_false_colours(mesh, shown, camera, settings, "osmesa"), InvalidArgument);
+    shown.values.push_back(std::numeric_limits<double>::infinity());
+    CHECK_THROWS_AS(draw_false_colours(mesh, shown, camera, settings, "osmesa"), InvalidArgument);
+}
