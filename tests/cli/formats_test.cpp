@@ -265,9 +265,11 @@ TEST_CASE("Mesh scenes: several files are one scene, each a group", "[cli]") {
         "floor.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n"
                      "endloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 1 0\n"
                      "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n");
-    const std::string lid = directory.write(
-        "lid.obj", "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\ng top\nf 1 2 3 4\ng other\nv 5 5 5\nv 6 5 5\n"
-                   "v 6 6 5\nf 5 6 7\n");
+    directory.write("lid.mtl", "newmtl blue\nKd 0.2 0.3 0.7\n");
+    const std::string lid =
+        directory.write("lid.obj", "mtllib lid.mtl\nusemtl blue\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\ng "
+                                   "top\nf 1 2 3 4\ng other\nv 5 5 5\nv 6 5 5\n"
+                                   "v 6 6 5\nf 5 6 7\n");
     const Json json = run_hemi(quick({"factors", floor, lid, "--by-group", "--json", "--flip-group",
                                       "lid/top", "--preset", "default"}))
                           .json();

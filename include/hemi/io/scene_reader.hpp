@@ -38,7 +38,9 @@ struct SceneReaderOptions {
 /// alone, FILE being its name without folder and extension. Files of one channel have the same values in all
 /// channels of the others. What a file says of its enclosure counts where all say the same; environments are
 /// dark.
-/// @param paths  one or more; of one it is read_scene()
+/// @param paths        one or more; of one it is read_scene()
+/// @param options      groups in them are called as in the scene
+/// @param diagnostics  gets warnings
 /// @throws as read_scene(); InputError for two files of one name or of other channels; InvalidArgument for a
 ///   JSON scene among several
 [[nodiscard]] Scene read_scenes(std::span<const std::filesystem::path> paths,
