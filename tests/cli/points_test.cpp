@@ -89,7 +89,7 @@ TEST_CASE("hemi points: mean radiant temperature in a cube of six temperatures",
 
     CHECK(json["schema"] == "hemi/points/1");
     CHECK(json["points"] == Json({{0.0, 0.0, 0.0}}));
-    CHECK(json["normals"] == Json({nullptr}));
+    CHECK(json["normals"] == Json::array({nullptr}));
     double mean = 0.0;
     for (const auto& [name, kelvin] : wall_kelvin) {
         mean += std::pow(kelvin, 4.0) / 6.0;
