@@ -145,7 +145,8 @@ TEST_CASE("mended faces: concave faces keep their area and their side, wherever 
     }
 }
 
-TEST_CASE("mended faces: outlines that cross themselves everywhere, and spikes, take little time", "[io]") {
+TEST_CASE("mended faces: outlines that cross themselves everywhere, and spikes, take little time",
+          "[io][slow]") {
     // By the cube of the number of corners it would be minutes.
     const Folder folder;
     std::vector<Vec3> points;
