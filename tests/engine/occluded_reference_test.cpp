@@ -161,7 +161,8 @@ TEST_CASE("OccludedReference: without anything hidden it is the exchange area", 
     }
 }
 
-TEST_CASE("OccludedReference: rows of the room with turned boxes sum to one and are reciprocal", "[engine]") {
+TEST_CASE("OccludedReference: rows of the room with turned boxes sum to one and are reciprocal",
+          "[engine][slow]") {
     const PatchMesh mesh(coarse_room_with_turned_boxes());
     CHECK(mesh.size() == 1110);
     const RowCheck check = check_rows(mesh, 32, 16, 24);
