@@ -184,7 +184,7 @@ TEST_CASE("OccludedReference: rows of the fine room with turned boxes", "[engine
     CHECK(check.convergence < 1e-7);
 }
 
-TEST_CASE("OccludedReference: partly hidden pairs agree with rays", "[engine]") {
+TEST_CASE("OccludedReference: partly hidden pairs agree with rays", "[engine][slow]") {
     const PatchMesh mesh(room_with_turned_boxes(5, 2, 2));
     const OccludedReference reference(mesh, {"first", "second"}, 20);
     std::size_t partly = 0;
@@ -205,7 +205,7 @@ TEST_CASE("OccludedReference: partly hidden pairs agree with rays", "[engine]") 
     CHECK(partly > 20);
 }
 
-TEST_CASE("OccludedReference: of a patch half under a block the other half sees the room", "[engine]") {
+TEST_CASE("OccludedReference: of a patch half under a block the other half sees the room", "[engine][slow]") {
     for (const double covered : {0.1, 0.5, 0.9}) {
         INFO("covered " << covered);
         const StraddledRoom room = straddled_room(covered);

@@ -118,7 +118,8 @@ TEST_CASE("conjugate gradients: a furnace of float factors is right up to reflec
     }
 }
 
-TEST_CASE("sweeps: a furnace of float factors is right up to reflectance 1 - 1e-6", "[solver][accuracy]") {
+TEST_CASE("sweeps: a furnace of float factors is right up to reflectance 1 - 1e-6",
+          "[solver][accuracy][slow]") {
     // Few patches, for it takes millions of sweeps.
     const std::vector<double> areas{1.0, 1.1, 1.3, 1.2};
     DenseRows exchange{
@@ -194,7 +195,7 @@ TEST_CASE("conjugate gradients: reflectances from 0 to 1 - 1e-6 in one scene", "
     CHECK(largest_relative_difference(solution.radiosity, sweeps.radiosity) < 1e-6);
 }
 
-TEST_CASE("conjugate gradients: two rooms joined by a small opening", "[solver]") {
+TEST_CASE("conjugate gradients: two rooms joined by a small opening", "[solver][slow]") {
     for (const double opening : {1e-2, 1e-5}) {
         for (const double rho : {0.9, 0.9999, 1.0 - 1e-6}) {
             const OwnedProblem problem = two_rooms(80, opening, rho);
@@ -214,7 +215,7 @@ TEST_CASE("conjugate gradients: two rooms joined by a small opening", "[solver]"
     }
 }
 
-TEST_CASE("conjugate gradients: agree with elimination and sweeps in open scenes", "[solver]") {
+TEST_CASE("conjugate gradients: agree with elimination and sweeps in open scenes", "[solver][slow]") {
     for (const std::uint32_t channels : {1u, 2u, 3u, 4u, 5u, 9u}) {
         for (const std::uint32_t size : {64u, 101u}) {
             OwnedProblem problem = open_problem(size, channels, 100 * size + channels);
