@@ -401,7 +401,9 @@ void add_exchange(CLI::App& app, ExchangeArguments& a) {
                "  hemi exchange room.obj --emissivity walls=0.9 --min 1e-3 -o room.csv");
 }
 
-void add_points(CLI::App& app, PointsArguments& a) {
+/// A scene that is solved on the way, or its stored solution.
+template <class A>
+void add_solved_scene(CLI::App& app, A& a) {
     add_scene(app, a.scene, "SCENE|RESULT", ".hres");
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
@@ -409,6 +411,10 @@ void add_points(CLI::App& app, PointsArguments& a) {
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
     add_solver(app, a.solver);
+}
+
+void add_points(CLI::App& app, PointsArguments& a) {
+    add_solved_scene(app, a);
     add_heat_options(app, a.heat, true);
     add_point_options(app, a);
     add_common(app, a.common);
@@ -455,13 +461,7 @@ void add_view(CLI::App& app, ViewArguments& a) {
 #endif
 
 void add_bake(CLI::App& app, BakeArguments& a) {
-    add_scene(app, a.scene, "SCENE|RESULT", ".hres");
-    add_enclosure(app, a.scene, a.rows);
-    add_rows(app, a.rows);
-    add_repair(app, a.rows.factors.repair);
-    add_max_memory(app, a.rows);
-    add_environment(app, a.scene);
-    add_solver(app, a.solver);
+    add_solved_scene(app, a);
     Options(app, "Output")
         .path("-o,--output", "OUT", a.picture.output,
               "mesh with vertex colours: .glb or .ply; - for .glb on stdout")
