@@ -6,6 +6,7 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/scene/imprint.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -182,6 +183,31 @@ Scene sheets() {
     return scene;
 }
 
+/// A room with turned blocks on its floor, whose faces are cut where these stand: what is left has corners of
+/// its neighbours all along its sides.
+/// @param grain  coordinates are multiples of it, as in a text file; 0: they are as they come out
+Scene cut_room(double grain) {
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(1.2, 1.0, 0.8), 10);
+    for (const double x : {0.35, 0.85}) {
+        const std::size_t before = scene.surfaces.size();
+        add_block(scene, "block", Vec3(-0.15, -0.2, 0.0), Vec3(0.15, 0.2, 0.3 + 0.3 * x), 5);
+        for (std::size_t s = before; s < scene.surfaces.size(); ++s) {
+            for (Vec3& vertex : scene.surfaces[s].vertices) {
+                vertex = Vec3(x + std::cos(x) * vertex.x - std::sin(x) * vertex.y,
+                              0.5 + std::sin(x) * vertex.x + std::cos(x) * vertex.y, vertex.z);
+            }
+        }
+    }
+    scene = imprint(scene).value().scene;
+    for (Surface& surface : scene.surfaces) {
+        for (Vec3& vertex : surface.vertices) {
+            vertex = grain > 0.0 ? grain * glm::round(vertex / grain) : vertex;
+        }
+    }
+    return scene;
+}
+
 } // namespace
 
 TEST_CASE("Rasteriser and OpenGL: item buffers equal rays through the texel centres", "[engine][gl][slow]") {
@@ -226,6 +252,9 @@ TEST_CASE("Rasteriser and OpenGL: item buffers equal rays through the texel cent
     }
     SECTION("needles") {
         check_against_rays(PatchMesh(needle_room()), settings, 5);
+    }
+    SECTION("faces that are cut where others stand on them") {
+        check_against_rays(PatchMesh(cut_room(0.0)), settings, 31);
     }
     SECTION("two-sided sheets that intersect") {
         check_against_rays(PatchMesh(sheets()), settings, 7);
@@ -292,7 +321,8 @@ TEST_CASE("Rasteriser: every instruction set draws the same items", "[engine]") 
 }
 
 TEST_CASE("Rasteriser: a polygon's coverage is what it shows where it is drawn alone", "[engine]") {
-    for (const Scene& scene : {room_with_blocks(4), tapered_box(3), sheets(), needle_room(), bumpy_cave(5)}) {
+    for (const Scene& scene :
+         {room_with_blocks(4), tapered_box(3), sheets(), needle_room(), bumpy_cave(5), cut_room(0.0)}) {
         const PatchMesh mesh(scene);
         const HemicubeSettings settings{.resolution = 44};
         const EngineGeometry geometry = make_engine_geometry(mesh, settings);
@@ -364,7 +394,8 @@ TEST_CASE("Rasteriser: an unknown instruction set is refused with those that are
 
 TEST_CASE("Rasteriser: no texel is lost in closed scenes", "[engine][slow]") {
     // Sums are integers: a row of a closed scene that sees no back face sums to exactly 1.
-    for (const Scene& scene : {bumpy_cave(40), lattice_room(), room_with_blocks(12)}) {
+    for (const Scene& scene :
+         {bumpy_cave(40), lattice_room(), room_with_blocks(12), cut_room(0.0), cut_room(1e-6)}) {
         const PatchMesh mesh(scene);
         std::uint32_t eyes = 0;
         for (std::uint64_t seed = 0; eyes < 35000; ++seed) {

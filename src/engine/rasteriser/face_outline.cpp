@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace hemi {
@@ -15,18 +16,23 @@ constexpr double tile_width = 4.0;
 
 } // namespace
 
-FaceOutline::FaceOutline(std::span<const FaceVertex> outline, const std::array<int, 4>& box)
+FaceEdge make_edge(const FaceVertex& a, const FaceVertex& b) {
+    FaceEdge e = a.projects ? FaceEdge{a.x, a.y, 1.0f, 0.0f, 0.0f, 0.0f, false}
+                            : FaceEdge{a.hx, a.hy, a.hw, 0.0f, 0.0f, 0.0f, false};
+    std::tie(e.bx, e.by, e.bw) = b.projects ? std::tuple(b.x, b.y, 1.0f) : std::tuple(b.hx, b.hy, b.hw);
+    e.in = std::tie(e.by, e.bx, e.bw) > std::tie(e.ay, e.ax, e.aw);
+    return e;
+}
+
+FaceOutline::FaceOutline(std::span<const FaceVertex> outline, const std::array<int, 4>& box, float near)
     : count_(static_cast<std::uint32_t>(outline.size())), columns_{static_cast<std::uint32_t>(box[0]) / 4,
                                                                    static_cast<std::uint32_t>(box[1]) / 4},
       rows_{static_cast<std::uint32_t>(box[2]) / 4, static_cast<std::uint32_t>(box[3]) / 4} {
     for (std::size_t k = 0; k < outline.size(); ++k) {
         const FaceVertex& a = outline[k];
         const FaceVertex& b = outline[k + 1 < outline.size() ? k + 1 : 0];
-        FaceEdge& e = edges_[k];
-        e = a.projects ? FaceEdge{a.x, a.y, 1.0f, 0.0f, 0.0f, 0.0f, false}
-                       : FaceEdge{a.hx, a.hy, a.hw, 0.0f, 0.0f, 0.0f, false};
-        std::tie(e.bx, e.by, e.bw) = b.projects ? std::tuple(b.x, b.y, 1.0f) : std::tuple(b.hx, b.hy, b.hw);
-        e.in = std::tie(e.by, e.bx, e.bw) > std::tie(e.ay, e.ax, e.aw);
+        const FaceEdge e = make_edge(a, b);
+        edges_[k] = e;
         // The product of the differences, as a function of the point.
         const double ax = static_cast<double>(e.ax);
         const double ay = static_cast<double>(e.ay);
@@ -39,8 +45,15 @@ FaceOutline::FaceOutline(std::span<const FaceVertex> outline, const std::array<i
         const double length = std::sqrt(x * x + y * y);
         const double scale =
             (std::abs(ax) + std::abs(ay)) * std::abs(bw) + (std::abs(bx) + std::abs(by)) * std::abs(aw);
+        const double at_origin = ax * by - ay * bx;
+        // A line at infinity, as of an edge in the eye's plane, is near no texel.
+        const double reach = box[1] + box[3] + 2.0;
+        const bool far = std::abs(at_origin) >
+                         std::max(2.0 * reach * length, 1e-4 * (std::abs(ax * by) + std::abs(ay * bx)));
+        near_[k] = far ? 0.0f : std::numeric_limits<float>::infinity();
         if (length > 1e-4 * scale) {
-            lines_[k] = {x / length, y / length, (ax * by - ay * bx) / length, length / x, true};
+            near_[k] = static_cast<float>(static_cast<double>(near) * length);
+            lines_[k] = {x / length, y / length, at_origin / length, length / x, true};
         }
     }
 }

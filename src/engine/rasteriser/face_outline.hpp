@@ -13,6 +13,8 @@ struct FaceEdge {
     float ax, ay, aw, bx, by, bw;
     bool in; ///< whether points on it count as inside: in one of the two polygons that share it
 };
+/// The edge from a to b.
+[[nodiscard]] FaceEdge make_edge(const FaceVertex& a, const FaceVertex& b);
 
 /// A convex polygon on a face, counter-clockwise, and the tiles that it covers.
 ///
@@ -22,9 +24,13 @@ public:
     FaceOutline() = default;
     /// @param outline  3 or 4 vertices
     /// @param box      left, right, low and high texel that it may cover
-    FaceOutline(std::span<const FaceVertex> outline, const std::array<int, 4>& box);
+    /// @param margin   SideCorners::margin()
+    FaceOutline(std::span<const FaceVertex> outline, const std::array<int, 4>& box, float margin = 0.0f);
 
     [[nodiscard]] std::span<const FaceEdge> edges() const { return std::span(edges_).first(count_); }
+
+    /// Of every edge the product of differences that is the margin's distance from it.
+    [[nodiscard]] std::span<const float> near() const { return std::span(near_).first(count_); }
 
     /// First and last row of tiles.
     [[nodiscard]] std::uint32_t first_row() const { return rows_[0]; }
@@ -47,6 +53,7 @@ private:
 
     std::array<FaceEdge, 4> edges_{};
     std::array<Line, 4> lines_{};
+    std::array<float, 4> near_{};
     std::uint32_t count_ = 0;
     std::array<std::uint32_t, 2> columns_{}; ///< first and last tile
     std::array<std::uint32_t, 2> rows_{};

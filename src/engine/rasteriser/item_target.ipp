@@ -10,6 +10,7 @@
 #include "engine/rasteriser/lanes.ipp"
 #include "engine/rasteriser/rasteriser.hpp"
 #include "engine/rasteriser/shown_cells.hpp"
+#include "engine/rasteriser/side_corners.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -139,12 +140,13 @@ public:
     /// A convex outline tile by tile.
     /// @param inverse  1 / depth of its plane
     /// @param nearest  the largest 1 / depth of its vertices: rounding beyond it is cut off
+    /// @param corners  along its sides
     template <bool covering>
-    void draw_outline(int face, const FaceOutline& outline, const Affine& inverse, float nearest,
-                      const Shown& shown, bool front) {
+    void draw_outline(int face, const FaceOutline& outline, const SideCorners& corners, const Affine& inverse,
+                      float nearest, const Shown& shown, bool front) {
         const float bias = front ? front_bias : 1.0f;
         Covered covered{hn::Zero(ids_of), 0};
-        for_tiles(face, outline, [&](std::uint32_t at, double x, double y, Vec in_x, Vec in_y, Mask inside) {
+        for_tiles(face, outline, corners, [&](std::uint32_t at, double x, double y, Vec in_x, Vec in_y, Mask inside) {
             const Vec z = affine(inverse, x, y, in_x, in_y);
             inside = hn::And(inside, hn::Gt(z, set(0.0f)));
             const Vec depth = hn::Mul(hn::Min(z, set(nearest)), set(bias));
@@ -160,7 +162,7 @@ public:
         });
         if constexpr (covering) {
             if (shown.cells) {
-                cells_.push_back({face, outline, inverse, shown});
+                cells_.push_back({face, outline, corners, inverse, shown});
             } else {
                 add_covered(shown.first_id, covered);
             }
@@ -173,7 +175,7 @@ public:
             const Shown& shown = drawn.shown;
             const auto first = hn::Set(ids_of, shown.first_id);
             const auto count = hn::Set(ids_of, shown.id_count);
-            for_tiles(drawn.face, drawn.outline,
+            for_tiles(drawn.face, drawn.outline, drawn.corners,
                       [&](std::uint32_t at, double x, double y, Vec in_x, Vec in_y, Mask inside) {
                           const auto id = hn::Load(ids_of, &ids_[at]);
                           const auto others =
@@ -201,6 +203,7 @@ private:
     struct DrawnCells {
         int face;
         FaceOutline outline;
+        SideCorners corners;
         Affine inverse;
         Shown shown;
     };
@@ -208,9 +211,11 @@ private:
     /// Calls `visit(at, x, y, in_x, in_y, inside)` for the parts of tiles of which an outline covers a texel:
     /// first texel, place of the tile on the face, places of the lanes in the tile, lanes that it covers.
     template <class Visit>
-    HWY_INLINE void for_tiles(int face, const FaceOutline& outline, const Visit& visit) const {
+    HWY_INLINE void for_tiles(int face, const FaceOutline& outline, const SideCorners& corners,
+ const Visit& visit) const {
         const Vec zero = set(0.0f);
         const std::span<const FaceEdge> edges = outline.edges();
+        const bool bent = corners.any();
         for (std::uint32_t ty = outline.first_row(); ty <= outline.last_row(); ++ty) {
             const FaceOutline::Span span = outline.row(ty);
             std::uint32_t at = tiles_.first(face) + (ty * across_ + span.begin) * tile_size;
@@ -225,12 +230,25 @@ private:
                     if (!whole) {
                         const Vec px = hn::Add(in_x, set(static_cast<float>(x)));
                         const Vec py = hn::Add(in_y, set(static_cast<float>(y)));
-                        for (const FaceEdge& e : edges) {
+                        Mask near = hn::Lt(zero, zero);
+                        for (std::size_t i = 0; i < edges.size(); ++i) {
+                            const FaceEdge& e = edges[i];
                             const Vec value = edge(hn::Sub(set(e.ax), hn::Mul(px, set(e.aw))),
                                                    hn::Sub(set(e.ay), hn::Mul(py, set(e.aw))),
                                                    hn::Sub(set(e.bx), hn::Mul(px, set(e.bw))),
                                                    hn::Sub(set(e.by), hn::Mul(py, set(e.bw))));
-                            inside = hn::And(inside, e.in ? hn::Ge(value, zero) : hn::Gt(value, zero));
+                            if (bent) {
+                                const Vec margin = set(outline.near()[i]);
+                                near = hn::Or(near, hn::Lt(hn::Abs(value), margin));
+                                inside = hn::And(inside, hn::Gt(value, hn::Neg(margin)));
+                            } else {
+                                inside = hn::And(inside, e.in ? hn::Ge(value, zero) : hn::Gt(value, zero));
+                            }
+                        }
+                        near = hn::And(near, inside);
+                        if (HWY_UNLIKELY(!hn::AllFalse(floats, near))) {
+                            inside = hn::Or(hn::AndNot(near, inside),
+                                            inside_of_corners(near, face, outline, corners, px, py));
                         }
                         if (hn::AllFalse(floats, inside)) {
                             continue;
@@ -240,6 +258,21 @@ private:
                 }
             }
         }
+    }
+
+    /// Lanes, of those near an edge, that are inside.
+    static Mask inside_of_corners(Mask near, int face, const FaceOutline& outline, const SideCorners& corners,
+                                  Vec px, Vec py) {
+        alignas(64) Lanes<float> x;
+        alignas(64) Lanes<float> y;
+        alignas(64) Lanes<float> inside{};
+        hn::StoreU(px, floats, x.data());
+        hn::StoreU(py, floats, y.data());
+        for (std::uint32_t bits = bits_of(near); bits != 0; bits &= bits - 1) {
+            const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+            inside[lane] = corners.contain(face, outline, x[lane], y[lane]) ? 1.0f : 0.0f;
+        }
+        return hn::Gt(hn::LoadU(floats, inside.data()), set(0.0f));
     }
 
     /// f at the lanes of the tile at (x, y).

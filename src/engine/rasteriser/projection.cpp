@@ -83,6 +83,19 @@ FaceVertex Projection::on_face(int face, const std::array<float, 3>& at) const {
     return vertex;
 }
 
+std::array<float, 3> Projection::corner(std::size_t slot) const {
+    std::array<float, 3> offset{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        offset[axis] =
+            (scene_.corner_high[axis][slot] - high_[axis]) + (scene_.corner_low[axis][slot] - low_[axis]);
+    }
+    std::array<float, 3> at{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        at[axis] = (axes_[axis][0] * offset[0] + axes_[axis][1] * offset[1]) + axes_[axis][2] * offset[2];
+    }
+    return at;
+}
+
 Vec3 Projection::in_frame(const Vec3& v) const {
     return {glm::dot(v, frame_->x), glm::dot(v, frame_->y), glm::dot(v, frame_->z)};
 }

@@ -63,6 +63,9 @@ public:
     [[nodiscard]] std::uint32_t faces_of(const std::array<float, 3>& centre, float radius) const;
     /// @param at  in the eye's frame
     [[nodiscard]] FaceVertex on_face(int face, const std::array<float, 3>& at) const;
+    /// A corner of a grid polygon, in the eye's frame.
+    /// @param slot  of RasterScene::corner_high
+    [[nodiscard]] std::array<float, 3> corner(std::size_t slot) const;
     /// A direction in the eye's frame.
     [[nodiscard]] Vec3 in_frame(const Vec3& v) const;
     /// factor · (local · direction) of the direction through texel (i, j).

@@ -26,23 +26,43 @@ std::vector<DrawTriangle> collect_triangles(const DrawList& list,
     return triangles;
 }
 
-/// Whether a polygon has three or four corners, none of them straight.
-bool has_no_straight_corner(const DrawList& list, const DrawPolygon& polygon) {
+/// Finds the sides of a polygon: corners where the outline does not turn lie along them.
+/// @return where each corner lies on its side, from 0 to 1; empty where there are other than 3 or 4 sides
+std::vector<double> find_sides(const DrawList& list, double scale, RasterScene::GridPolygon& drawn) {
     constexpr double least_sine = 1e-3;
-    if (polygon.corner_count > 4) {
-        return false;
-    }
-    const auto corner = [&](std::uint32_t k) {
-        return list.vertices[list.corners[polygon.first_corner + k % polygon.corner_count].vertex];
+    const DrawPolygon& polygon = list.polygons[drawn.polygon];
+    const std::uint32_t count = polygon.corner_count;
+    const auto corner = [&](std::uint32_t k) -> const Vec3& {
+        return list.vertices[list.corners[polygon.first_corner + k % count].vertex];
     };
-    for (std::uint32_t k = 0; k < polygon.corner_count; ++k) {
-        const Vec3 before = glm::normalize(corner(k + 1) - corner(k));
-        const Vec3 after = glm::normalize(corner(k + 2) - corner(k + 1));
-        if (glm::length(glm::cross(before, after)) < least_sine) {
-            return false;
+    std::vector<std::uint32_t> begins;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const Vec3 before = glm::normalize(corner(k) - corner(k + count - 1));
+        const Vec3 after = glm::normalize(corner(k + 1) - corner(k));
+        if (glm::length(glm::cross(before, after)) >= least_sine) {
+            begins.push_back(k);
         }
     }
-    return true;
+    if (begins.size() < 3 || begins.size() > drawn.side_begin.size()) {
+        return {};
+    }
+    std::vector<double> along(count, 0.0);
+    double bend = 0.0;
+    for (std::size_t side = 0; side < begins.size(); ++side) {
+        const std::uint32_t end = side + 1 < begins.size() ? begins[side + 1] : begins[0] + count;
+        const Vec3& from = corner(begins[side]);
+        const Vec3 to_end = corner(end) - from;
+        for (std::uint32_t k = begins[side] + 1; k < end; ++k) {
+            const Vec3 offset = corner(k) - from;
+            const double at = glm::dot(offset, to_end) / glm::dot(to_end, to_end);
+            bend = std::max(bend, glm::length(offset - at * to_end));
+            along[k % count] = at;
+        }
+    }
+    drawn.sides = static_cast<std::uint32_t>(begins.size());
+    std::copy(begins.begin(), begins.end(), drawn.side_begin.begin());
+    drawn.bend = static_cast<float>(bend * scale);
+    return along;
 }
 
 /// Fills the arrays of a RasterScene, cluster by cluster.
@@ -139,7 +159,6 @@ void RasterScene::add_groups() {
                 drawn.centre = coordinates.split(outline.centre).high;
                 drawn.radius =
                     static_cast<float>(outline.radius * coordinates.scale * 1.0001) + sphere_rounding;
-                drawn.whole = has_no_straight_corner(list, outline);
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     drawn.plane[axis] = static_cast<float>(outline.normal[static_cast<int>(axis)]);
                 }
@@ -148,6 +167,9 @@ void RasterScene::add_groups() {
                 drawn.first_corner = static_cast<std::uint32_t>(corner_high[0].size());
                 drawn.corner_count = outline.corner_count;
                 drawn.corner_slots = (outline.corner_count + corner_slots - 1) / corner_slots * corner_slots;
+                std::vector<double> along = find_sides(list, coordinates.scale, drawn);
+                along.resize(drawn.corner_slots);
+                corner_along.insert(corner_along.end(), along.begin(), along.end());
                 grid_maps.push_back(make_grid_map(list, drawn.polygon));
                 for (std::uint32_t k = 0; k < drawn.corner_slots; ++k) {
                     const std::uint32_t corner = outline.first_corner + std::min(k, outline.corner_count - 1);

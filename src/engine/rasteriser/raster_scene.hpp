@@ -71,15 +71,18 @@ struct RasterScene {
         std::uint32_t first_corner = 0; ///< into corner_high and corner_low
         std::uint32_t corner_count = 0;
         std::uint32_t corner_slots = 0;
-        /// Drawn as one outline of three or four edges. Others have corners along their edges and are drawn
-        /// triangle by triangle: a short edge says little about points far along its line.
-        bool whole = false;
+        /// 3 or 4: it can be drawn as one outline with so many sides. 0: its corners do not lie in straight
+        /// rows, and it is drawn triangle by triangle.
+        std::uint32_t sides = 0;
+        std::array<std::uint32_t, 4> side_begin{}; ///< corner that a side begins at, from 0; ascending
+        float bend = 0.0f; ///< how far corners lie off their sides, raster coordinates
     };
     std::vector<GridPolygon> grid_polygons; ///< group by group
     std::vector<GridMap> grid_maps;         ///< of the grid polygons
     /// Corners of the grid polygons: x, y, z; the last one again up to a multiple of corner_slots.
     std::array<CacheLineVector<float>, 3> corner_high;
     std::array<CacheLineVector<float>, 3> corner_low;
+    std::vector<double> corner_along; ///< where each lies on its side, from 0 to 1; of polygons with sides
 
     /// Grid polygons that lie near one another.
     struct PolygonGroup {

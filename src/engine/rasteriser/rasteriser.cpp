@@ -455,7 +455,7 @@ private:
         shown.first_id = front ? scene_.front_id[first + triangle] : scene_.back_id[first + triangle];
         const std::array<int, 4> box = projection_.box_of(face, outline);
         if (box[0] <= box[1] && box[2] <= box[3]) {
-            target_.draw_outline<covering>(face, FaceOutline(outline, box),
+            target_.draw_outline<covering>(face, FaceOutline(outline, box), SideCorners(),
                                            projection_.on_texels(face, normal, 1.0 / height),
                                            nearest_of(outline), shown, front);
         }
@@ -508,20 +508,32 @@ private:
         if (occlusion) {
             faces = unhidden_faces(faces, points_, projection_, target_, slack_);
         }
+        SideCorners corners;
+        std::uint32_t sides = drawn.sides;
+        float margin = 0.0f;
+        if (sides != 0) {
+            corners = SideCorners(scene_, projection_, grid, front);
+            margin = corners.margin();
+            if (margin == std::numeric_limits<float>::infinity()) {
+                corners = SideCorners();
+                margin = 0.0f;
+                sides = 0;
+            }
+        }
         for (std::uint32_t left = faces; left != 0; left &= left - 1) {
             const int face = std::countr_zero(left);
             Shown shown;
             Affine inverse;
             bool ready = false;
-            const bool whole = drawn.whole;
             const DrawList& list = scene_.list;
-            const std::uint32_t pieces = whole ? 1 : list.polygons[drawn.polygon].triangle_count;
+            const std::uint32_t pieces = sides != 0 ? 1 : list.polygons[drawn.polygon].triangle_count;
             for (std::uint32_t piece = 0; piece < pieces; ++piece) {
                 std::array<FaceVertex, 4> outline;
-                const std::uint32_t count = whole ? drawn.corner_count : 3;
+                const std::uint32_t count = sides != 0 ? sides : 3;
                 for (std::uint32_t k = 0; k < count; ++k) {
                     const std::uint32_t corner =
-                        whole ? k : list.triangles[list.polygons[drawn.polygon].first_triangle + piece][k];
+                        sides != 0 ? drawn.side_begin[k]
+                                   : list.triangles[list.polygons[drawn.polygon].first_triangle + piece][k];
                     outline[front ? count - 1 - k : k] = projection_.on_face(face, points_.point(corner));
                 }
                 const std::span<const FaceVertex> vertices = std::span(outline).first(count);
@@ -545,8 +557,8 @@ private:
                 if (shown.cells) {
                     move_base(inverse, shown, box);
                 }
-                target_.draw_outline<covering>(face, FaceOutline(vertices, box), inverse, nearest, shown,
-                                               front);
+                target_.draw_outline<covering>(face, FaceOutline(vertices, box, margin), corners, inverse,
+                                               nearest, shown, front);
             }
         }
         if (covering && drawn_once &&
