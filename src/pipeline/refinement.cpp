@@ -453,6 +453,22 @@ private:
     Refinement result_;
 };
 
+/// Of a surface that shines: borders of the shadows that it makes are as right as it has patches, since each
+/// of them gets a few shadow rays only.
+Grid lamp_grid(const Surface& surface, double size) {
+    constexpr double cells = 4.0;
+    const auto along = [&](std::uint32_t a, std::uint32_t b) {
+        const double length = glm::length(surface.vertices[b] - surface.vertices[a]);
+        return static_cast<std::uint32_t>(std::ceil(std::max(cells, length / size)));
+    };
+    const std::uint32_t u = std::max(along(0, 1), along(surface.vertex_count - 1, surface.vertex_count - 2));
+    if (surface.vertex_count == 3) {
+        const std::uint32_t n = std::max(u, along(1, 2));
+        return {n, n};
+    }
+    return {u, std::max(along(1, 2), along(0, 3))};
+}
+
 } // namespace
 
 PatchMesh coarse_mesh(const Scene& scene, bool with_imprint) {
@@ -460,9 +476,16 @@ PatchMesh coarse_mesh(const Scene& scene, bool with_imprint) {
     for (const Surface& surface : scene.surfaces) {
         area += glm::length(area_vector(surface.polygon())) * (surface.two_sided ? 2.0 : 1.0);
     }
-    Subdivision subdivision;
-    subdivision.patch_size = std::sqrt(area / first_patches);
-    return cut_mesh(scene, subdivision, with_imprint);
+    const double size = std::sqrt(area / first_patches);
+    Scene coarse = scene;
+    coarse.patch_size = size;
+    for (Surface& surface : coarse.surfaces) {
+        const std::vector<double>& exitance = scene.materials[surface.material].exitance;
+        const bool shines =
+            std::any_of(exitance.begin(), exitance.end(), [](double value) { return value > 0.0; });
+        surface.patches = shines ? std::optional(lamp_grid(surface, size)) : std::nullopt;
+    }
+    return cut_mesh(coarse, {}, with_imprint);
 }
 
 Refinement solve_refined(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,

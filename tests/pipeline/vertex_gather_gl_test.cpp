@@ -43,31 +43,35 @@ double at_corner(const Solution& solution, std::uint32_t patch, std::uint32_t co
 } // namespace
 
 TEST_CASE("gather: vertices of a floor behind a sheet have their own light", "[pipeline][every-device]") {
-    const Scene scene = lamp_and_sheet(16, 2);
-    const PatchMesh mesh(scene);
-    Solution solution = solved(scene, mesh);
-    const auto error_of = [&](const std::vector<float>& corners) {
-        double squares = 0.0;
-        double light = 0.0;
-        for (std::uint32_t i = 0; i < 16 * 16; ++i) {
-            const PatchCorners at = mesh.corners(i);
-            for (std::uint32_t k = 0; k < 4; ++k) {
-                const double exact = exact_floor(at.points[k]);
-                squares += std::pow(static_cast<double>(corners[std::size_t{i} * 4 + k]) - exact, 2.0);
-                light += exact * exact;
+    // The lamp's patches: a single one gets as many rays as several.
+    for (const std::uint32_t lamp_cells : {1u, 2u}) {
+        const Scene scene = lamp_and_sheet(16, lamp_cells);
+        const PatchMesh mesh(scene);
+        Solution solution = solved(scene, mesh);
+        const auto error_of = [&](const std::vector<float>& corners) {
+            double squares = 0.0;
+            double light = 0.0;
+            for (std::uint32_t i = 0; i < 16 * 16; ++i) {
+                const PatchCorners at = mesh.corners(i);
+                for (std::uint32_t k = 0; k < 4; ++k) {
+                    const double exact = exact_floor(at.points[k]);
+                    squares += std::pow(static_cast<double>(corners[std::size_t{i} * 4 + k]) - exact, 2.0);
+                    light += exact * exact;
+                }
             }
+            return std::sqrt(squares / light);
+        };
+        const double means = error_of(corner_values(mesh, 1, solution.radiosity, solution.back_face_share));
+        gather_at_vertices(scene, mesh, settings_of(Preset::standard), Gather::automatic, solution);
+        REQUIRE(solution.vertex_radiosity.size() == std::size_t{mesh.size()} * 4);
+        const double gathered = error_of(solution.vertex_radiosity);
+        INFO("off by " << gathered << ", means by " << means);
+        CHECK(gathered < 0.0025);
+        CHECK(gathered < 0.2 * means);
+        // The lamp's vertices have what it radiates.
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            CHECK(at_corner(solution, 256, k) == 10.0);
         }
-        return std::sqrt(squares / light);
-    };
-    const double means = error_of(corner_values(mesh, 1, solution.radiosity, solution.back_face_share));
-    gather_at_vertices(scene, mesh, settings_of(Preset::standard), Gather::automatic, solution);
-    REQUIRE(solution.vertex_radiosity.size() == std::size_t{mesh.size()} * 4);
-    const double gathered = error_of(solution.vertex_radiosity);
-    CHECK(gathered < 0.02);
-    CHECK(gathered < 0.2 * means);
-    // The lamp's vertices have what it radiates.
-    for (std::uint32_t k = 0; k < 4; ++k) {
-        CHECK(at_corner(solution, 256, k) == 10.0);
     }
 }
 

@@ -7,6 +7,7 @@
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/pipeline/refinement.hpp"
+#include "hemi/scene/imprint.hpp"
 
 #include <fmt/format.h>
 
@@ -52,7 +53,7 @@ void refinement_target(const std::filesystem::path& scene_file, double error, do
     RefinementGoal goal;
     goal.error = error;
     const Stopwatch watch;
-    const Refinement cut = solve_refined(scene, coarse_mesh(scene), settings, {}, goal);
+    const Refinement cut = solve_refined(scene, coarse_mesh(scene, true), settings, {}, goal);
     const double seconds = watch.seconds();
     std::uint64_t rows = 0;
     for (const Refinement::Step& step : cut.steps) {
@@ -69,7 +70,9 @@ void refinement_target(const std::filesystem::path& scene_file, double error, do
     Subdivision subdivision;
     subdivision.patch_size = std::sqrt(area / cut.mesh.size());
     for (;;) {
-        const PatchMesh mesh(scene, subdivision);
+        const auto without_hidden = imprint(scene, subdivision);
+        const PatchMesh mesh =
+            without_hidden ? PatchMesh(without_hidden->scene) : PatchMesh(scene, subdivision);
         if (mesh.size() > most_patches) {
             report.finding(
                 {fmt::format("  evenly cut ones do not meet it with {} patches", most_patches), 0.0, ""});

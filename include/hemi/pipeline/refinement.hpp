@@ -59,7 +59,8 @@ struct Refinement {
     std::string stopped;     ///< why the error is not met, a sentence; empty: it is, or none was asked for
 };
 
-/// A coarse mesh to begin with: some hundreds of patches of about one size, whatever sizes the scene wants.
+/// A coarse mesh to begin with: some hundreds of patches of about one size, whatever sizes the scene wants;
+/// surfaces that shine have 4 x 4 at least, since a few shadow rays to each patch must make their shadows.
 /// @param scene          as read
 /// @param with_imprint   cut where faces touch, see imprint()
 [[nodiscard]] PatchMesh coarse_mesh(const Scene& scene, bool with_imprint = false);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -25,6 +26,11 @@ constexpr std::size_t batch_rows = 128;
 constexpr std::size_t max_traced = 48;
 /// … and no more than have this share of the variance of the row's light.
 constexpr double traced_share = 0.95;
+
+/// Where a few patches make most of the variance, as lamps of few patches do, they get more rays: so many
+/// times the usual number are shared out by standard deviation, a patch gets at most so many times as many.
+constexpr double shared_rays = 24.0;
+constexpr double most_rays = 16.0;
 
 /// A row before its factors.
 struct SampledPoint {
@@ -116,17 +122,25 @@ private:
                           [](const Doubt& a, const Doubt& b) {
                               return a.variance != b.variance ? a.variance > b.variance : a.entry < b.entry;
                           });
+        std::size_t count = 0;
         double traced = 0.0;
-        for (std::size_t k = 0; k < most && traced < traced_share * total; ++k) {
+        double deviations = 0.0;
+        for (; count < most && traced < traced_share * total; ++count) {
+            traced += doubts[count].variance;
+            deviations += std::sqrt(doubts[count].variance);
+        }
+        for (std::size_t k = 0; k < count; ++k) {
             const Doubt& doubt = doubts[k];
             Entry& entry = entries[doubt.entry];
+            const double times =
+                std::clamp(shared_rays * std::sqrt(doubt.variance) / deviations, 1.0, most_rays);
             const ShadowRays::Estimate estimate = rays_->visibility_from(
-                points_[index].position, points_[index].normal, entry.column, rays_a_pair_, index);
+                points_[index].position, points_[index].normal, entry.column,
+                static_cast<std::uint32_t>(std::lround(times)) * rays_a_pair_, index);
             if (const double sum = doubt.texels + estimate.rays; estimate.rays > 0.0) {
                 entry.visibility =
                     (doubt.texels * entry.visibility + estimate.rays * estimate.visibility) / sum;
             }
-            traced += doubt.variance;
         }
     }
 
