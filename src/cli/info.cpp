@@ -37,13 +37,23 @@ Report file_info(const std::filesystem::path& path) {
         io::ResultFile result = io::read_hres(path);
         const PatchMesh mesh(result.scene, result.subdivision);
         result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
-        Report report =
-            contents_report(result.scene, mesh, mesh.areas(), stored_solution_report(result.solution, mesh));
+        Report more;
+        const bool has_parts = result.parts.any();
+        const Scene scene = result.scene_as_read();
+        const PatchMesh patches = has_parts ? PatchMesh(scene) : mesh;
+        if (has_parts) {
+            more.add("parts", count_text(mesh.size()));
+        }
+        more.add(stored_solution_report(result.solution, mesh));
+        const io::PatchPlaces left = io::places_left(patches, mesh, result.parts);
+        Report report = contents_report(scene, patches,
+                                        has_parts ? std::span<const double>(left.areas) : mesh.areas(), more);
         report.json["kind"] = "result";
+        report.json["parts"] = mesh.size();
         report.select("hemi/info/1",
-                      {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels",
-                       "bounds", "enclosure", "environment", "camera", "groups", "materials", "renderer",
-                       "solver", "chosen_for", "error", "error_estimate"});
+                      {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "parts",
+                       "channels", "bounds", "enclosure", "environment", "camera", "groups", "materials",
+                       "renderer", "solver", "chosen_for", "error", "error_estimate"});
         return report;
     }
     if (extension == ".hff") {

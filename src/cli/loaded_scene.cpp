@@ -134,6 +134,24 @@ void LoadedScene::adopt(PatchMesh other) {
     }
 }
 
+void LoadedScene::adopt_parts(PatchMesh other, const CoarseMesh& begin) {
+    SceneAsRead before = as_read ? std::move(*as_read) : SceneAsRead{scene, mesh, {}, {}, {}, 0.0};
+    before.parts = parts_of_faces(other, begin, before.mesh);
+    before.left = io::places_left(before.mesh, other, before.parts);
+    adopt(std::move(other));
+    as_read = std::move(before);
+}
+
+bool LoadedScene::has_whole_faces() const {
+    const PatchMesh& own = patches();
+    for (std::uint32_t face = 0; face < own.surfaces().size(); ++face) {
+        if (own.patches_per_side(face) != 1) {
+            return false;
+        }
+    }
+    return true;
+}
+
 std::vector<double> LoadedScene::means(std::span<const double> values, std::size_t channels) const {
     return as_read ? means_of_patches(as_read->parts, mesh.areas(), values, channels)
                    : std::vector<double>(values.begin(), values.end());

@@ -5,6 +5,7 @@
 #include "cli/terminal.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
+#include "hemi/pipeline/refinement.hpp"
 #include "hemi/scene/imprint.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
@@ -18,7 +19,8 @@
 /// The scene that a command line names.
 namespace hemi::cli {
 
-/// A scene before its faces were cut where they touch. Its patches are what results are about.
+/// A scene before its faces were cut, where they touch or to meet an error. Its patches are what results are
+/// about.
 struct SceneAsRead {
     Scene scene;
     PatchMesh mesh;
@@ -38,6 +40,11 @@ struct LoadedScene {
 
     /// Takes another mesh of the scene, whose patches are what results are about.
     void adopt(PatchMesh other);
+    /// Takes another mesh of the scene. Results stay about the patches as they are, which are whole faces.
+    /// @param begin  what the mesh was cut from
+    void adopt_parts(PatchMesh other, const CoarseMesh& begin);
+    /// Whether every patch that results are about is one side of a face.
+    [[nodiscard]] bool has_whole_faces() const;
 
     /// The scene as it was read.
     [[nodiscard]] const Scene& uncut() const { return as_read ? as_read->scene : scene; }

@@ -54,6 +54,9 @@ void check_input(const SolveArguments& arguments) {
             "--factors holds rows of the patches that the scene is cut into; it cannot be used "
             "where patches are cut further: leave it out, or --error-target and --refine");
     }
+    if (arguments.parts && !arguments.refines()) {
+        throw InvalidArgument("--parts needs --error-target or --refine, by which patches are cut");
+    }
     if (arguments.budget > 0.0 && !arguments.refines()) {
         throw InvalidArgument("--budget needs --error-target or --refine, by which patches are cut");
     }
@@ -130,10 +133,15 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
     goal.seconds = arguments.budget;
     goal.gather = arguments.picture.flat && !arguments.result ? Gather::off : arguments.gather;
     const bool own_size = arguments.scene.subdivision != Subdivision{}; // asked for on the command line
-    Refinement found = solve_refined(
-        loaded.scene, own_size ? loaded.mesh : coarse_mesh(loaded.uncut(), arguments.scene.imprint),
-        arguments.rows.factors, arguments.solver, goal, arguments.with_irradiance(), observer);
-    loaded.adopt(std::move(found.mesh));
+    const CoarseMesh begin = own_size ? CoarseMesh{loaded.mesh, loaded.patches(), loaded.parts()}
+                                      : coarse_mesh(loaded.uncut(), arguments.scene.imprint);
+    Refinement found = solve_refined(loaded.scene, begin.mesh, arguments.rows.factors, arguments.solver, goal,
+                                     arguments.with_irradiance(), observer);
+    if (loaded.has_whole_faces() && !arguments.parts) {
+        loaded.adopt_parts(std::move(found.mesh), begin);
+    } else {
+        loaded.adopt(std::move(found.mesh));
+    }
     seconds["solve"] = found.solution.seconds;
     seconds["refine"] = watch.seconds() - found.solution.seconds;
     report = refinement_report(found.steps, found.stopped);

@@ -372,7 +372,7 @@ void Answers::refine() {
         std::optional<Refinement> found;
         if (const auto why = failure([&] {
                 if (!coarse) {
-                    coarse = coarse_mesh(subject_.scene, subject_.with_imprint);
+                    coarse = coarse_mesh(subject_.scene, subject_.with_imprint).mesh;
                 }
                 found =
                     solve_refined(subject_.scene, *coarse, candidate.settings, {}, goal, false, observer_);

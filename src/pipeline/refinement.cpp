@@ -8,8 +8,8 @@
 #include "hemi/engine/touching_faces.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/radiosity.hpp"
+#include "hemi/scene/imprint.hpp"
 #include "matrix/split_rows.hpp"
-#include "pipeline/cut_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -471,7 +471,7 @@ Grid lamp_grid(const Surface& surface, double size) {
 
 } // namespace
 
-PatchMesh coarse_mesh(const Scene& scene, bool with_imprint) {
+CoarseMesh coarse_mesh(const Scene& scene, bool with_imprint) {
     double area = 0.0;
     for (const Surface& surface : scene.surfaces) {
         area += glm::length(area_vector(surface.polygon())) * (surface.two_sided ? 2.0 : 1.0);
@@ -485,7 +485,33 @@ PatchMesh coarse_mesh(const Scene& scene, bool with_imprint) {
             std::any_of(exitance.begin(), exitance.end(), [](double value) { return value > 0.0; });
         surface.patches = shines ? std::optional(lamp_grid(surface, size)) : std::nullopt;
     }
-    return cut_mesh(coarse, {}, with_imprint);
+    PatchMesh as_read(coarse);
+    if (auto cut = with_imprint ? imprint(coarse) : std::nullopt) {
+        return {PatchMesh(cut->scene), std::move(as_read), std::move(cut->parts)};
+    }
+    return {as_read, as_read, {}};
+}
+
+PatchParts parts_of_faces(const PatchMesh& mesh, const CoarseMesh& begin, const PatchMesh& faces) {
+    for (std::uint32_t face = 0; face < faces.surfaces().size(); ++face) {
+        if (faces.patches_per_side(face) != 1) {
+            throw InvalidArgument(fmt::format("parts of faces: face {} has {}", face,
+                                              plural(faces.patches_per_side(face), "patch", "patches")));
+        }
+    }
+    PatchParts result;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const std::uint32_t s = mesh.surface_of()[i];
+        const std::uint32_t first =
+            begin.mesh.first_patch(s) + (mesh.is_back(i) ? begin.mesh.patches_per_side(s) : 0);
+        const std::uint32_t patch = begin.parts.any() ? begin.parts.patch_of[first] : first;
+        result.patch_of.push_back(faces.first_patch(begin.as_read.surface_of()[patch]) +
+                                  (begin.as_read.is_back(patch) ? 1 : 0));
+    }
+    for (std::uint32_t face = 0; face < faces.size(); ++face) {
+        result.group_of.push_back(faces.group(face));
+    }
+    return result;
 }
 
 Refinement solve_refined(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,

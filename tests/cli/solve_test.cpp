@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <sys/stat.h>
 #include <thread>
@@ -363,6 +364,60 @@ TEST_CASE("solve --gather: vertices have light of their own, in pictures, stored
     const Outcome wrong = run_hemi({"solve", scene, "--gather", "always", "-o", directory.path("x.png")});
     CHECK(wrong.status == 2);
     CHECK(wrong.err.find("auto, on or off") != std::string::npos);
+}
+
+TEST_CASE("solve: results of cut faces are about the faces, unless their parts are asked for", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(1));
+    const auto solve = [&](Words more) {
+        Words words{"solve",
+                    scene,
+                    "--device",
+                    "cpu",
+                    "--refine",
+                    "300",
+                    "--result",
+                    directory.path("a.hres"),
+                    "--json",
+                    "--radiosity",
+                    directory.path("a.csv")};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome run = run_hemi(words);
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        return run.json();
+    };
+    const auto lines = [&] {
+        std::istringstream text(directory.read("a.csv"));
+        std::vector<std::string> result;
+        for (std::string line; std::getline(text, line);) {
+            result.push_back(line);
+        }
+        return result;
+    };
+    const Json faces = solve({});
+    CHECK(faces["patches"] == 6);
+    CHECK(faces["parts"] >= 300);
+    const Json info = run_hemi({"info", directory.path("a.hres"), "--json"}).json();
+    CHECK(info["patches"] == 6);
+    const std::vector<std::string> table = lines();
+    REQUIRE(table.size() == 7);
+    const auto radiosity = [](const std::string& line) { // column 16, of the first channel
+        std::istringstream cells(line);
+        std::string cell;
+        for (int column = 0; column < 16; ++column) {
+            std::getline(cells, cell, ',');
+        }
+        return std::stod(cell);
+    };
+    CHECK(table[0].find("irradiance_blue,radiosity_red") != std::string::npos);
+    for (std::size_t face = 0; face < 6; ++face) { // every face is a group
+        CHECK(radiosity(table[face + 1]) == Approx(faces["radiosity"][face][0].get<double>()).epsilon(1e-9));
+    }
+    const Json parts = solve({"--parts"});
+    CHECK(parts["patches"] == faces["parts"]);
+    CHECK(lines().size() == parts["patches"].get<std::size_t>() + 1);
+    CHECK(run_hemi({"solve", scene, "--parts"}).status == 2);
 }
 
 TEST_CASE("solve --error-target: patches are cut until the estimate meets it", "[cli][slow]") {

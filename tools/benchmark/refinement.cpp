@@ -53,7 +53,7 @@ void refinement_target(const std::filesystem::path& scene_file, double error, do
     RefinementGoal goal;
     goal.error = error;
     const Stopwatch watch;
-    const Refinement cut = solve_refined(scene, coarse_mesh(scene, true), settings, {}, goal);
+    const Refinement cut = solve_refined(scene, coarse_mesh(scene, true).mesh, settings, {}, goal);
     const double seconds = watch.seconds();
     std::uint64_t rows = 0;
     for (const Refinement::Step& step : cut.steps) {

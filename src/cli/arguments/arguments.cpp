@@ -198,6 +198,8 @@ void add_refinement(CLI::App& app, SolveArguments& a) {
                                  [&a](const std::string& text) { a.refine = to_index("--refine", text, 1); });
     options.value("--budget", "TIME", "cut no more patches after this time, such as 30s or 5m",
                   [&a](const std::string& text) { a.budget = parse_duration("--budget", text); });
+    options.flag("--parts", a.parts,
+                 "tables, .hres and .csv of cut patches, also where the scene's own patches are whole faces");
     refine->excludes(app.get_option("--method"))->excludes(app.get_option("--no-estimate"));
 }
 

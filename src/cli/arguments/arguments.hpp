@@ -79,6 +79,7 @@ struct SolveArguments {
     PictureOptions picture;
     Gather gather = Gather::automatic;
     std::uint32_t refine = 0; ///< number of patches that they are cut into; 0: as the scene wants
+    bool parts = false;       ///< results are about the patches that it ends with, even of whole faces
     double budget = 0.0;      ///< seconds, after which no patches are split any more; 0: no limit
     std::optional<std::filesystem::path> factors;
     std::optional<std::filesystem::path> result;

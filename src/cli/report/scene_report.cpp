@@ -83,9 +83,9 @@ Report scene_size_report(const LoadedScene& loaded) {
                fmt::format("{}, {}, {}{}", plural(mesh.size(), "patch", "patches"),
                            plural(mesh.surfaces().size(), "surface", "surfaces"),
                            plural(mesh.groups().size(), "group", "groups"),
-                           loaded.as_read ? fmt::format("; in {} where faces touch",
-                                                        plural(loaded.mesh.size(), "part", "parts"))
-                                          : std::string()),
+                           loaded.as_read
+                               ? fmt::format("; cut into {}", plural(loaded.mesh.size(), "part", "parts"))
+                               : std::string()),
                {{"patches", mesh.size()}, {"parts", loaded.mesh.size()}, {"groups", mesh.groups()}});
     return report;
 }

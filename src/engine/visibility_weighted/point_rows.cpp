@@ -134,9 +134,9 @@ private:
             Entry& entry = entries[doubt.entry];
             const double times =
                 std::clamp(shared_rays * std::sqrt(doubt.variance) / deviations, 1.0, most_rays);
-            const ShadowRays::Estimate estimate = rays_->visibility_from(
-                points_[index].position, points_[index].normal, entry.column,
-                static_cast<std::uint32_t>(std::lround(times)) * rays_a_pair_, index);
+            const ShadowRays::Estimate estimate =
+                rays_->visibility_from(points_[index].position, points_[index].normal, entry.column,
+                                       static_cast<std::uint32_t>(std::lround(times)) * rays_a_pair_, index);
             if (const double sum = doubt.texels + estimate.rays; estimate.rays > 0.0) {
                 entry.visibility =
                     (doubt.texels * entry.visibility + estimate.rays * estimate.visibility) / sum;
