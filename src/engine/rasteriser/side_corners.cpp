@@ -1,5 +1,8 @@
 #include "engine/rasteriser/side_corners.hpp"
 
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
