@@ -263,7 +263,7 @@ TEST_CASE("solution error: a spherical cavity is lit evenly, whatever part of it
     CHECK(printed[0] > 1.7 * printed[1]);
 }
 
-TEST_CASE("solution error: means of groups against traced paths", "[pipeline]") {
+TEST_CASE("solution error: means of groups against traced paths", "[pipeline][slow]") {
     // The scenes are those of tools/error-truth, the means those of tests/data/path-traced/README.md.
     std::uint32_t pairs = 0;
     std::uint32_t too_small = 0;
