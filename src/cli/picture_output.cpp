@@ -4,6 +4,7 @@
 #include "hemi/core/nearest_word.hpp"
 #include "hemi/display/picture.hpp"
 #include "hemi/pipeline/picture.hpp"
+#include "hemi/pipeline/quantities.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +13,18 @@
 namespace hemi::cli {
 
 void add_picture_output(Outputs& outputs, const PictureOptions& options) {
+    if (!options.quantity && (!options.of_quantities.empty() || options.logarithmic || !options.legend)) {
+        throw InvalidArgument(fmt::format("{} needs --show with a quantity, such as irradiance",
+                                          !options.of_quantities.empty() ? options.of_quantities[0]
+                                          : options.logarithmic          ? "--log"
+                                                                         : "--no-legend"));
+    }
+    if (options.quantity && (options.exposure || options.tone_mapping_given)) {
+        throw InvalidArgument("--exposure and --tone-mapping do not apply to quantities; --range does");
+    }
+    if (options.quantity && options.output && extension_of(*options.output) == ".hdr") {
+        throw InvalidArgument("a quantity is drawn as .png: .hdr holds light");
+    }
     if (options.output) {
         outputs.add("-o", *options.output, {".png", ".hdr"}, true);
         if (extension_of(*options.output) == ".hdr" && (options.exposure || options.tone_mapping_given)) {
@@ -81,8 +94,42 @@ PictureSettings picture_settings(const PictureOptions& options) {
     return settings;
 }
 
+namespace {
+
+/// A quantity in false colours. @return as write_picture()
+Report write_quantity(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
+                      const PictureOptions& options, const std::string& device) {
+    FalseColours shown = patch_quantity(*options.quantity, scene, mesh, solution, options.channel);
+    shown.range = options.range                                                ? options.range
+                  : options.logarithmic || options.map == ColourMap::cool_warm ? std::nullopt
+                                                                               : shown.range;
+    shown.map = options.map;
+    shown.logarithmic = options.logarithmic;
+    shown.legend = options.legend;
+    const Picture picture = draw_false_colours(mesh, shown, choose_camera(scene, mesh, options),
+                                               picture_settings(options), device == "cpu" ? "auto" : device);
+    hemi::write_picture(*options.output, picture);
+    const std::string path = options.output->string();
+    const std::string_view quantity = to_word(*options.quantity);
+    Report report;
+    report.add("picture",
+               fmt::format("{} ({} x {}, {})", is_standard_output(*options.output) ? "standard output" : path,
+                           picture.width, picture.height, quantity),
+               {{"picture", path},
+                {"width", picture.width},
+                {"height", picture.height},
+                {"exposure", nullptr},
+                {"quantity", quantity}});
+    return report;
+}
+
+} // namespace
+
 Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
                      const PictureOptions& options, const std::string& device) {
+    if (options.quantity) {
+        return write_quantity(scene, mesh, solution, options, device);
+    }
     DrawSettings settings;
     settings.picture = picture_settings(options);
     settings.automatic_exposure = !options.exposure;
@@ -101,7 +148,8 @@ Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& 
                {{"picture", path},
                 {"width", drawn.picture.width},
                 {"height", drawn.picture.height},
-                {"exposure", drawn.exposure}});
+                {"exposure", drawn.exposure},
+                {"quantity", nullptr}});
     return report;
 }
 

@@ -32,7 +32,7 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options);
 [[nodiscard]] PictureSettings picture_settings(const PictureOptions& options);
 
 /// Draws and writes the picture.
-/// @return the line "picture" and the keys "picture" (path), "width", "height" and "exposure"
+/// @return the line "picture" and the keys "picture" (path), "width", "height", "exposure" and "quantity"
 /// @throws NoDevice, GlError, IoError
 [[nodiscard]] Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
                                    const PictureOptions& options, const std::string& device);

@@ -34,7 +34,7 @@ ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
     Report report = write_picture(result.scene, mesh, result.solution, options, arguments.device);
     seconds["render"] = render_watch.seconds();
     report.json.update(seconds.report().json);
-    report.select("hemi/render/1", {"picture", "width", "height", "exposure", "seconds"});
+    report.select("hemi/render/1", {"picture", "width", "height", "exposure", "quantity", "seconds"});
     outputs.show(report, arguments.common.json, terminal);
     return ExitStatus::ok;
 }

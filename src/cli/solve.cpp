@@ -57,6 +57,11 @@ void check_input(const SolveArguments& arguments) {
     if (arguments.parts && !arguments.refines()) {
         throw InvalidArgument("--parts needs --error-target or --refine, by which patches are cut");
     }
+    if (arguments.picture.quantity && is_error(*arguments.picture.quantity) &&
+        !arguments.rows.factors.estimate_error) {
+        throw InvalidArgument(fmt::format("--show {} needs the estimate that --no-estimate leaves out",
+                                          to_word(*arguments.picture.quantity)));
+    }
     if (arguments.budget > 0.0 && !arguments.refines()) {
         throw InvalidArgument("--budget needs --error-target or --refine, by which patches are cut");
     }
@@ -142,6 +147,7 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
     } else {
         loaded.adopt(std::move(found.mesh));
     }
+    found.factors.parts = loaded.parts();
     seconds["solve"] = found.solution.seconds;
     seconds["refine"] = watch.seconds() - found.solution.seconds;
     report = refinement_report(found.steps, found.stopped);
@@ -195,7 +201,8 @@ void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loa
 /// Finds the radiosity at vertices where an output holds it.
 void gather(const SolveArguments& arguments, const LoadedScene& loaded, const FormFactors& factors,
             Observer& observer, Solution& solution, Seconds& seconds) {
-    if (!arguments.result && (!arguments.picture.output || arguments.picture.flat)) {
+    const bool is_drawn = arguments.picture.output && !arguments.picture.flat && !arguments.picture.quantity;
+    if (!arguments.result && !is_drawn) {
         return;
     }
     const Stopwatch watch;
@@ -229,7 +236,11 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     LoadedScene loaded = load_scene(arguments.scene, terminal);
     seconds["load"] = loaded.seconds;
     if (arguments.picture.output) { // tested before the work
-        (void)channels_to_show(loaded.scene.channels, arguments.picture.show);
+        if (arguments.picture.quantity) {
+            check_channel(loaded.scene.channels, arguments.picture.channel);
+        } else {
+            (void)channels_to_show(loaded.scene.channels, arguments.picture.show);
+        }
         (void)choose_camera(loaded.scene, loaded.mesh, arguments.picture);
     }
     TerminalObserver observer(terminal);
@@ -254,9 +265,15 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         if (!arguments.refines()) {
             gather(arguments, loaded, factors, observer, solution, seconds);
         }
-        picture = draw(arguments, loaded, solution, seconds);
+        const bool shows_error = arguments.picture.quantity && is_error(*arguments.picture.quantity);
+        if (!shows_error) { // which is soon there
+            picture = draw(arguments, loaded, solution, seconds);
+        }
         if (!arguments.refines()) {
             estimate_patch_size(arguments, loaded, factors, observer, solution, seconds);
+        }
+        if (shows_error) {
+            picture = draw(arguments, loaded, solution, seconds);
         }
     } catch (const Cancelled&) {
         write_solution(arguments, loaded, solution, false);

@@ -3,18 +3,38 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace hemi {
 
 namespace {
 
-/// Equal steps along the scale, as sRGB.
-constexpr std::array<std::array<double, 3>, 6> stops{{{0.13, 0.07, 0.27},
-                                                      {0.21, 0.24, 0.56},
-                                                      {0.12, 0.47, 0.60},
-                                                      {0.22, 0.67, 0.46},
-                                                      {0.67, 0.83, 0.27},
-                                                      {1.00, 0.95, 0.48}}};
+/// Equal steps along a map, as 0xRRGGBB of sRGB. Sources: viridis and inferno, S. van der Walt and N. Smith,
+/// 2015 (matplotlib, CC0); turbo, A. Mikhailov, "Turbo, an improved rainbow colormap", 2019; cool-warm, K.
+/// Moreland, "Diverging color maps for scientific visualization", 2009.
+constexpr std::array<std::uint32_t, 9> viridis{0x440154, 0x472C7A, 0x3B518B, 0x2C718E, 0x21908D,
+                                               0x27AD81, 0x5CC863, 0xAADC32, 0xFDE725};
+constexpr std::array<std::uint32_t, 9> inferno{0x000004, 0x1F0C48, 0x550F6D, 0x88226A, 0xBB3754,
+                                               0xE35933, 0xF98C0A, 0xF9C932, 0xFCFFA4};
+constexpr std::array<std::uint32_t, 9> turbo{0x30123B, 0x4662D8, 0x36AAF9, 0x1AE4B6, 0x72FE5E,
+                                             0xC8EF34, 0xFABA39, 0xE4460A, 0x7A0403};
+constexpr std::array<std::uint32_t, 5> cool_warm{0x3B4CC0, 0x8DB0FE, 0xDDDDDD, 0xF4987A, 0xB40426};
+constexpr std::array<std::uint32_t, 2> grey{0x000000, 0xFFFFFF};
+
+std::span<const std::uint32_t> stops_of(ColourMap map) {
+    switch (map) {
+    case ColourMap::inferno:
+        return inferno;
+    case ColourMap::turbo:
+        return turbo;
+    case ColourMap::cool_warm:
+        return cool_warm;
+    case ColourMap::grey:
+        return grey;
+    default:
+        return viridis;
+    }
+}
 
 float linear_from_srgb(double value) {
     return static_cast<float>(value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4));
@@ -50,13 +70,15 @@ std::vector<double> ColourScale::marks() const {
     return result;
 }
 
-std::array<float, 3> scale_colour(double position) {
-    const double place = std::clamp(position, 0.0, 1.0) * (stops.size() - 1);
+std::array<float, 3> scale_colour(double position, ColourMap map) {
+    const std::span<const std::uint32_t> stops = stops_of(map);
+    const double place = std::clamp(position, 0.0, 1.0) * static_cast<double>(stops.size() - 1);
     const std::size_t before = std::min(static_cast<std::size_t>(place), stops.size() - 2);
     const double share = place - static_cast<double>(before);
     std::array<float, 3> colour{};
     for (std::size_t c = 0; c < 3; ++c) {
-        colour[c] = linear_from_srgb((1.0 - share) * stops[before][c] + share * stops[before + 1][c]);
+        const auto part = [c](std::uint32_t stop) { return (stop >> (16 - 8 * c) & 0xFF) / 255.0; };
+        colour[c] = linear_from_srgb((1.0 - share) * part(stops[before]) + share * part(stops[before + 1]));
     }
     return colour;
 }

@@ -1,17 +1,19 @@
 #pragma once
 
+#include "hemi/display/colour_map.hpp"
+
 #include <array>
 #include <cstdint>
 #include <vector>
 
 namespace hemi {
 
-/// How numbers become colours, and back: from dark violet over blue and green to yellow, brighter all the
-/// way.
+/// How numbers become colours, and back.
 struct ColourScale {
-    double low = 0.0;         ///< value of the darkest colour; above 0 where logarithmic
-    double high = 1.0;        ///< of the brightest; above low
-    bool logarithmic = false; ///< equal steps of colour are equal ratios
+    double low = 0.0;                   ///< value of the darkest colour; above 0 where logarithmic
+    double high = 1.0;                  ///< of the brightest; above low
+    bool logarithmic = false;           ///< equal steps of colour are equal ratios
+    ColourMap map = ColourMap::viridis; ///< which colours
 
     /// Where a value lies between low (0) and high (1); values outside are at the ends.
     [[nodiscard]] double position(double value) const;
@@ -23,7 +25,7 @@ struct ColourScale {
 };
 
 /// Colour at a position in [0, 1]; display linear.
-[[nodiscard]] std::array<float, 3> scale_colour(double position);
+[[nodiscard]] std::array<float, 3> scale_colour(double position, ColourMap map = ColourMap::viridis);
 /// A colour to tell item `id` from its neighbours by; display linear.
 [[nodiscard]] std::array<float, 3> item_colour(std::uint32_t id);
 

@@ -7,15 +7,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace hemi {
 
 namespace {
 
-/// From the lowest value to the highest; about a single one, where there is no other.
-ColourScale scale_of(const std::vector<double>& values) {
+/// Lowest and highest value; nothing where there is none.
+std::optional<std::array<double, 2>> extent_of(const std::vector<double>& values) {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (const double value : values) {
@@ -27,16 +29,49 @@ ColourScale scale_of(const std::vector<double>& values) {
             high = std::max(high, value);
         }
     }
-    if (low > high) {
-        return {};
+    return low <= high ? std::optional(std::array{low, high}) : std::nullopt;
+}
+
+/// From the lowest value to the highest, or as was asked for; about a single value, where there is no other.
+ColourScale scale_of(const FalseColours& shown) {
+    constexpr double decades = 1e-3; // what a logarithmic scale spans
+    const auto extent = extent_of(shown.values);
+    ColourScale scale{0.0, 1.0, shown.logarithmic, shown.map};
+    if (shown.range) {
+        scale.low = (*shown.range)[0];
+        scale.high = (*shown.range)[1];
+        if (!(scale.low < scale.high) || (shown.logarithmic && !(scale.low > 0.0))) {
+            throw InvalidArgument(fmt::format("false colours: from {} to {}; the range must ascend{}",
+                                              scale.low, scale.high,
+                                              shown.logarithmic ? ", from above 0 where logarithmic" : ""),
+                                  {"range"});
+        }
+        return scale;
+    }
+    if (!extent) {
+        scale.low = shown.logarithmic ? decades : 0.0;
+        return scale;
+    }
+    scale.low = (*extent)[0];
+    scale.high = (*extent)[1];
+    if (shown.logarithmic) {
+        if (!(scale.high > 0.0)) {
+            throw InvalidArgument("false colours: no value is above 0, which a logarithmic scale needs",
+                                  {"log"});
+        }
+        scale.low = std::max(scale.low, decades * scale.high);
+    } else if (shown.map == ColourMap::cool_warm) {
+        scale.high = std::max(std::abs(scale.low), std::abs(scale.high));
+        scale.low = -scale.high;
     }
     // Values that differ by what a solver leaves are one.
-    const double least = 1e-9 * std::max(std::abs(low), std::abs(high));
-    if (high - low <= least) {
-        const double half = high == 0.0 ? 0.5 : 0.01 * std::abs(high);
-        return {low - half, high + half, false};
+    const double least = 1e-9 * std::max(std::abs(scale.low), std::abs(scale.high));
+    if (scale.high - scale.low <= least) {
+        const double half = scale.high == 0.0 ? 0.5 : 0.01 * std::abs(scale.high);
+        scale.low -= half;
+        scale.high += half;
     }
-    return {low, high, false};
+    return scale;
 }
 
 } // namespace
@@ -47,7 +82,7 @@ Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, con
         throw InvalidArgument(
             fmt::format("false colours: {} values for {} patches", shown.values.size(), mesh.size()));
     }
-    const ColourScale scale = scale_of(shown.values);
+    const ColourScale scale = scale_of(shown);
     const std::vector<double> dark(mesh.size(), 0.0);
     PictureSettings plain = settings;
     plain.shading = Shading::flat;
@@ -60,7 +95,14 @@ Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, con
     const bool has_none =
         std::any_of(shown.values.begin(), shown.values.end(), [](double value) { return std::isnan(value); });
     title += has_none ? "; grey: not known" : "";
-    draw_legend(picture, scale, title);
+    if (shown.legend) {
+        const auto extent = extent_of(shown.values);
+        constexpr double rounding = 1e-9;
+        const double slack = rounding * (scale.high - scale.low);
+        draw_legend(
+            picture, scale, title,
+            {extent && (*extent)[0] < scale.low - slack, extent && (*extent)[1] > scale.high + slack});
+    }
     return picture;
 }
 

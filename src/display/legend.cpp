@@ -112,6 +112,34 @@ private:
     int scale_;
 };
 
+/// Values between low and high, ascending: 1, 2 and 5 times powers of ten, or these alone, or every few of
+/// them.
+std::vector<double> decade_marks(double low, double high, std::size_t most) {
+    const int first = static_cast<int>(std::floor(std::log10(low)));
+    const int last = static_cast<int>(std::ceil(std::log10(high)));
+    std::vector<double> marks;
+    const auto add = [&](double mark) {
+        if (mark >= low * (1.0 - 1e-9) && mark <= high * (1.0 + 1e-9)) {
+            marks.push_back(mark);
+        }
+    };
+    for (int decade = first; decade <= last; ++decade) {
+        for (const double step : {1.0, 2.0, 5.0}) {
+            add(step * std::pow(10.0, decade));
+        }
+    }
+    for (int every = 1; marks.size() > most && every <= last - first; ++every) {
+        marks.clear();
+        for (int decade = first; decade <= last; decade += every) {
+            add(std::pow(10.0, decade));
+        }
+    }
+    if (marks.empty() || marks.size() > most) {
+        marks.assign(1, std::sqrt(low * high));
+    }
+    return marks;
+}
+
 } // namespace
 
 std::vector<double> round_marks(double low, double high, std::size_t most) {
@@ -142,7 +170,8 @@ std::string mark_text(double mark, const std::vector<double>& marks) {
     return fmt::format("{:.{}f}", mark, decimals);
 }
 
-bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title) {
+bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title,
+                 const std::array<bool, 2>& beyond) {
     constexpr int least_width = 200;
     constexpr int least_height = 160;
     const int width = static_cast<int>(picture.width);
@@ -166,18 +195,27 @@ bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view ti
     const int bar_bottom = bar_top + 8 * s;
     for (int x = bar_left; x < bar_right; ++x) {
         const std::array<float, 3> linear =
-            scale_colour((x + 0.5 - bar_left) / static_cast<double>(bar_right - bar_left));
+            scale_colour((x + 0.5 - bar_left) / static_cast<double>(bar_right - bar_left), scale.map);
         canvas.fill(x, bar_top, x + 1, bar_bottom,
                     {srgb_of(linear[0]), srgb_of(linear[1]), srgb_of(linear[2])});
+    }
+    if (beyond[0]) {
+        canvas.text(bar_left - 9 * s, bar_top, "<");
+    }
+    if (beyond[1]) {
+        canvas.text(bar_right + 3 * s, bar_top, ">");
     }
     const auto place = [&](double mark) {
         return bar_left + static_cast<int>(std::lround(scale.position(mark) * (bar_right - bar_left - 1)));
     };
     std::vector<double> marks;
+    const auto words_of = [&](double mark) {
+        return scale.logarithmic ? fmt::format("{:.3g}", mark) : mark_text(mark, marks);
+    };
     const auto is_crowded = [&] {
         int free_from = left;
         for (const double mark : marks) {
-            const int half = canvas.width_of(mark_text(mark, marks)) / 2;
+            const int half = canvas.width_of(words_of(mark)) / 2;
             if (place(mark) - half < free_from) {
                 return true;
             }
@@ -186,11 +224,12 @@ bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view ti
         return free_from > left + box_width + 4 * s;
     };
     for (std::size_t most = 8; most > 0 && (marks.empty() || is_crowded()); --most) {
-        marks = round_marks(scale.low, scale.high, most);
+        marks = scale.logarithmic ? decade_marks(scale.low, scale.high, most)
+                                  : round_marks(scale.low, scale.high, most);
     }
     for (const double mark : marks) {
         canvas.fill(place(mark), bar_bottom, place(mark) + s, bar_bottom + 3 * s, ink);
-        const std::string words = mark_text(mark, marks);
+        const std::string words = words_of(mark);
         canvas.text(place(mark) - canvas.width_of(words) / 2, bar_bottom + 5 * s, words);
     }
     return true;

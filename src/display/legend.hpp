@@ -3,6 +3,7 @@
 #include "display/colour_scale.hpp"
 #include "hemi/display/picture.hpp"
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +16,10 @@ namespace hemi {
 /// Words of one of them, with as many digits as tell it from the next.
 [[nodiscard]] std::string mark_text(double mark, const std::vector<double>& marks);
 
-/// Draws a title and a linear scale with marks into the lower left of `srgb`.
+/// Draws a title and a scale with marks into the lower left of `srgb`.
+/// @param beyond  whether values lie below and above the scale: < and > at its ends say so
 /// @return whether there was room for it
-bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title);
+bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title,
+                 const std::array<bool, 2>& beyond = {false, false});
 
 } // namespace hemi

@@ -39,7 +39,7 @@ std::vector<std::array<float, 3>> value_colours(std::span<const double> values, 
                 channel *= none_level;
             }
         } else {
-            colours[i] = scale_colour(scale.position(values[i]));
+            colours[i] = scale_colour(scale.position(values[i]), scale.map);
         }
     }
     return colours;

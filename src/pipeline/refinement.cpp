@@ -453,22 +453,6 @@ private:
     Refinement result_;
 };
 
-/// Of a surface that shines: borders of the shadows that it makes are as right as it has patches, since each
-/// of them gets a few shadow rays only.
-Grid lamp_grid(const Surface& surface, double size) {
-    constexpr double cells = 4.0;
-    const auto along = [&](std::uint32_t a, std::uint32_t b) {
-        const double length = glm::length(surface.vertices[b] - surface.vertices[a]);
-        return static_cast<std::uint32_t>(std::ceil(std::max(cells, length / size)));
-    };
-    const std::uint32_t u = std::max(along(0, 1), along(surface.vertex_count - 1, surface.vertex_count - 2));
-    if (surface.vertex_count == 3) {
-        const std::uint32_t n = std::max(u, along(1, 2));
-        return {n, n};
-    }
-    return {u, std::max(along(1, 2), along(0, 3))};
-}
-
 } // namespace
 
 CoarseMesh coarse_mesh(const Scene& scene, bool with_imprint) {
@@ -477,15 +461,26 @@ CoarseMesh coarse_mesh(const Scene& scene, bool with_imprint) {
         area += glm::length(area_vector(surface.polygon())) * (surface.two_sided ? 2.0 : 1.0);
     }
     const double size = std::sqrt(area / first_patches);
-    Scene coarse = scene;
-    coarse.patch_size = size;
-    for (Surface& surface : coarse.surfaces) {
+    const auto shines = [&](const Surface& surface) {
         const std::vector<double>& exitance = scene.materials[surface.material].exitance;
-        const bool shines =
-            std::any_of(exitance.begin(), exitance.end(), [](double value) { return value > 0.0; });
-        surface.patches = shines ? std::optional(lamp_grid(surface, size)) : std::nullopt;
+        return std::any_of(exitance.begin(), exitance.end(), [](double value) { return value > 0.0; });
+    };
+    const auto lamps = std::count_if(scene.surfaces.begin(), scene.surfaces.end(), shines);
+    // Borders of shadows are as right as what shines has patches, since each of them gets a few shadow rays
+    // only; many lamps make up for one another.
+    constexpr double most_cells = 4.0;
+    const auto cells = static_cast<std::uint32_t>(std::clamp(
+        std::sqrt(first_patches / static_cast<double>(std::max<std::ptrdiff_t>(lamps, 1))), 1.0, most_cells));
+    Subdivision even;
+    even.patch_size = size;
+    PatchMesh as_read(scene, even);
+    Scene coarse = scene;
+    for (std::uint32_t s = 0; s < coarse.surfaces.size(); ++s) {
+        const Grid grid = as_read.grid(s);
+        const std::uint32_t least = shines(coarse.surfaces[s]) ? cells : 1;
+        coarse.surfaces[s].patches = Grid{std::max(least, grid.u), std::max(least, grid.v)};
     }
-    PatchMesh as_read(coarse);
+    as_read = PatchMesh(coarse);
     if (auto cut = with_imprint ? imprint(coarse) : std::nullopt) {
         return {PatchMesh(cut->scene), std::move(as_read), std::move(cut->parts)};
     }

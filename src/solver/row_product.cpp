@@ -1,7 +1,5 @@
 #include "solver/row_product.hpp"
 
-#include <array>
-
 // One source for all instruction sets: this file is compiled once for each by foreach_target.h.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "solver/row_product.cpp"

@@ -36,8 +36,8 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
     const float right = origin.x + width - pad - 20.0F;
     const float top = origin.y + pad + line_height + 3.0F;
     const float bottom = top + 12.0F;
-    const auto colour = [](double position) {
-        const std::array<float, 3> linear = scale_colour(position);
+    const auto colour = [&](double position) {
+        const std::array<float, 3> linear = scale_colour(position, field.scale.map);
         const auto encode = [](float value) {
             const float srgb =
                 value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;

@@ -288,6 +288,25 @@ TEST_CASE("render: draws a stored solution as solve drew it", "[cli]") {
     CHECK(shown["schema"] == "hemi/render/1");
     CHECK(directory.read("c.hdr").rfind("#?RADIANCE", 0) == 0);
     CHECK(run_hemi({"render", result, "-o", "-", "--show", "green,blue"}).status == 2);
+    // Quantities look the same whether the solution was stored before or not.
+    REQUIRE(run_hemi(quick(with({"solve", scene, "-o", directory.path("e.png"), "--show", "irradiance",
+                                 "--channel", "red", "--map", "inferno"})))
+                .status == 0);
+    const Json quantity =
+        run_hemi(with({"render", result, "-o", directory.path("f.png"), "--device", "osmesa", "--show",
+                       "irradiance", "--channel", "red", "--map", "inferno", "--json"}))
+            .json();
+    CHECK(quantity["quantity"] == "irradiance");
+    CHECK(directory.read("e.png") == directory.read("f.png"));
+    CHECK(directory.read("e.png") != directory.read("a.png"));
+    for (const Words& wrong :
+         {Words{"--range", "0,1"}, Words{"--show", "area", "--exposure", "2"}, Words{"--log"},
+          Words{"--show", "area", "--range", "2,1"}, Words{"--show", "radiosity", "--channel", "violet"}}) {
+        Words words{"render", result, "--device", "osmesa", "-o", directory.path("g.png")};
+        words.insert(words.end(), wrong.begin(), wrong.end());
+        CHECK(run_hemi(words).status == 2);
+    }
+    CHECK_FALSE(directory.has("g.png"));
     CHECK(run_hemi({"render", result, "-o", "-", "--show", "gren"}).err_has("did you mean"));
     CHECK(run_hemi({"render", scene, "-o", "-"}).status == 2);
 
@@ -398,6 +417,9 @@ TEST_CASE("solve: results of cut faces are about the faces, unless their parts a
     const Json faces = solve({});
     CHECK(faces["patches"] == 6);
     CHECK(faces["parts"] >= 300);
+    for (const Json& patch : faces["reciprocity"]["worst"]) {
+        CHECK(patch < 6);
+    }
     const Json info = run_hemi({"info", directory.path("a.hres"), "--json"}).json();
     CHECK(info["patches"] == 6);
     const std::vector<std::string> table = lines();

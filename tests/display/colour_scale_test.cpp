@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 
 using namespace hemi;
@@ -52,4 +53,27 @@ TEST_CASE("item_colour: neighbours differ", "[display]") {
         const auto b = item_colour(id + 1);
         CHECK(std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) > 0.05F);
     }
+}
+
+TEST_CASE("ColourScale: maps begin and end where they should, and grow brighter where they say so",
+          "[display]") {
+    const auto light = [](ColourMap map, double position) {
+        const std::array<float, 3> c = scale_colour(position, map);
+        return 0.2126F * c[0] + 0.7152F * c[1] + 0.0722F * c[2];
+    };
+    for (const ColourMap map : {ColourMap::viridis, ColourMap::inferno, ColourMap::grey}) {
+        INFO(to_word(map));
+        for (int k = 1; k <= 100; ++k) {
+            CHECK(light(map, k / 100.0) > light(map, (k - 1) / 100.0));
+        }
+    }
+    CHECK(scale_colour(0.0, ColourMap::grey) == std::array<float, 3>{0.0F, 0.0F, 0.0F});
+    CHECK(scale_colour(1.0, ColourMap::grey) == std::array<float, 3>{1.0F, 1.0F, 1.0F});
+    const std::array<float, 3> middle =
+        scale_colour(0.5, ColourMap::cool_warm); // of both sides of zero: grey
+    CHECK(middle[0] == middle[1]);
+    CHECK(middle[1] == middle[2]);
+    CHECK(scale_colour(0.0, ColourMap::cool_warm)[2] > scale_colour(0.0, ColourMap::cool_warm)[0]);
+    CHECK(scale_colour(1.0, ColourMap::cool_warm)[0] > scale_colour(1.0, ColourMap::cool_warm)[2]);
+    CHECK(scale_colour(0.0, ColourMap::turbo)[2] > scale_colour(0.0, ColourMap::turbo)[1]);
 }

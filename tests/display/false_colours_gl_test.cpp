@@ -88,6 +88,28 @@ TEST_CASE("False colours: the lowest and the highest value have the ends of the 
         }
     }
     CHECK((low && high && ink));
+    // A range of one's own, on a logarithmic scale, with other colours and without the legend.
+    FalseColours own{{1.0, 10.0, 100.0, 1000.0}, "Light", "lx"};
+    own.range = {1.0, 100.0};
+    own.logarithmic = true;
+    own.map = ColourMap::grey;
+    own.legend = false;
+    const Picture ranged = draw_false_colours(mesh, own, camera, settings, "osmesa");
+    CHECK(pixel(ranged, 40, 100) == Pixel{0, 0, 0});
+    CHECK(pixel(ranged, 120, 100) == Pixel{128, 128, 128});
+    CHECK(pixel(ranged, 200, 100) == Pixel{255, 255, 255});
+    CHECK(pixel(ranged, 280, 100) == Pixel{255, 255, 255});
+    CHECK(pixel(ranged, 7, 312) != legend_ground);
+    own.range = {0.0, 100.0};
+    CHECK_THROWS_AS(draw_false_colours(mesh, own, camera, settings, "osmesa"), InvalidArgument);
+    own.range.reset();
+    own.values = {0.0, -1.0, 0.0, 0.0};
+    CHECK_THROWS_AS(draw_false_colours(mesh, own, camera, settings, "osmesa"), InvalidArgument);
+    // About zero both sides have as many colours.
+    own = {{-1.0, 0.0, 4.0, 0.0}, "Flux", ""};
+    own.map = ColourMap::cool_warm;
+    const Pixel zero = pixel(draw_false_colours(mesh, own, camera, settings, "osmesa"), 120, 100);
+    CHECK((zero[0] == zero[1] && zero[1] == zero[2]));
     // One value alone is the middle, and what is small has no legend.
     settings.width = 150;
     shown.values.assign(4, 300.0);

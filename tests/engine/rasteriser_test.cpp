@@ -256,6 +256,14 @@ TEST_CASE("Rasteriser and OpenGL: item buffers equal rays through the texel cent
     SECTION("faces that are cut where others stand on them") {
         check_against_rays(PatchMesh(cut_room(0.0)), settings, 31);
     }
+    SECTION("a corner of a neighbour just inside a triangle") {
+        // It touches the triangle's edge by the tolerance for rounding of files, and bends it inwards.
+        Scene scene = empty_scene();
+        add_polygon(scene, "cut", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {4, 4});
+        add_polygon(scene, "beside", {{0, 0, 0}, {0.5, -1, 0}, {0.99999, 1e-6, 0}});
+        add_polygon(scene, "above", {{0, 0, 2}, {0, 3, 2}, {3, 0, 2}});
+        check_against_rays(PatchMesh(scene), settings, 1);
+    }
     SECTION("two-sided sheets that intersect") {
         check_against_rays(PatchMesh(sheets()), settings, 7);
     }
@@ -295,7 +303,7 @@ TEST_CASE("Rasteriser: a merged lattice shows the same items as its faces", "[en
 
 TEST_CASE("Rasteriser: every instruction set draws the same items", "[engine]") {
     for (const Scene& scene :
-         {room_with_blocks(5), tapered_box(4), bumpy_cave(12), sheets(), needle_room()}) {
+         {room_with_blocks(5), tapered_box(4), bumpy_cave(12), sheets(), needle_room(), cut_room(0.0)}) {
         const PatchMesh mesh(scene);
         std::vector<std::vector<std::uint32_t>> expected;
         for (const char* simd : {"scalar", "sse4", "avx2", "avx512"}) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include "hemi/display/colour_map.hpp"
 #include "hemi/display/picture.hpp"
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,17 +15,24 @@ struct FalseColours {
     std::vector<double> values; ///< N; not a number where there is none: dark grey
     std::string title;          ///< of the legend; ASCII, and ² and °
     std::string unit;           ///< behind it; likewise
+    /// Values of the first and the last colour, ascending; none: the lowest and the highest value, or, by
+    /// ColourMap::cool_warm, the same on both sides of zero.
+    std::optional<std::array<double, 2>> range{};
+    bool logarithmic = false; ///< equal steps of colour are equal ratios; values below 0 are at the low end
+    ColourMap map = ColourMap::viridis; ///< which colours
+    bool legend = true;                 ///< whether there is one
 };
 
-/// Draws values as draw_picture() draws light: from dark violet, the lowest, over blue and green to yellow,
-/// the highest, in equal steps. The legend is in the lower left of `srgb` where there is room for it, from
-/// 200 pixels of width and 160 of height on; `linear` has the colours alone.
+/// Draws values as draw_picture() draws light, in the colours of a map. The legend is in the lower left of
+/// `srgb` where there is room for it, from 200 pixels of width and 160 of height on; `linear` has the colours
+/// alone. < and > at its ends say that there are values beyond.
 /// @param mesh      its patches
 /// @param shown     values of all of them
 /// @param camera    as in draw_picture()
 /// @param settings  size, samples, outlines and backs count
 /// @param device    auto, egl, egl:N or osmesa
-/// @throws InvalidArgument for another number of values, and infinite ones; as draw_picture()
+/// @throws InvalidArgument for another number of values, infinite ones, and a range that does not ascend or,
+///   where logarithmic, does not begin above 0; as draw_picture()
 [[nodiscard]] Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown,
                                          const Camera& camera, const PictureSettings& settings,
                                          const std::string& device);

@@ -272,7 +272,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     output.path("--radiosity", "FILE.csv", a.radiosity,
                 "exitance, irradiance, radiosity and its error of every patch");
     output.path("--patches", "FILE.csv", a.patches, "area, centre, normal, environment share of every patch");
-    add_picture(app, a.picture, picture);
+    add_picture(app, a.picture, picture, true);
     add_gather(app, a.gather);
     add_common(app, a.common);
     app.footer("Examples:\n"
@@ -427,12 +427,13 @@ void add_render(CLI::App& app, RenderArguments& a) {
     Options output(app, "Output");
     output.path("-o,--output", "PICTURE", a.picture.output,
                 "picture: .png or .hdr (RESULT's name with .png, here); - for .png on stdout");
-    add_picture(app, a.picture, nullptr);
+    add_picture(app, a.picture, nullptr, true);
     add_device(app, a.device, false);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi render room.hres -o room.png --size 1600x900 --exposure 0.8\n"
-               "  hemi render room.hres -o flat.png --flat --camera 0,-3,1:0,0,1");
+               "  hemi render room.hres -o flat.png --flat --camera 0,-3,1:0,0,1\n"
+               "  hemi render room.hres -o light.png --show irradiance --range 0,500");
 }
 
 #ifdef HEMI_WITH_VIEWER
@@ -444,7 +445,7 @@ void add_view(CLI::App& app, ViewArguments& a) {
     add_environment(app, a.scene);
     add_solver(app, a.solver);
     a.picture.size = {1280, 720};
-    add_picture(app, a.picture, nullptr);
+    add_picture(app, a.picture, nullptr, false);
     add_gather(app, a.gather);
     Options window(app, "Window");
     window.choice<viewer::Controls>("--controls", "NAME",

@@ -7,6 +7,7 @@
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/matrix/repair.hpp"
 #include "hemi/pipeline/points.hpp"
+#include "hemi/pipeline/quantities.hpp"
 #include "hemi/pipeline/refinement.hpp"
 #include "hemi/pipeline/settings.hpp"
 #include "hemi/scene/patch_mesh.hpp"
@@ -67,7 +68,14 @@ struct PictureOptions {
     bool backs = false;
     bool orthographic = false;
     std::uint32_t samples = 4;
-    std::vector<std::string> show; ///< channel names; empty: all of one or three channels
+    std::vector<std::string> show;    ///< channel names; empty: all of one or three channels
+    std::optional<Quantity> quantity; ///< is shown in false colours instead of light
+    std::string channel = "mean";     ///< of the quantity
+    std::optional<std::array<double, 2>> range;
+    ColourMap map = ColourMap::viridis;
+    bool logarithmic = false;
+    bool legend = true;
+    std::vector<std::string> of_quantities; ///< options given that only they have
     std::optional<CameraOption> camera;
 };
 
@@ -91,7 +99,9 @@ struct SolveArguments {
         return refine > 0 || (rows.error_target && rows.error_of != ErrorOf::factors);
     }
     /// Whether an output holds the irradiance, which takes the rows of all patches.
-    [[nodiscard]] bool with_irradiance() const { return result || radiosity; }
+    [[nodiscard]] bool with_irradiance() const {
+        return result || radiosity || (picture.quantity && needs_all_rows(*picture.quantity));
+    }
 };
 
 struct FactorsArguments {

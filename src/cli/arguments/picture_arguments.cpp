@@ -2,6 +2,7 @@
 
 #include "cli/arguments/arguments.hpp"
 #include "cli/arguments/options.hpp"
+#include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
 
@@ -35,13 +36,63 @@ std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture) {
     return added;
 }
 
+std::string quantity_words() {
+    std::string words;
+    for (const auto& [quantity, word] : Names<Quantity>::table) {
+        words += fmt::format("{}{}", words.empty() ? "" : ", ", word);
+    }
+    return words;
+}
+
+/// How quantities are shown in false colours. @return all of them
+std::vector<CLI::Option*> add_quantities(CLI::App& app, PictureOptions& picture) {
+    std::vector<CLI::Option*> added;
+    Options options(app, "Picture");
+    const auto given = [&picture](const char* name) { picture.of_quantities.emplace_back(name); };
+    added.push_back(options.value("--channel", "NAME",
+                                  "of a quantity: a channel, mean (the default), sum or luminance",
+                                  [&picture, given](const std::string& text) {
+                                      picture.channel = text;
+                                      given("--channel");
+                                  }));
+    added.push_back(options.value(
+        "--range", "A,B", "values of the first and the last colour",
+        [&picture, given](const std::string& text) {
+            const std::vector<std::string> ends = parse_list(text);
+            if (ends.size() != 2) {
+                throw InvalidArgument(fmt::format("--range {}: must be two numbers, such as 0,500", text));
+            }
+            picture.range = {parse_number("--range", ends[0]), parse_number("--range", ends[1])};
+            given("--range");
+        }));
+    added.push_back(options.choice<ColourMap>("--map", "NAME",
+                                              "viridis (the default), inferno, turbo, cool-warm or grey",
+                                              [&picture, given](ColourMap map) {
+                                                  picture.map = map;
+                                                  given("--map");
+                                              }));
+    options.flag("--log", picture.logarithmic, "equal steps of colour are equal ratios");
+    options.flag("--no-legend", picture.legend, "no legend in the picture", false);
+    added.push_back(app.get_option("--log"));
+    added.push_back(app.get_option("--no-legend"));
+    return added;
+}
+
 } // namespace
 
-std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture) {
+std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool quantities) {
     Options options(app, "Picture");
     std::vector<CLI::Option*> added;
-    added.push_back(options.value("--show", "A,B,C", "channels shown as red, green, blue; or one, as grey",
-                                  [&picture](const std::string& text) { picture.show = parse_list(text); }));
+    added.push_back(options.value(
+        "--show", quantities ? "A,B,C|QUANTITY" : "A,B,C",
+        quantities
+            ? fmt::format("channels shown as red, green, blue; or one, as grey; or in false colours: {}",
+                          quantity_words())
+            : "channels shown as red, green, blue; or one, as grey",
+        [&picture, quantities](const std::string& text) {
+            picture.show = parse_list(text);
+            picture.quantity = quantities ? from_word<Quantity>(text) : std::nullopt;
+        }));
     options.flag("--flat", picture.flat, "one colour a patch instead of smooth shading");
     added.push_back(app.get_option("--flat"));
     added.push_back(options.value("--exposure", "X", "factor on radiosity, or auto (the default)",
@@ -60,10 +111,14 @@ void add_gather(CLI::App& app, Gather& gather) {
                         "radiosity at vertices by rows of their own: crisp shadows", gather);
 }
 
-void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
-    std::vector<CLI::Option*> added = add_shown(app, picture);
+void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bool quantities) {
+    std::vector<CLI::Option*> added = add_shown(app, picture, quantities);
     const std::vector<CLI::Option*> drawn = add_drawn(app, picture);
     added.insert(added.end(), drawn.begin(), drawn.end());
+    if (quantities) {
+        const std::vector<CLI::Option*> of_them = add_quantities(app, picture);
+        added.insert(added.end(), of_them.begin(), of_them.end());
+    }
     added.push_back(Options(app, "Picture")
                         .choice<ToneMapping>("--tone-mapping", "NAME", "filmic (the default) or linear",
                                              [&picture](ToneMapping value) {

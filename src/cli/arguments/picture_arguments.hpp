@@ -14,12 +14,14 @@ struct HeatPicture;
 struct PictureOptions;
 
 /// Channels, shading and exposure of a solution that is shown. @return all of them
-std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture);
+/// @param quantities  whether a quantity may be shown instead
+std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool quantities = false);
 /// `--gather`.
 void add_gather(CLI::App& app, Gather& gather);
 /// All of a picture of light.
-/// @param output  the option without which these make no sense; may be none.
-void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output);
+/// @param output      the option without which these make no sense; may be none.
+/// @param quantities  whether quantities can be shown in false colours instead
+void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bool quantities);
 /// All of a picture of heat.
 /// @param output  the option without which these make no sense
 /// @return their names

@@ -24,7 +24,8 @@ FaceEdge make_edge(const FaceVertex& a, const FaceVertex& b) {
     return e;
 }
 
-FaceOutline::FaceOutline(std::span<const FaceVertex> outline, const std::array<int, 4>& box, float near)
+FaceOutline::FaceOutline(std::span<const FaceVertex> outline, const std::array<int, 4>& box,
+                         float near_corners)
     : count_(static_cast<std::uint32_t>(outline.size())), columns_{static_cast<std::uint32_t>(box[0]) / 4,
                                                                    static_cast<std::uint32_t>(box[1]) / 4},
       rows_{static_cast<std::uint32_t>(box[2]) / 4, static_cast<std::uint32_t>(box[3]) / 4} {
@@ -52,7 +53,7 @@ FaceOutline::FaceOutline(std::span<const FaceVertex> outline, const std::array<i
                          std::max(2.0 * reach * length, 1e-4 * (std::abs(ax * by) + std::abs(ay * bx)));
         near_[k] = far ? 0.0f : std::numeric_limits<float>::infinity();
         if (length > 1e-4 * scale) {
-            near_[k] = static_cast<float>(static_cast<double>(near) * length);
+            near_[k] = static_cast<float>(static_cast<double>(near_corners) * length);
             lines_[k] = {x / length, y / length, at_origin / length, length / x, true};
         }
     }

@@ -24,8 +24,9 @@ public:
     FaceOutline() = default;
     /// @param outline  3 or 4 vertices
     /// @param box      left, right, low and high texel that it may cover
-    /// @param margin   SideCorners::margin()
-    FaceOutline(std::span<const FaceVertex> outline, const std::array<int, 4>& box, float margin = 0.0f);
+    /// @param near_corners  SideCorners::margin()
+    FaceOutline(std::span<const FaceVertex> outline, const std::array<int, 4>& box,
+                float near_corners = 0.0f);
 
     [[nodiscard]] std::span<const FaceEdge> edges() const { return std::span(edges_).first(count_); }
 

@@ -146,20 +146,21 @@ public:
                       float nearest, const Shown& shown, bool front) {
         const float bias = front ? front_bias : 1.0f;
         Covered covered{hn::Zero(ids_of), 0};
-        for_tiles(face, outline, corners, [&](std::uint32_t at, double x, double y, Vec in_x, Vec in_y, Mask inside) {
-            const Vec z = affine(inverse, x, y, in_x, in_y);
-            inside = hn::And(inside, hn::Gt(z, set(0.0f)));
-            const Vec depth = hn::Mul(hn::Min(z, set(nearest)), set(bias));
-            if (shown.cells) {
-                put_lanes(at, inside, depth, ids_at(shown, z, x, y, in_x, in_y));
-                return;
-            }
-            if constexpr (covering) {
-                inside = on_face_only(inside, face, x, y, in_x, in_y);
-                cover(at, inside, covered);
-            }
-            put_lanes(at, inside, depth, hn::Set(ids_of, shown.first_id));
-        });
+        for_tiles(face, outline, corners,
+                  [&](std::uint32_t at, double x, double y, Vec in_x, Vec in_y, Mask inside) {
+                      const Vec z = affine(inverse, x, y, in_x, in_y);
+                      inside = hn::And(inside, hn::Gt(z, set(0.0f)));
+                      const Vec depth = hn::Mul(hn::Min(z, set(nearest)), set(bias));
+                      if (shown.cells) {
+                          put_lanes(at, inside, depth, ids_at(shown, z, x, y, in_x, in_y));
+                          return;
+                      }
+                      if constexpr (covering) {
+                          inside = on_face_only(inside, face, x, y, in_x, in_y);
+                          cover(at, inside, covered);
+                      }
+                      put_lanes(at, inside, depth, hn::Set(ids_of, shown.first_id));
+                  });
         if constexpr (covering) {
             if (shown.cells) {
                 cells_.push_back({face, outline, corners, inverse, shown});
@@ -212,7 +213,7 @@ private:
     /// first texel, place of the tile on the face, places of the lanes in the tile, lanes that it covers.
     template <class Visit>
     HWY_INLINE void for_tiles(int face, const FaceOutline& outline, const SideCorners& corners,
- const Visit& visit) const {
+                              const Visit& visit) const {
         const Vec zero = set(0.0f);
         const std::span<const FaceEdge> edges = outline.edges();
         const bool bent = corners.any();

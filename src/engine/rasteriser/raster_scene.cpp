@@ -39,7 +39,11 @@ std::vector<double> find_sides(const DrawList& list, double scale, RasterScene::
     for (std::uint32_t k = 0; k < count; ++k) {
         const Vec3 before = glm::normalize(corner(k) - corner(k + count - 1));
         const Vec3 after = glm::normalize(corner(k + 1) - corner(k));
-        if (glm::length(glm::cross(before, after)) >= least_sine) {
+        const double sine = glm::dot(glm::cross(before, after), polygon.normal);
+        if (sine <= -least_sine) {
+            return {}; // a corner of a neighbour lies inside, by as much as counts as touching
+        }
+        if (sine >= least_sine) {
             begins.push_back(k);
         }
     }

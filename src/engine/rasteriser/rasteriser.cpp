@@ -507,6 +507,9 @@ private:
         bool drawn_once = false;
         if (occlusion) {
             faces = unhidden_faces(faces, points_, projection_, target_, slack_);
+            if (faces == 0) {
+                return;
+            }
         }
         SideCorners corners;
         std::uint32_t sides = drawn.sides;

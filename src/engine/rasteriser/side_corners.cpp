@@ -12,7 +12,7 @@ namespace hemi {
 
 namespace {
 
-constexpr double most_margin = 0.005; // below that of FaceOutline::row()
+constexpr double most_margin = 0.009; // below that of FaceOutline::row()
 
 } // namespace
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -21,14 +22,15 @@ namespace {
 
 /// Rows whose factors are found at once, by all threads. Memory: 2 bytes a patch and row, and the rows.
 constexpr std::size_t batch_rows = 128;
-/// Patches of a row that get shadow rays: enough for the lamps of a room, few enough that rays take no more
-/// time than all else. Chosen, not fitted.
+/// Patches of a row that get shadow rays: enough for the lamps of a room, few enough that rays take about as
+/// much time as all else. Chosen, not fitted.
 constexpr std::size_t max_traced = 48;
 /// … and no more than have this share of the variance of the row's light.
 constexpr double traced_share = 0.95;
 
 /// Where a few patches make most of the variance, as lamps of few patches do, they get more rays: so many
-/// times the usual number are shared out by standard deviation, a patch gets at most so many times as many.
+/// times the usual number are shared out by standard deviation, in powers of two, which are spread best; a
+/// patch gets at most so many times as many.
 constexpr double shared_rays = 24.0;
 constexpr double most_rays = 16.0;
 
@@ -134,9 +136,9 @@ private:
             Entry& entry = entries[doubt.entry];
             const double times =
                 std::clamp(shared_rays * std::sqrt(doubt.variance) / deviations, 1.0, most_rays);
-            const ShadowRays::Estimate estimate =
-                rays_->visibility_from(points_[index].position, points_[index].normal, entry.column,
-                                       static_cast<std::uint32_t>(std::lround(times)) * rays_a_pair_, index);
+            const ShadowRays::Estimate estimate = rays_->visibility_from(
+                points_[index].position, points_[index].normal, entry.column,
+                std::bit_floor(static_cast<std::uint32_t>(times)) * rays_a_pair_, index);
             if (const double sum = doubt.texels + estimate.rays; estimate.rays > 0.0) {
                 entry.visibility =
                     (doubt.texels * entry.visibility + estimate.rays * estimate.visibility) / sum;

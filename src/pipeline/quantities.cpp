@@ -1,0 +1,199 @@
+#include "hemi/pipeline/quantities.hpp"
+
+#include "hemi/core/buried.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/core/nearest_word.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace hemi {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// How much of every channel is in the one value.
+std::vector<double> channel_weights(const std::vector<std::string>& channels, const std::string& wanted) {
+    std::vector<double> weights(channels.size(), 0.0);
+    if (const auto named = std::find(channels.begin(), channels.end(), wanted); named != channels.end()) {
+        weights[static_cast<std::size_t>(named - channels.begin())] = 1.0;
+        return weights;
+    }
+    if (wanted == "mean" || wanted == "sum") {
+        std::fill(weights.begin(), weights.end(),
+                  wanted == "sum" ? 1.0 : 1.0 / static_cast<double>(channels.size()));
+        return weights;
+    }
+    if (wanted == "luminance") {
+        constexpr std::array<std::pair<const char*, double>, 3> parts{
+            {{"red", 0.2126}, {"green", 0.7152}, {"blue", 0.0722}}};
+        for (const auto& [name, weight] : parts) {
+            const auto found = std::find(channels.begin(), channels.end(), name);
+            if (found == channels.end()) {
+                throw InvalidArgument(
+                    fmt::format("luminance needs channels red, green and blue; the scene has {}",
+                                fmt::join(channels, ", ")),
+                    {"channel"});
+            }
+            weights[static_cast<std::size_t>(found - channels.begin())] = weight;
+        }
+        return weights;
+    }
+    throw InvalidArgument(fmt::format("there is no channel '{}' among {}, mean, sum and luminance{}", wanted,
+                                      fmt::join(channels, ", "), did_you_mean(wanted, channels)),
+                          {"channel"});
+}
+
+std::vector<double> one_value(std::span<const double> values, const std::vector<double>& weights) {
+    std::vector<double> result(values.size() / weights.size(), 0.0);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        result[k / weights.size()] += weights[k % weights.size()] * values[k];
+    }
+    return result;
+}
+
+/// Errors of channels are not told apart by sign: the root of the sum of squares.
+std::vector<double> one_error(std::span<const double> values, const std::vector<double>& weights) {
+    std::vector<double> result(values.size() / weights.size(), 0.0);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        result[k / weights.size()] += std::pow(weights[k % weights.size()] * values[k], 2.0);
+    }
+    for (double& value : result) {
+        value = std::sqrt(value);
+    }
+    return result;
+}
+
+[[noreturn]] void missing(const char* what, const char* why) {
+    throw InvalidArgument(fmt::format("{}: {}", what, why), {"show"});
+}
+
+/// Lamps outshine all else: the scale is that of what they light.
+std::optional<std::array<double, 2>> range_of_lit(const std::vector<double>& radiosity,
+                                                  const std::vector<double>& exitance) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    double brightest = -low;
+    for (std::size_t i = 0; i < radiosity.size(); ++i) {
+        if (exitance[i] > 0.0) {
+            brightest = std::max(brightest, radiosity[i]);
+        } else if (!std::isnan(radiosity[i])) {
+            low = std::min(low, radiosity[i]);
+            high = std::max(high, radiosity[i]);
+        }
+    }
+    return low < high && brightest > high ? std::optional(std::array{low, high}) : std::nullopt;
+}
+
+} // namespace
+
+bool needs_all_rows(Quantity quantity) {
+    return quantity == Quantity::irradiance || quantity == Quantity::environment ||
+           quantity == Quantity::blocked || quantity == Quantity::row_error;
+}
+
+bool is_error(Quantity quantity) {
+    return quantity == Quantity::error || quantity == Quantity::error_factors ||
+           quantity == Quantity::error_patch_size;
+}
+
+void check_channel(const std::vector<std::string>& channels, const std::string& channel) {
+    (void)channel_weights(channels, channel);
+}
+
+FalseColours patch_quantity(Quantity quantity, const Scene& scene, const PatchMesh& mesh,
+                            const Solution& solution, const std::string& channel) {
+    const std::vector<double> weights = channel_weights(scene.channels, channel);
+    const std::size_t values = std::size_t{mesh.size()} * weights.size();
+    if (solution.radiosity.size() != values || solution.exitance.size() != values) {
+        throw InvalidArgument("a quantity of patches: the solution belongs to another mesh");
+    }
+    const std::string of = scene.channels.size() == 1 ? "" : ", " + channel;
+    const char* const flux = "W/m²";
+    FalseColours shown;
+    const auto shares = [&](const char* title, const std::vector<double>& share) {
+        if (share.size() != mesh.size()) {
+            missing(title, "is not stored with this solution");
+        }
+        shown = {share, title, ""};
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            if (solution.row_sum[i] + solution.environment_share[i] + solution.back_face_share[i] == 0.0) {
+                shown.values[i] = none;
+            }
+        }
+    };
+    switch (quantity) {
+    case Quantity::radiosity:
+        shown = {one_value(solution.radiosity, weights), "Radiosity" + of, flux};
+        break;
+    case Quantity::irradiance:
+        if (solution.irradiance.size() != values) {
+            missing("irradiance", "is not known; `solve --result` stores it");
+        }
+        shown = {one_value(solution.irradiance, weights), "Irradiance" + of, flux};
+        break;
+    case Quantity::exitance:
+        shown = {one_value(solution.exitance, weights), "Exitance" + of, flux};
+        break;
+    case Quantity::reflectance:
+    case Quantity::emissivity:
+        shown = {one_value(patch_values(mesh, scene.materials, &Material::reflectance), weights),
+                 (quantity == Quantity::reflectance ? "Reflectance" : "Emissivity") + of, ""};
+        for (double& value : shown.values) {
+            value = quantity == Quantity::emissivity ? 1.0 - value : value;
+        }
+        break;
+    case Quantity::environment:
+        shares("Share of the environment", solution.environment_share);
+        break;
+    case Quantity::blocked:
+        shares("Share of backs", solution.back_face_share);
+        break;
+    case Quantity::row_error:
+        shares("Row sum less 1", solution.row_sum);
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            shown.values[i] += solution.environment_share[i] + solution.back_face_share[i] - 1.0;
+        }
+        break;
+    case Quantity::error:
+        shown = {one_error(radiosity_errors(solution), weights), "Estimated error of the radiosity" + of,
+                 flux};
+        break;
+    case Quantity::error_factors:
+        shown = {one_error(solution.error ? solution.error->patches : std::vector<double>(), weights),
+                 "Error by form factors" + of, flux};
+        break;
+    case Quantity::error_patch_size:
+        shown = {
+            one_error(solution.patch_size_error ? solution.patch_size_error->patches : std::vector<double>(),
+                      weights),
+            "Error by patch size" + of, flux};
+        break;
+    case Quantity::area:
+        shown = {{mesh.areas().begin(), mesh.areas().end()}, "Area", "units²"};
+        break;
+    }
+    if (shown.values.size() != mesh.size()) {
+        missing("error", "was not estimated");
+    }
+    for (std::uint32_t i = 0; i < mesh.size() && !solution.back_face_share.empty(); ++i) {
+        if (solution.back_face_share[i] > buried_above && quantity != Quantity::blocked) {
+            shown.values[i] = none;
+        }
+    }
+    if (quantity == Quantity::radiosity) {
+        shown.range = range_of_lit(shown.values, one_value(solution.exitance, weights));
+    }
+    return shown;
+}
+
+} // namespace hemi

@@ -1,0 +1,91 @@
+#include "hemi/pipeline/quantities.hpp"
+
+#include "support/scenes.hpp"
+
+#include "hemi/core/error.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+using namespace hemi;
+using namespace hemi::test;
+
+namespace {
+
+/// Two squares of which the second shines, in three channels, and what is known of them.
+struct Known {
+    Scene scene = empty_scene();
+    Solution solution;
+
+    Known() {
+        scene.channels = {"red", "green", "blue"};
+        scene.materials = {{"wall", {0.5, 0.25, 0.125}, {0.0, 0.0, 0.0}},
+                           {"lamp", {0.0, 0.0, 0.0}, {9.0, 9.0, 9.0}}};
+        add_polygon(scene, "wall", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {2, 1});
+        add_polygon(scene, "lamp", {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}});
+        scene.surfaces.back().material = 1;
+        solution.channels = 3;
+        solution.exitance = {0, 0, 0, 0, 0, 0, 9, 9, 9};
+        solution.radiosity = {1, 2, 3, 4, 5, 6, 9, 9, 9};
+        solution.irradiance = {2, 8, 24, 8, 20, 48, 0, 0, 0};
+        solution.row_sum = {0.25, 0.5, 0.0};
+        solution.environment_share = {0.75, 0.25, 0.0};
+        solution.back_face_share = {0.0, 0.125, 0.0};
+    }
+    [[nodiscard]] FalseColours shown(Quantity quantity, const std::string& channel = "mean") const {
+        return patch_quantity(quantity, scene, PatchMesh(scene), solution, channel);
+    }
+};
+
+} // namespace
+
+TEST_CASE("quantities: values of patches, of one channel or all", "[pipeline]") {
+    const Known known;
+    CHECK(known.shown(Quantity::radiosity, "green").values == std::vector<double>{2, 5, 9});
+    CHECK(known.shown(Quantity::radiosity, "sum").values == std::vector<double>{6, 15, 27});
+    CHECK(known.shown(Quantity::irradiance).values[1] == Approx(76.0 / 3.0));
+    CHECK(known.shown(Quantity::irradiance, "luminance").values[0] ==
+          Approx(0.2126 * 2 + 0.7152 * 8 + 0.0722 * 24));
+    CHECK(known.shown(Quantity::exitance, "blue").values == std::vector<double>{0, 0, 9});
+    CHECK(known.shown(Quantity::reflectance, "red").values == std::vector<double>{0.5, 0.5, 0});
+    CHECK(known.shown(Quantity::emissivity, "red").values == std::vector<double>{0.5, 0.5, 1});
+    CHECK(known.shown(Quantity::area).values == std::vector<double>{0.5, 0.5, 1.0});
+    // The lamp's row was not computed.
+    for (const Quantity share : {Quantity::environment, Quantity::blocked, Quantity::row_error}) {
+        const std::vector<double> values = known.shown(share).values;
+        CHECK(values[0] == (share == Quantity::environment ? 0.75 : 0.0));
+        CHECK(values[1] == (share == Quantity::row_error     ? -0.125
+                            : share == Quantity::environment ? 0.25
+                                                             : 0.125));
+        CHECK(std::isnan(values[2]));
+        CHECK(needs_all_rows(share));
+    }
+}
+
+TEST_CASE("quantities: the scale of radiosities is that of what lamps light", "[pipeline]") {
+    Known known;
+    CHECK(known.shown(Quantity::radiosity, "red").range == std::array{1.0, 4.0});
+    CHECK_FALSE(known.shown(Quantity::irradiance).range);
+    known.solution.radiosity[3] = 10.0; // what is lit is brighter than the lamp
+    CHECK_FALSE(known.shown(Quantity::radiosity, "red").range);
+    known.solution.back_face_share[1] = 1.0; // buried: it has no value
+    CHECK(std::isnan(known.shown(Quantity::radiosity, "red").values[1]));
+}
+
+TEST_CASE("quantities: what is not there is refused by name", "[pipeline]") {
+    Known known;
+    CHECK_THROWS_WITH(known.shown(Quantity::radiosity, "gren"),
+                      Catch::Contains("'gren'") && Catch::Contains("green"));
+    CHECK_THROWS_WITH(known.shown(Quantity::error), Catch::Contains("not estimated"));
+    CHECK_THROWS_WITH(known.shown(Quantity::error_patch_size), Catch::Contains("not estimated"));
+    known.solution.irradiance.clear();
+    CHECK_THROWS_WITH(known.shown(Quantity::irradiance), Catch::Contains("--result"));
+    known.scene.channels = {"a", "b", "c"};
+    CHECK_THROWS_WITH(known.shown(Quantity::radiosity, "luminance"), Catch::Contains("red, green and blue"));
+    known.solution.radiosity.pop_back();
+    CHECK_THROWS_AS(known.shown(Quantity::radiosity, "a"), InvalidArgument);
+}
