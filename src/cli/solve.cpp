@@ -11,6 +11,7 @@
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/pipeline/accuracy.hpp"
+#include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/light_balance.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/vertex_gather.hpp"
@@ -146,6 +147,21 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
     return {std::move(found.factors), std::move(found.solution)};
 }
 
+/// What is not there yet for scenes with sun or sky.
+void check_direct(const SolveArguments& arguments, const Scene& scene) {
+    if (!scene.sun && !scene.sky) {
+        return;
+    }
+    if (arguments.refines()) {
+        throw InvalidArgument("--refine and --error-target cut patches by the light that goes between them, "
+                              "not by shadows of a sun or a sky, which the scene has; give --patch-size");
+    }
+    if (arguments.gather == Gather::on) {
+        throw InvalidArgument("--gather on: light of sun and sky, which the scene has, is not gathered at "
+                              "vertices; leave it out");
+    }
+}
+
 /// Whether a file of that name is replaced when it is written again; a pipe would get both.
 bool is_replaced(const std::filesystem::path& path) {
     std::error_code unknown;
@@ -179,8 +195,10 @@ void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loa
         return;
     }
     const Stopwatch watch;
-    solution.patch_size_error = try_estimate_patch_size_error(loaded.scene, loaded.mesh, factors, solution,
-                                                              arguments.rows.factors, observer);
+    solution.patch_size_error = try_estimate_patch_size_error(
+        loaded.scene, loaded.mesh, factors,
+        direct_as_exitance(solution, patch_values(loaded.scene, loaded.mesh).reflectance),
+        arguments.rows.factors, observer);
     seconds["estimate"] += watch.seconds();
 }
 
@@ -220,6 +238,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         {"load", "factors", "repair", "solve", "gather", "estimate", "search", "refine", "render"});
     LoadedScene loaded = load_scene(arguments.scene, terminal);
     seconds["load"] = loaded.seconds;
+    check_direct(arguments, loaded.scene);
     if (arguments.picture.output) { // tested before the work
         (void)channels_to_show(loaded.scene.channels, arguments.picture.show);
         (void)choose_camera(loaded.scene, loaded.mesh, arguments.picture);
@@ -255,8 +274,9 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         throw;
     }
     write_solution(arguments, loaded, solution, false);
-    const std::optional<LightBalance> balance =
-        light_balance(factors, patch_values(loaded.scene, loaded.mesh), solution.radiosity);
+    PatchValues values = patch_values(loaded.scene, loaded.mesh);
+    values.direct = solution.direct;
+    const std::optional<LightBalance> balance = light_balance(factors, values, solution.radiosity);
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
     Report report =
         solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, balance, seconds);

@@ -2,7 +2,8 @@
 
 #include "core/parallel_for.hpp"
 #include "display/smooth_surfaces.hpp"
-#include "engine/analytic/convex_polygon.hpp"
+#include "engine/analytic/sky_integral.hpp"
+#include "engine/rays/shadow_rays.hpp"
 #include "engine/visibility_weighted/factor_assembly.hpp"
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
@@ -95,6 +96,11 @@ public:
         known_ += share;
     }
     /// @param seen  else it is a leak, which counts as light but not among the surroundings
+    /// Of sun and sky, in addition to what was added for the share.
+    void add_direct(std::uint32_t channel, double irradiance) {
+        irradiance_[channel] += irradiance;
+        direct_ += irradiance;
+    }
     void add_environment(double share, bool seen) {
         double total = 0.0;
         for (std::uint32_t c = 0; c < radiation_.channels && !radiation_.environment.empty(); ++c) {
@@ -107,13 +113,16 @@ public:
         }
     }
     [[nodiscard]] std::span<const double> irradiance() const { return irradiance_; }
-    [[nodiscard]] double surroundings() const { return known_ > 0.0 ? exitance_ / known_ : not_known; }
+    [[nodiscard]] double surroundings() const {
+        return known_ > 0.0 ? exitance_ / known_ + direct_ : not_known;
+    }
 
 private:
     const Radiation& radiation_;
     std::vector<double> irradiance_;
     double exitance_ = 0.0;
     double known_ = 0.0;
+    double direct_ = 0.0;
 };
 
 /// The six rows of a sphere, while they come.
@@ -132,6 +141,9 @@ public:
            Enclosure enclosure, ExchangeRule rule, double facing)
         : mesh_(mesh), points_(points), radiation_(radiation), enclosure_(enclosure), areas_(mesh, rule),
           directions_(plane_directions(facing)) {
+        if (radiation.sun) {
+            rays_.emplace(mesh);
+        }
         const std::size_t count = points.size();
         values_.channels = radiation.channels;
         values_.groups = static_cast<std::uint32_t>(mesh.groups().size());
@@ -163,26 +175,29 @@ public:
         }
         const bool open = sees_environment(row.environment, enclosure_);
         sum.add_environment(row.environment, open);
-        if (!points_[point].normal) {
+        const bool is_plane = points_[point].normal.has_value();
+        const Vec3& normal = is_plane ? *points_[point].normal : directions_[direction];
+        SkyMoments above;
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            const std::uint32_t j = row.columns[k];
+            const auto share = static_cast<double>(row.values[k]);
+            if (is_plane) {
+                values_.factors[std::size_t{point} * values_.groups + mesh_.group(j)] += share;
+            }
+            if (open && (is_plane || radiation_.sky)) {
+                above += share * seen_above(point, j, normal);
+            }
+        }
+        const Environment environment =
+            split_environment(row.environment, row.blocked, open_sky(normal), above);
+        add_sky(environment, sum);
+        add_sun(point, std::max(0.0, glm::dot(normal, sun_direction())), sum);
+        if (!is_plane) {
             values_.planes[std::size_t{point} * plane_count + direction] = sum.surroundings();
             take_of_sphere(point, row);
             return;
         }
-        set(point, sum);
-        const Vec3& normal = *points_[point].normal;
-        const double available = 0.5 * (1.0 + normal.z);
-        double above = 0.0;
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            const std::uint32_t j = row.columns[k];
-            const auto share = static_cast<double>(row.values[k]);
-            values_.factors[std::size_t{point} * values_.groups + mesh_.group(j)] += share;
-            if (open) {
-                above += share * share_above(point, j, [&](std::span<const Vec3> polygon) {
-                             return point_factor(points_[point].position, normal, polygon);
-                         });
-            }
-        }
-        split_environment(point, row.environment, row.blocked, available, above);
+        set(point, sum, environment, row.blocked);
     }
     /// Finishes what is left. @return the values; call once
     [[nodiscard]] PointValues finish() {
@@ -191,49 +206,81 @@ public:
     }
 
 private:
-    void set(std::uint32_t point, const Sum& sum) {
+    /// What is seen of the environment.
+    struct Environment {
+        SkyMoments above;
+        double below = 0.0;
+    };
+
+    void set(std::uint32_t point, const Sum& sum, const Environment& environment, double blocked) {
+        values_.sky[point] = environment.above.share;
+        values_.below_horizon[point] = environment.below;
+        values_.blocked[point] = blocked;
         std::copy(sum.irradiance().begin(), sum.irradiance().end(),
                   values_.irradiance.begin() +
                       static_cast<std::ptrdiff_t>(std::size_t{point} * radiation_.channels));
         values_.surroundings[point] = sum.surroundings();
     }
 
-    /// How much of what is seen of a patch is above the point's horizon.
-    /// @param measure  of a polygon
-    template <class Measure>
-    [[nodiscard]] double share_above(std::uint32_t point, std::uint32_t patch, const Measure& measure) const {
+    /// Of what is seen of a patch: the share above the point's horizon, and the mean of sin(elevation) there.
+    /// @param normal  none: of a sphere
+    [[nodiscard]] SkyMoments seen_above(std::uint32_t point, std::uint32_t patch,
+                                        const std::optional<Vec3>& normal) const {
         const Vec3& at = points_[point].position;
-        if (low_[patch] >= at.z) {
-            return 1.0;
+        const bool all_above = low_[patch] >= at.z;
+        if (all_above && !radiation_.sky) {
+            return {1.0, 0.0};
         }
         if (high_[patch] <= at.z) {
-            return 0.0;
+            return {};
         }
         const PatchCorners corners = mesh_.corners(patch);
-        const double all = measure(corners.polygon());
+        const std::span<const Vec3> polygon = corners.polygon();
+        const double all =
+            normal ? point_factor(at, *normal, polygon) : solid_angle(at, polygon) / (4.0 * std::numbers::pi);
         if (!(all > 0.0)) {
-            return 0.0;
+            return {all_above ? 1.0 : 0.0, 0.0};
         }
-        const ConvexPolygon part = clip(corners.polygon(), {at, upwards});
-        double above = 0.0;
-        for (std::size_t k = 0; part.count >= 3 && k < part.pieces(); ++k) {
-            const ConvexPolygon piece = part.piece(k);
-            above += measure(piece.span());
-        }
-        return std::min(1.0, above / all);
+        const SkyMoments above = normal ? sky_behind(at, *normal, polygon) : sky_behind(at, polygon);
+        const double share = all_above ? 1.0 : std::min(1.0, above.share / all);
+        return {share, std::min(share, above.elevation / all)};
     }
 
-    /// @param available  share of all directions that is above the horizon
-    /// @param above      share of patches there
-    void split_environment(std::uint32_t point, double environment, double blocked, double available,
-                           double above) {
+    /// @param available  of all directions
+    /// @param above      of patches
+    [[nodiscard]] static Environment split_environment(double environment, double blocked,
+                                                       const SkyMoments& available, const SkyMoments& above) {
         const double patches = std::max(0.0, 1.0 - environment - blocked);
-        const double free_above = std::clamp(available - above, 0.0, available);
-        const double free_below = std::clamp((1.0 - available) - (patches - above), 0.0, 1.0 - available);
+        const double free_above = std::clamp(available.share - above.share, 0.0, available.share);
+        const double free_below =
+            std::clamp((1.0 - available.share) - (patches - above.share), 0.0, 1.0 - available.share);
         const double free = free_above + free_below;
-        values_.sky[point] = free > 0.0 ? environment * (free_above / free) : 0.0;
-        values_.below_horizon[point] = environment - values_.sky[point];
-        values_.blocked[point] = blocked;
+        const double scale = free > 0.0 ? environment / free : 0.0;
+        const double elevation = std::clamp(available.elevation - above.elevation, 0.0, free_above);
+        return {{scale * free_above, scale * elevation}, environment - scale * free_above};
+    }
+
+    void add_sky(const Environment& environment, Sum& sum) const {
+        if (!radiation_.sky) {
+            return;
+        }
+        const Sky& sky = *radiation_.sky;
+        const double above = sky_irradiance(sky.distribution, environment.above);
+        for (std::uint32_t c = 0; c < radiation_.channels; ++c) {
+            sum.add_direct(c, sky.horizontal[c] * (above + sky.ground[c] * environment.below));
+        }
+    }
+    [[nodiscard]] Vec3 sun_direction() const {
+        return radiation_.sun ? radiation_.sun->direction : Vec3(0.0);
+    }
+    /// @param share  of the irradiance normal to the beam
+    void add_sun(std::uint32_t point, double share, Sum& sum) const {
+        if (!rays_ || share == 0.0 || !rays_->is_lit(points_[point].position, sun_direction())) {
+            return;
+        }
+        for (std::uint32_t c = 0; c < radiation_.channels; ++c) {
+            sum.add_direct(c, share * radiation_.sun->irradiance[c]);
+        }
     }
 
     void take_of_sphere(std::uint32_t point, const RowView& row) {
@@ -297,7 +344,7 @@ private:
         const double environment = open ? std::max(0.0, 1.0 - blocked - sum) : measured;
         const double scale = !open && sum > 0.0 ? (1.0 - environment - blocked) / sum : 1.0;
         Sum light(radiation_);
-        double above = 0.0;
+        SkyMoments above;
         double* const factors = &values_.factors[std::size_t{sphere.point} * values_.groups];
         for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
             const double share = scale * sphere.seen[j];
@@ -307,14 +354,14 @@ private:
             light.add(j, share);
             factors[mesh_.group(j)] += share;
             if (open) {
-                above += share * share_above(sphere.point, j, [&](std::span<const Vec3> polygon) {
-                             return solid_angle(points_[sphere.point].position, polygon);
-                         });
+                above += share * seen_above(sphere.point, j, std::nullopt);
             }
         }
         light.add_environment(environment, open);
-        set(sphere.point, light);
-        split_environment(sphere.point, environment, blocked, 0.5, above);
+        const Environment split = split_environment(environment, blocked, open_sky(), above);
+        add_sky(split, light);
+        add_sun(sphere.point, 0.25, light); // the cross-section over the surface
+        set(sphere.point, light, split, blocked);
     }
 
     const PatchMesh& mesh_;
@@ -323,8 +370,9 @@ private:
     Enclosure enclosure_;
     ExchangeAreas areas_;
     std::array<Vec3, plane_count> directions_;
-    std::vector<double> low_;  ///< z of every patch
-    std::vector<double> high_; ///< likewise
+    std::optional<ShadowRays> rays_; ///< where there is a sun
+    std::vector<double> low_;        ///< z of every patch
+    std::vector<double> high_;       ///< likewise
     std::map<std::uint32_t, Sphere> pending_;
     std::vector<Sphere> ready_;
     PointValues values_;

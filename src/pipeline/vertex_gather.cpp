@@ -279,6 +279,14 @@ std::vector<float> VertexGather::gather(const PatchValues& values, std::span<con
 
 bool should_gather(Gather wanted, const FactorSettings& settings, const PatchMesh& mesh,
                    const Solution& solution) {
+    if (!solution.direct.empty()) { // rows of points know patches, not beams
+        if (wanted == Gather::on) {
+            throw InvalidArgument("gather: light of sun and sky is not gathered at vertices, which have means "
+                                  "over the patches about them; leave it off",
+                                  {"gather"});
+        }
+        return false;
+    }
     if (wanted != Gather::automatic) {
         return wanted == Gather::on;
     }

@@ -1,6 +1,7 @@
 #include "hemi/io/paths.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/vtp_file.hpp"
+#include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/picture.hpp"
 #include "hemi/pipeline/radiosity.hpp"
@@ -81,6 +82,9 @@ PatchValues given_values(const FactorsOfScene& factors, const py::object& reflec
     values.reflectance = rho.spread(size, channels, "patches");
     values.exitance = radiated.spread(size, channels, "patches");
     values.environment = light.spread(1, channels, "environment");
+    if (factors.scene && channels == factors.scene->scene.channels.size()) {
+        values.direct = direct_irradiance(factors.scene->scene, factors.scene->mesh, factors.factors.matrix);
+    }
     return values;
 }
 
@@ -228,9 +232,9 @@ SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectan
                                wanted, solution, observer);
         }
         if (estimate && result.scene_values && solution.error) {
-            solution.patch_size_error =
-                try_estimate_patch_size_error(factors.scene->scene, factors.scene->mesh, factors.factors,
-                                              solution, factors.settings, observer);
+            solution.patch_size_error = try_estimate_patch_size_error(
+                factors.scene->scene, factors.scene->mesh, factors.factors,
+                direct_as_exitance(solution, values.reflectance), factors.settings, observer);
         }
         return solution;
     });

@@ -25,11 +25,14 @@ struct Receiver {
     std::uint32_t surface = no_surface;
 };
 
-/// What patches and the environment send out, the same in all directions, W/m² (or lm/m²).
+/// What patches and the environment send out, the same in all directions, W/m² (or lm/m²), and what comes
+/// from sun and sky.
 struct Radiation {
     std::uint32_t channels = 1;      ///< wavelengths, bands or colours
     std::vector<double> radiosity;   ///< B, N·channels; not a number where it is not known: counts as none
     std::vector<double> environment; ///< exitance of the environment, channels; empty: dark
+    std::optional<Sun> sun{};        ///< channels as the radiosity
+    std::optional<Sky> sky{};        ///< likewise
 };
 /// That of a solution, with what can be seen of patches that something stands on.
 /// @param mesh      N patches
