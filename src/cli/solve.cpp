@@ -156,10 +156,6 @@ void check_direct(const SolveArguments& arguments, const Scene& scene) {
         throw InvalidArgument("--refine and --error-target cut patches by the light that goes between them, "
                               "not by shadows of a sun or a sky, which the scene has; give --patch-size");
     }
-    if (arguments.gather == Gather::on) {
-        throw InvalidArgument("--gather on: light of sun and sky, which the scene has, is not gathered at "
-                              "vertices; leave it out");
-    }
 }
 
 /// Whether a file of that name is replaced when it is written again; a pipe would get both.

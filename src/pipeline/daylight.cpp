@@ -2,11 +2,11 @@
 
 #include "core/parallel_for.hpp"
 #include "engine/analytic/convex_polygon.hpp"
-#include "engine/analytic/sky_integral.hpp"
 #include "engine/rays/shadow_rays.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/engine/exchange_area.hpp"
+#include "pipeline/point_daylight.hpp"
 
 #include <fmt/format.h>
 
@@ -65,33 +65,17 @@ public:
         }
     }
 
-    struct Seen {
-        SkyMoments above;
-        double below = 0.0;
-    };
-    [[nodiscard]] Seen seen(std::uint32_t i) const {
+    [[nodiscard]] PointDaylight::Environment seen(std::uint32_t i) const {
         const RowView row = factors_.row(i);
         if (!factors_.known(i) || !(row.environment > 0.0)) {
             return {};
         }
         const Eyes eyes = eyes_of(i);
         SkyMoments hidden;
-        double patches = 0.0;
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            const auto share = static_cast<double>(row.values[k]);
-            hidden += share * behind(i, eyes, row.columns[k]);
-            patches += share;
+            hidden += static_cast<double>(row.values[k]) * behind(i, eyes, row.columns[k]);
         }
-        const SkyMoments open = open_sky(mesh_.normal(i));
-        const double above = std::clamp(open.share - hidden.share, 0.0, open.share);
-        const double below = std::clamp((1.0 - open.share) - (patches - hidden.share), 0.0, 1.0 - open.share);
-        if (!(above + below > 0.0)) {
-            return {};
-        }
-        // Backs of faces hide sky as evenly as that is seen.
-        const double scale = row.environment / (above + below);
-        const double elevation = std::clamp(open.elevation - hidden.elevation, 0.0, above);
-        return {{scale * above, scale * elevation}, scale * below};
+        return PointDaylight::split(row.environment, row.blocked, open_sky(mesh_.normal(i)), hidden);
     }
 
 private:
@@ -154,7 +138,7 @@ std::vector<double> sky_irradiance(const PatchMesh& mesh, const Sky& sky, std::s
     std::vector<double> result(mesh.size() * channels, 0.0);
     parallel_for(mesh.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const SkyShares::Seen seen = shares.seen(static_cast<std::uint32_t>(i));
+            const PointDaylight::Environment seen = shares.seen(static_cast<std::uint32_t>(i));
             const double above = sky_irradiance(sky.distribution, seen.above);
             for (std::size_t c = 0; c < channels; ++c) {
                 result[i * channels + c] = sky.horizontal[c] * (above + sky.ground[c] * seen.below);

@@ -2,13 +2,12 @@
 
 #include "core/parallel_for.hpp"
 #include "display/smooth_surfaces.hpp"
-#include "engine/analytic/sky_integral.hpp"
-#include "engine/rays/shadow_rays.hpp"
 #include "engine/visibility_weighted/factor_assembly.hpp"
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "pipeline/heat_rows.hpp"
+#include "pipeline/point_daylight.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
 #include <fmt/format.h>
@@ -95,12 +94,14 @@ public:
         exitance_ += share * total;
         known_ += share;
     }
-    /// @param seen  else it is a leak, which counts as light but not among the surroundings
     /// Of sun and sky, in addition to what was added for the share.
-    void add_direct(std::uint32_t channel, double irradiance) {
-        irradiance_[channel] += irradiance;
-        direct_ += irradiance;
+    [[nodiscard]] auto adder() {
+        return [this](std::uint32_t channel, double irradiance) {
+            irradiance_[channel] += irradiance;
+            direct_ += irradiance;
+        };
     }
+    /// @param seen  else it is a leak, which counts as light but not among the surroundings
     void add_environment(double share, bool seen) {
         double total = 0.0;
         for (std::uint32_t c = 0; c < radiation_.channels && !radiation_.environment.empty(); ++c) {
@@ -140,10 +141,7 @@ public:
     Values(const PatchMesh& mesh, std::span<const Receiver> points, const Radiation& radiation,
            Enclosure enclosure, ExchangeRule rule, double facing)
         : mesh_(mesh), points_(points), radiation_(radiation), enclosure_(enclosure), areas_(mesh, rule),
-          directions_(plane_directions(facing)) {
-        if (radiation.sun) {
-            rays_.emplace(mesh);
-        }
+          directions_(plane_directions(facing)), daylight_(mesh, radiation.sun, radiation.sky) {
         const std::size_t count = points.size();
         values_.channels = radiation.channels;
         values_.groups = static_cast<std::uint32_t>(mesh.groups().size());
@@ -154,17 +152,6 @@ public:
         values_.blocked.assign(count, 0.0);
         values_.surroundings.assign(count, not_known);
         values_.planes.assign(count * plane_count, not_known);
-        for (std::uint32_t j = 0; j < mesh.size(); ++j) {
-            const PatchCorners corners = mesh.corners(j);
-            double low = std::numeric_limits<double>::infinity();
-            double high = -low;
-            for (const Vec3& corner : corners.polygon()) {
-                low = std::min(low, corner.z);
-                high = std::max(high, corner.z);
-            }
-            low_.push_back(low);
-            high_.push_back(high);
-        }
     }
 
     /// @param direction  of the six of a sphere
@@ -177,27 +164,24 @@ public:
         sum.add_environment(row.environment, open);
         const bool is_plane = points_[point].normal.has_value();
         const Vec3& normal = is_plane ? *points_[point].normal : directions_[direction];
-        SkyMoments above;
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            const std::uint32_t j = row.columns[k];
-            const auto share = static_cast<double>(row.values[k]);
-            if (is_plane) {
-                values_.factors[std::size_t{point} * values_.groups + mesh_.group(j)] += share;
-            }
-            if (open && (is_plane || radiation_.sky)) {
-                above += share * seen_above(point, j, normal);
-            }
+        for (std::size_t k = 0; is_plane && k < row.columns.size(); ++k) {
+            values_.factors[std::size_t{point} * values_.groups + mesh_.group(row.columns[k])] +=
+                static_cast<double>(row.values[k]);
         }
-        const Environment environment =
-            split_environment(row.environment, row.blocked, open_sky(normal), above);
-        add_sky(environment, sum);
-        add_sun(point, std::max(0.0, glm::dot(normal, sun_direction())), sum);
+        const Vec3& at = points_[point].position;
+        PointDaylight::Environment seen;
+        if (open && (is_plane || daylight_.has_sky())) {
+            seen = daylight_.seen_by(at, normal, row);
+        } else {
+            seen = PointDaylight::split(row.environment, row.blocked, open_sky(normal), {});
+        }
+        daylight_.irradiance(at, normal, seen, sum.adder());
         if (!is_plane) {
             values_.planes[std::size_t{point} * plane_count + direction] = sum.surroundings();
             take_of_sphere(point, row);
             return;
         }
-        set(point, sum, environment, row.blocked);
+        set(point, sum, seen, row.blocked);
     }
     /// Finishes what is left. @return the values; call once
     [[nodiscard]] PointValues finish() {
@@ -206,13 +190,8 @@ public:
     }
 
 private:
-    /// What is seen of the environment.
-    struct Environment {
-        SkyMoments above;
-        double below = 0.0;
-    };
-
-    void set(std::uint32_t point, const Sum& sum, const Environment& environment, double blocked) {
+    void set(std::uint32_t point, const Sum& sum, const PointDaylight::Environment& environment,
+             double blocked) {
         values_.sky[point] = environment.above.share;
         values_.below_horizon[point] = environment.below;
         values_.blocked[point] = blocked;
@@ -220,67 +199,6 @@ private:
                   values_.irradiance.begin() +
                       static_cast<std::ptrdiff_t>(std::size_t{point} * radiation_.channels));
         values_.surroundings[point] = sum.surroundings();
-    }
-
-    /// Of what is seen of a patch: the share above the point's horizon, and the mean of sin(elevation) there.
-    /// @param normal  none: of a sphere
-    [[nodiscard]] SkyMoments seen_above(std::uint32_t point, std::uint32_t patch,
-                                        const std::optional<Vec3>& normal) const {
-        const Vec3& at = points_[point].position;
-        const bool all_above = low_[patch] >= at.z;
-        if (all_above && !radiation_.sky) {
-            return {1.0, 0.0};
-        }
-        if (high_[patch] <= at.z) {
-            return {};
-        }
-        const PatchCorners corners = mesh_.corners(patch);
-        const std::span<const Vec3> polygon = corners.polygon();
-        const double all =
-            normal ? point_factor(at, *normal, polygon) : solid_angle(at, polygon) / (4.0 * std::numbers::pi);
-        if (!(all > 0.0)) {
-            return {all_above ? 1.0 : 0.0, 0.0};
-        }
-        const SkyMoments above = normal ? sky_behind(at, *normal, polygon) : sky_behind(at, polygon);
-        const double share = all_above ? 1.0 : std::min(1.0, above.share / all);
-        return {share, std::min(share, above.elevation / all)};
-    }
-
-    /// @param available  of all directions
-    /// @param above      of patches
-    [[nodiscard]] static Environment split_environment(double environment, double blocked,
-                                                       const SkyMoments& available, const SkyMoments& above) {
-        const double patches = std::max(0.0, 1.0 - environment - blocked);
-        const double free_above = std::clamp(available.share - above.share, 0.0, available.share);
-        const double free_below =
-            std::clamp((1.0 - available.share) - (patches - above.share), 0.0, 1.0 - available.share);
-        const double free = free_above + free_below;
-        const double scale = free > 0.0 ? environment / free : 0.0;
-        const double elevation = std::clamp(available.elevation - above.elevation, 0.0, free_above);
-        return {{scale * free_above, scale * elevation}, environment - scale * free_above};
-    }
-
-    void add_sky(const Environment& environment, Sum& sum) const {
-        if (!radiation_.sky) {
-            return;
-        }
-        const Sky& sky = *radiation_.sky;
-        const double above = sky_irradiance(sky.distribution, environment.above);
-        for (std::uint32_t c = 0; c < radiation_.channels; ++c) {
-            sum.add_direct(c, sky.horizontal[c] * (above + sky.ground[c] * environment.below));
-        }
-    }
-    [[nodiscard]] Vec3 sun_direction() const {
-        return radiation_.sun ? radiation_.sun->direction : Vec3(0.0);
-    }
-    /// @param share  of the irradiance normal to the beam
-    void add_sun(std::uint32_t point, double share, Sum& sum) const {
-        if (!rays_ || share == 0.0 || !rays_->is_lit(points_[point].position, sun_direction())) {
-            return;
-        }
-        for (std::uint32_t c = 0; c < radiation_.channels; ++c) {
-            sum.add_direct(c, share * radiation_.sun->irradiance[c]);
-        }
     }
 
     void take_of_sphere(std::uint32_t point, const RowView& row) {
@@ -354,14 +272,13 @@ private:
             light.add(j, share);
             factors[mesh_.group(j)] += share;
             if (open) {
-                above += share * seen_above(sphere.point, j, std::nullopt);
+                above += share * daylight_.seen_above(points_[sphere.point].position, std::nullopt, j);
             }
         }
         light.add_environment(environment, open);
-        const Environment split = split_environment(environment, blocked, open_sky(), above);
-        add_sky(split, light);
-        add_sun(sphere.point, 0.25, light); // the cross-section over the surface
-        set(sphere.point, light, split, blocked);
+        const PointDaylight::Environment seen = PointDaylight::split(environment, blocked, open_sky(), above);
+        daylight_.spherical_irradiance(points_[sphere.point].position, seen, light.adder());
+        set(sphere.point, light, seen, blocked);
     }
 
     const PatchMesh& mesh_;
@@ -370,9 +287,7 @@ private:
     Enclosure enclosure_;
     ExchangeAreas areas_;
     std::array<Vec3, plane_count> directions_;
-    std::optional<ShadowRays> rays_; ///< where there is a sun
-    std::vector<double> low_;        ///< z of every patch
-    std::vector<double> high_;       ///< likewise
+    PointDaylight daylight_;
     std::map<std::uint32_t, Sphere> pending_;
     std::vector<Sphere> ready_;
     PointValues values_;

@@ -127,7 +127,11 @@ std::vector<std::uint32_t> reflecting_patches(const Scene& scene, const PatchMes
 PatchValues patch_values(const Scene& scene, const PatchMesh& mesh) {
     return {static_cast<std::uint32_t>(scene.channels.size()),
             patch_values(mesh, scene.materials, &Material::reflectance),
-            patch_values(mesh, scene.materials, &Material::exitance), scene.environment};
+            patch_values(mesh, scene.materials, &Material::exitance),
+            scene.environment,
+            {},
+            scene.sun,
+            scene.sky};
 }
 
 Solution solve_radiosity(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,

@@ -83,6 +83,8 @@ PatchValues given_values(const FactorsOfScene& factors, const py::object& reflec
     values.exitance = radiated.spread(size, channels, "patches");
     values.environment = light.spread(1, channels, "environment");
     if (factors.scene && channels == factors.scene->scene.channels.size()) {
+        values.sun = factors.scene->scene.sun;
+        values.sky = factors.scene->scene.sky;
         values.direct = direct_irradiance(factors.scene->scene, factors.scene->mesh, factors.factors.matrix);
     }
     return values;

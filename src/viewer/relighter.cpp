@@ -134,8 +134,9 @@ void Relighter::try_to_gather(SolveUpdate& update, const std::stop_token& stop) 
         !should_gather(input_.gather, *input_.factor_settings, *input_.mesh, solution)) {
         return;
     }
-    const PatchValues values{solution.channels, update.light.reflectance, update.light.exitance,
-                             input_.scene->environment};
+    const PatchValues values{solution.channels,         update.light.reflectance, update.light.exitance,
+                             input_.scene->environment, solution.direct,          input_.scene->sun,
+                             input_.scene->sky};
     if (!gather_) {
         gather_.emplace(*input_.mesh, solution.back_face_share, all_patches(input_.mesh->size()));
     }

@@ -9,6 +9,7 @@
 #include "hemi/pipeline/heat.hpp"
 #include "hemi/pipeline/light_balance.hpp"
 #include "hemi/pipeline/points.hpp"
+#include "hemi/pipeline/vertex_gather.hpp"
 #include "hemi/scene/sun.hpp"
 
 #include "support/scenes.hpp"
@@ -95,6 +96,25 @@ double common_area(std::vector<Vec3> a, const std::vector<Vec3>& b) {
     return a.size() >= 3 ? glm::length(area_vector(a)) : 0.0;
 }
 
+/// The window's light on the floor, counter-clockwise from above.
+std::vector<Vec3> sun_spot(const Vec3& towards) {
+    std::vector<Vec3> spot;
+    for (const Vec3& corner : {Vec3(0, 1, 0.9), Vec3(0, 1, 2.1), Vec3(0, 2, 2.1), Vec3(0, 2, 0.9)}) {
+        spot.push_back(corner - (corner.z / towards.z) * towards);
+    }
+    return spot;
+}
+
+/// How far a point of the floor is outside of a polygon, at most along its sides' normals; inside below 0.
+double outside(const Vec3& point, const std::vector<Vec3>& polygon) {
+    double farthest = -1e9;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec3 edge = glm::normalize(polygon[(k + 1) % polygon.size()] - polygon[k]);
+        farthest = std::max(farthest, glm::dot(point - polygon[k], Vec3(edge.y, -edge.x, 0.0)));
+    }
+    return farthest;
+}
+
 } // namespace
 
 TEST_CASE("daylight: walls and roofs that nothing hides get what the sky gives in closed form",
@@ -151,11 +171,7 @@ TEST_CASE("daylight: the sun's patch on a floor is the window's shadow line, cli
     const PatchMesh mesh(scene);
     const FormFactorMatrix no_rows(mesh.size());
     const std::vector<double> irradiance = direct_irradiance(scene, mesh, no_rows);
-    std::vector<Vec3> spot;
-    for (const Vec3& corner : {Vec3(0, 1, 0.9), Vec3(0, 2, 0.9), Vec3(0, 2, 2.1), Vec3(0, 1, 2.1)}) {
-        spot.push_back(corner - (corner.z / towards.z) * towards);
-    }
-    std::swap(spot[1], spot[3]); // counter-clockwise from above
+    const std::vector<Vec3> spot = sun_spot(towards);
     double all = 0.0;
     double exact_all = 0.0;
     double worst = 0.0;
@@ -175,6 +191,37 @@ TEST_CASE("daylight: the sun's patch on a floor is the window's shadow line, cli
     CHECK(worst < 0.01);
     CHECK(all == Approx(exact_all).epsilon(1e-3));
     CHECK(irradiance[2] == 0.0); // beside the window, whose back is lit
+}
+
+TEST_CASE("daylight: gathered vertices are in the sun or not", "[pipeline][sun]") {
+    Scene scene = room_with_window();
+    const Vec3 towards = glm::normalize(Vec3(-1.0, 0.25, 1.1));
+    scene.sun = Sun{towards, {1000.0}};
+    const Rows rows = rows_of(scene);
+    Solution solution = solve_radiosity(scene, rows.mesh, rows.factors);
+    gather_at_vertices(scene, rows.mesh, settings_here(), Gather::on, solution);
+    REQUIRE(solution.vertex_radiosity.size() == std::size_t{rows.mesh.size()} * 4);
+    const std::vector<Vec3> spot = sun_spot(towards);
+    const double beam = 0.5 * 1000.0 * towards.z; // reflected
+    int lit = 0;
+    for (std::uint32_t i = 0; i < rows.mesh.size(); ++i) {
+        if (rows.mesh.groups()[rows.mesh.group(i)] != "floor") {
+            continue;
+        }
+        const PatchCorners corners = rows.mesh.corners(i);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double distance = outside(corners.points[k], spot);
+            const auto radiosity = static_cast<double>(solution.vertex_radiosity[std::size_t{i} * 4 + k]);
+            if (distance < -0.01) {
+                ++lit;
+                CHECK(radiosity > beam);
+                CHECK(radiosity < 1.3 * beam);
+            } else if (distance > 0.01) {
+                CHECK(radiosity < 0.3 * beam);
+            }
+        }
+    }
+    CHECK(lit > 40);
 }
 
 TEST_CASE("daylight: light that comes in is absorbed or goes out again", "[pipeline][sky][sun]") {

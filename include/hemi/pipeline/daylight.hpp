@@ -36,7 +36,11 @@ struct DirectIrradiance {
                                                   const FormFactorMatrix& factors);
 
 /// The same by the bands of a heat problem, for HeatProblem::direct.
-/// @param bands  as many as the scene's channels, or 1 where those are equal
+/// @param scene    as in direct_irradiance()
+/// @param mesh     likewise
+/// @param factors  likewise
+/// @param bands    as many as the scene's channels, or 1 where those are equal
+/// @throws InvalidArgument for other numbers of bands; as direct_irradiance()
 [[nodiscard]] std::vector<double> direct_heat(const Scene& scene, const PatchMesh& mesh,
                                               const FormFactorMatrix& factors, std::uint32_t bands);
 

@@ -61,8 +61,8 @@ struct PointValues {
     std::vector<double> below_horizon; ///< share of the environment below it, P
     std::vector<double> blocked; ///< share of back faces, P, from which nothing comes; inside a body about 1
     /// Exitance of black surroundings that would send as much as what is seen does, all channels together,
-    /// W/m², P: of patches, and of the environment unless what is seen of it is but a leak. Backs and patches
-    /// of unknown radiosity are left out; not a number where nothing else is seen.
+    /// W/m², P: of patches, and of the environment unless what is seen of it is but a leak, with sun and sky.
+    /// Backs and patches of unknown radiosity are left out; not a number where nothing else is seen.
     std::vector<double> surroundings;
     /// The same for the six planes of points without a normal, see plane_directions(): P·6, not a number with
     /// a normal.

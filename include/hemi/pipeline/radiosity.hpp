@@ -6,6 +6,7 @@
 #include "hemi/solver/solver.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace hemi {
@@ -20,8 +21,10 @@ struct PatchValues {
     std::vector<double> exitance;    ///< N·channels, >= 0
     std::vector<double> environment; ///< channels, >= 0; empty: dark
     std::vector<double> direct{};    ///< irradiance from sun and sky, N·channels, >= 0; empty: neither
+    std::optional<Sun> sun{};        ///< for points beside the patches, which have no `direct`
+    std::optional<Sky> sky{};        ///< likewise
 };
-/// Those of a scene, without what sun and sky give; see direct_irradiance().
+/// Those of a scene, without what sun and sky give patches; see direct_irradiance().
 [[nodiscard]] PatchValues patch_values(const Scene& scene, const PatchMesh& mesh);
 
 /// The radiosity of a scene, with the estimated error that its form factors bring. Channels that are all the
