@@ -11,7 +11,6 @@
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/pipeline/accuracy.hpp"
-#include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/light_balance.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/vertex_gather.hpp"
@@ -190,11 +189,13 @@ void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loa
     if (!arguments.rows.factors.estimate_error || !solution.error) {
         return;
     }
+    if (!solution.direct.empty()) {
+        observer.detail("what the patches' size does to shadows of sun and sky is not estimated");
+        return;
+    }
     const Stopwatch watch;
-    solution.patch_size_error = try_estimate_patch_size_error(
-        loaded.scene, loaded.mesh, factors,
-        direct_as_exitance(solution, patch_values(loaded.scene, loaded.mesh).reflectance),
-        arguments.rows.factors, observer);
+    solution.patch_size_error = try_estimate_patch_size_error(loaded.scene, loaded.mesh, factors, solution,
+                                                              arguments.rows.factors, observer);
     seconds["estimate"] += watch.seconds();
 }
 

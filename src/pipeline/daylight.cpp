@@ -197,15 +197,4 @@ std::vector<double> direct_heat(const Scene& scene, const PatchMesh& mesh, const
     return grey;
 }
 
-Solution direct_as_exitance(Solution solution, std::span<const double> reflectance) {
-    for (std::size_t k = 0; k < solution.direct.size(); ++k) {
-        solution.exitance[k] += reflectance[k] * solution.direct[k];
-        if (!solution.irradiance.empty()) {
-            solution.irradiance[k] -= solution.direct[k];
-        }
-    }
-    solution.direct.clear();
-    return solution;
-}
-
 } // namespace hemi

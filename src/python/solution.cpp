@@ -233,10 +233,10 @@ SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectan
             gather_at_vertices(factors.scene->mesh, values, factors.factors.enclosure, factors.settings,
                                wanted, solution, observer);
         }
-        if (estimate && result.scene_values && solution.error) {
-            solution.patch_size_error = try_estimate_patch_size_error(
-                factors.scene->scene, factors.scene->mesh, factors.factors,
-                direct_as_exitance(solution, values.reflectance), factors.settings, observer);
+        if (estimate && result.scene_values && solution.error && solution.direct.empty()) {
+            solution.patch_size_error =
+                try_estimate_patch_size_error(factors.scene->scene, factors.scene->mesh, factors.factors,
+                                              solution, factors.settings, observer);
         }
         return solution;
     });
@@ -289,6 +289,10 @@ The radiosity of all patches, W/m² or lm/m². Arrays have the shape [N, channel
     channel_property(
         "irradiance", &Solution::irradiance,
         "ndarray, [N, channels], or None : what arrives at a patch; None where it was not asked for.");
+    channel_property(
+        "direct", &Solution::direct,
+        "ndarray, [N, channels], or None : of what arrives, what comes straight from sun and sky; "
+        "None without them.");
     share_property("row_sums", &Solution::row_sum, "ndarray, [N] : sum_j F(i, j).");
     share_property("environment", &Solution::environment_share,
                    "ndarray, [N] : share of what leaves a patch that meets no surface.");

@@ -2,10 +2,8 @@
 
 #include "hemi/matrix/form_factor_matrix.hpp"
 #include "hemi/scene/patch_mesh.hpp"
-#include "hemi/solver/solution.hpp"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace hemi {
@@ -43,11 +41,5 @@ struct DirectIrradiance {
 /// @throws InvalidArgument for other numbers of bands; as direct_irradiance()
 [[nodiscard]] std::vector<double> direct_heat(const Scene& scene, const PatchMesh& mesh,
                                               const FormFactorMatrix& factors, std::uint32_t bands);
-
-/// A solution whose patches radiate themselves what they reflect of sun and sky: what is left is the light
-/// that goes from patch to patch.
-/// @param solution     of N patches
-/// @param reflectance  N·channels
-[[nodiscard]] Solution direct_as_exitance(Solution solution, std::span<const double> reflectance);
 
 } // namespace hemi

@@ -32,13 +32,14 @@ struct HeatProblem {
     std::vector<double> direct{}; ///< irradiance from sun and sky, W/m², N·bands, >= 0; empty: neither
 };
 
-/// That of a scene.
+/// That of a scene, without what comes from sun and sky: that needs rows, see direct_heat().
 /// @param scene     with emissivities (1 - reflectance), conditions and exitances
 /// @param mesh      its patches
 /// @param observer  gets warnings: of groups of which nothing is known, of temperatures that look like °C, of
 ///   lengths that look like millimetres
 /// @param conditions  whether temperatures and fluxes are of interest, and warnings of them
-/// @throws InputError where channels are neither the bands nor equal, in materials that surfaces use
+/// @throws InputError where channels are neither the bands nor equal, in materials that surfaces use; with
+///   `conditions` for a scene in lumens
 [[nodiscard]] HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh,
                                        Observer& observer = no_observer(), bool conditions = true);
 

@@ -34,14 +34,15 @@ struct Radiation {
     std::optional<Sun> sun{};        ///< channels as the radiosity
     std::optional<Sky> sky{};        ///< likewise
 };
-/// That of a solution, with what can be seen of patches that something stands on.
+/// That of a solution, with what can be seen of patches that something stands on. Sun and sky are the
+/// scene's, and are left to be set.
 /// @param mesh      N patches
 /// @param values    what patches and the environment radiate
 /// @param solution  radiosity and back-face shares are used
 /// @throws InvalidArgument for values that do not fit
 [[nodiscard]] Radiation radiation_of(const PatchMesh& mesh, const PatchValues& values,
                                      const Solution& solution);
-/// Heat radiation, by bands.
+/// Heat radiation, by bands; sun and sky likewise.
 [[nodiscard]] Radiation radiation_of(const HeatProblem& problem, const HeatSolution& solution);
 
 /// Directions of a point's six planes, in this order: up, down, and to the right, left, front and back of
