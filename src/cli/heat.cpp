@@ -13,6 +13,7 @@
 #include "hemi/display/false_colours.hpp"
 #include "hemi/io/table_file.hpp"
 #include "hemi/io/vtp_file.hpp"
+#include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/picture.hpp"
 
 #include <fmt/format.h>
@@ -152,6 +153,9 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
                                       {"absorbed", solution.absorbed, {}},
                                       {"irradiation", solution.irradiation, bands},
                                       {"radiosity", solution.radiosity, bands}};
+    if (!problem.direct.empty()) {
+        arrays.push_back({"direct", problem.direct, bands});
+    }
     if (arguments.fluxes) {
         io::write_patch_table(*arguments.fluxes, loaded.patches(), of_patches(arrays, loaded),
                               loaded.as_read ? loaded.as_read->left : io::PatchPlaces());
@@ -218,7 +222,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
         give_temperatures(loaded.scene, *arguments.series, *lines);
     }
     TerminalObserver observer(terminal);
-    const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);
+    HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);
     HeatSchedule schedule;
     if (lines) {
         schedule = schedule_of(*arguments.series, *lines, loaded, problem);
@@ -230,6 +234,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
     report_buried(sums, terminal);
     const Stopwatch watch;
+    problem.direct = direct_heat(loaded.scene, loaded.mesh, factors.matrix, problem.bands);
     const HeatSolution solution = solve_heat(factors, problem, {}, observer);
     seconds["solve"] = watch.seconds();
     HeatSeries series;
@@ -268,12 +273,31 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     report.json.update(tables.json);
     report.json["bands"] = problem.bands;
     report.json["unit"] = problem.unit;
-    report.select("hemi/heat/1", {"renderer",    "patches",  "parts",     "bands",
-                                  "unit",        "groups",   "areas",     "emissivity",
-                                  "temperature", "emitted",  "absorbed",  "irradiation",
-                                  "radiosity",   "net_flux", "net_power", "environment_power",
-                                  "balance",     "error",    "buried",    "solver",
-                                  "row_sum",     "repair",   "series",    "seconds"});
+    report.select("hemi/heat/1", {"renderer",
+                                  "patches",
+                                  "parts",
+                                  "bands",
+                                  "unit",
+                                  "groups",
+                                  "areas",
+                                  "emissivity",
+                                  "temperature",
+                                  "emitted",
+                                  "absorbed",
+                                  "irradiation",
+                                  "direct",
+                                  "radiosity",
+                                  "net_flux",
+                                  "net_power",
+                                  "environment_power",
+                                  "balance",
+                                  "error",
+                                  "buried",
+                                  "solver",
+                                  "row_sum",
+                                  "repair",
+                                  "series",
+                                  "seconds"});
     if (!lines) {
         report.json.erase("series");
     }

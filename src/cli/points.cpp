@@ -17,9 +17,11 @@
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/io/vtp_file.hpp"
+#include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/light_balance.hpp"
 #include "hemi/pipeline/radiosity.hpp"
+#include "hemi/scene/light_unit.hpp"
 
 #include <fmt/format.h>
 
@@ -40,7 +42,23 @@ struct Lit {
     Radiation radiation;
     bool heat = false;
     ExitStatus status = ExitStatus::ok;
+    std::vector<double> horizontal{}; ///< irradiance outside, channels, for daylight factors
+    std::string unit = "W/m²";        ///< of irradiances
 };
+
+/// In as many channels as are lit.
+void add_sun_and_sky(const Scene& scene, Lit& lit) {
+    lit.radiation.sun = scene.sun;
+    lit.radiation.sky = scene.sky;
+    if (lit.radiation.sun) {
+        lit.radiation.sun->irradiance.resize(lit.radiation.channels);
+    }
+    if (lit.radiation.sky) {
+        lit.radiation.sky->horizontal.resize(lit.radiation.channels);
+        lit.radiation.sky->ground.resize(lit.radiation.channels);
+    }
+    lit.unit = irradiance_unit(scene);
+}
 
 /// The points, once the faces are known.
 struct Points {
@@ -82,6 +100,12 @@ Outputs check_outputs(const PointsArguments& arguments) {
         if (given && !is_map(arguments)) {
             throw InvalidArgument(fmt::format("{} is for maps: -o FILE.png", option));
         }
+    }
+    const HeatOptions& heat = arguments.heat;
+    if (arguments.daylight &&
+        (arguments.posture || !heat.temperature.empty() || !heat.heat_flux.empty() || !heat.power.empty() ||
+         heat.table || !heat.emissivity.empty() || heat.environment || heat.unit)) {
+        throw InvalidArgument("--daylight is about the light of the sky alone, without temperatures");
     }
     outputs.refuse_with_json(arguments.common.json);
     return outputs;
@@ -133,12 +157,13 @@ Points find_points(const PointsArguments& arguments, const PatchMesh& faces) {
 
 Lit light_by_heat(const PointsArguments& arguments, LoadedScene& loaded, Observer& observer,
                   const Terminal& terminal, Seconds& seconds) {
-    const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);
+    HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);
     const FormFactors factors =
         find_heat_rows(arguments.common, arguments.rows, {arguments.factors, std::nullopt}, loaded, observer,
                        terminal, seconds);
     report_buried(row_sums(factors.matrix), terminal);
     const Stopwatch watch;
+    problem.direct = direct_heat(loaded.scene, loaded.mesh, factors.matrix, problem.bands);
     const HeatSolution solution = solve_heat(factors, problem, {}, observer);
     seconds["solve"] = watch.seconds();
     const EnclosureFinding enclosure = find_leaks(factors, arguments.rows.max_row_error);
@@ -151,6 +176,7 @@ Lit light_by_heat(const PointsArguments& arguments, LoadedScene& loaded, Observe
             true,
             enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance};
     lit.channels = problem.bands > 1 ? loaded.scene.channels : std::vector<std::string>{"total"};
+    add_sun_and_sky(loaded.scene, lit);
     return lit;
 }
 
@@ -158,7 +184,8 @@ Lit light(const PointsArguments& arguments, LoadedScene& loaded, Observer& obser
           Seconds& seconds) {
     const PatchValues values = patch_values(loaded.scene, loaded.mesh);
     const auto shines = [](double value) { return value > 0.0; };
-    const bool dark = std::none_of(values.exitance.begin(), values.exitance.end(), shines) &&
+    const bool dark = !loaded.scene.sun && !loaded.scene.sky &&
+                      std::none_of(values.exitance.begin(), values.exitance.end(), shines) &&
                       std::none_of(values.environment.begin(), values.environment.end(), shines);
     Radiation radiation{values.channels, values.exitance, values.environment};
     ExitStatus status = ExitStatus::ok;
@@ -187,18 +214,38 @@ Lit light(const PointsArguments& arguments, LoadedScene& loaded, Observer& obser
                      terminal);
         status = enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
     }
-    return {std::move(loaded.mesh),
+    Lit lit{std::move(loaded.mesh),
             loaded.scene.enclosure,
             loaded.scene.channels,
             std::move(radiation),
             false,
             status};
+    add_sun_and_sky(loaded.scene, lit);
+    if (arguments.daylight) {
+        lit.horizontal = loaded.scene.sky->horizontal;
+    }
+    return lit;
+}
+
+/// Leaves the sky as the only light.
+void leave_sky(const PointsArguments& arguments, Scene& scene) {
+    const auto positive = [](double value) { return value > 0.0; };
+    if (!scene.sky || !std::all_of(scene.sky->horizontal.begin(), scene.sky->horizontal.end(), positive)) {
+        throw InputError(fmt::format("{}: --daylight needs a sky: \"environment\" with \"sky\" and a "
+                                     "\"horizontal_illuminance\" or \"horizontal_irradiance\" above 0",
+                                     arguments.scene.path.string()));
+    }
+    for (Material& material : scene.materials) {
+        std::fill(material.exitance.begin(), material.exitance.end(), 0.0);
+    }
+    std::fill(scene.environment.begin(), scene.environment.end(), 0.0);
+    scene.sun.reset();
 }
 
 /// @param find  gets the faces, before the work
 Lit light_of_scene(const PointsArguments& arguments, Observer& observer, const Terminal& terminal,
                    Seconds& seconds, const std::function<void(const PatchMesh&)>& find) {
-    const bool heat = is_thermal(arguments);
+    const bool heat = !arguments.daylight && is_thermal(arguments);
     if (arguments.posture && !heat) {
         throw InvalidArgument(
             fmt::format("--person needs temperatures, which neither {} nor --temperature has",
@@ -209,6 +256,9 @@ Lit light_of_scene(const PointsArguments& arguments, Observer& observer, const T
     LoadedScene loaded = heat ? load_thermal_scene("points", options, {arguments.factors, std::nullopt},
                                                    arguments.heat, true, terminal)
                               : load_scene(options, terminal);
+    if (arguments.daylight) {
+        leave_sky(arguments, loaded.scene);
+    }
     seconds["load"] = loaded.seconds;
     find(loaded.patches());
     return heat ? light_by_heat(arguments, loaded, observer, terminal, seconds)
@@ -233,8 +283,10 @@ Lit light_of_result(const PointsArguments& arguments, Seconds& seconds,
     find(result.surfaces_as_read.empty() ? mesh : PatchMesh(result.scene_as_read()));
     Radiation radiation = radiation_of(mesh, patch_values(result.scene, mesh), result.solution);
     seconds["load"] = watch.seconds();
-    return {std::move(mesh), result.scene.enclosure, result.scene.channels, std::move(radiation),
+    Lit lit{std::move(mesh), result.scene.enclosure, result.scene.channels, std::move(radiation),
             false,           ExitStatus::ok};
+    add_sun_and_sky(result.scene, lit);
+    return lit;
 }
 
 /// Values without those that are not numbers, which the format does not have.
@@ -275,7 +327,8 @@ std::size_t shown_column(const PointsArguments& arguments, const PointColumns& c
 }
 
 /// Writes the map. @return report of it
-Report write_map(const PointsArguments& arguments, const Points& points, const PointColumns& columns) {
+Report write_map(const PointsArguments& arguments, const Points& points, const PointColumns& columns,
+                 const std::string& unit) {
     const std::size_t column = shown_column(arguments, columns);
     const std::vector<double>& values = columns.values[column];
     std::array<double, 2> range{0.0, 1.0};
@@ -303,19 +356,21 @@ Report write_map(const PointsArguments& arguments, const Points& points, const P
     io::write_png(*arguments.output, map.width, map.height, map.rgb);
     Report report;
     report.add("map",
-               fmt::format("{} from {} (dark) to {} (bright)", columns.names[column], number_text(range[0]),
-                           number_text(range[1])),
+               fmt::format("{} from {} (dark) to {} (bright){}", columns.names[column], number_text(range[0]),
+                           number_text(range[1]),
+                           columns.names[column].starts_with("irradiance") ? ", " + unit : ""),
                {{"map", {{"column", columns.names[column]}, {"range", range}}}});
     return report;
 }
 
 /// Writes what is asked for. @return report of it
-Report write(const PointsArguments& arguments, const Points& points, const PointColumns& columns) {
+Report write(const PointsArguments& arguments, const Points& points, const PointColumns& columns,
+             const std::string& unit) {
     if (!arguments.output) {
         return {};
     }
     if (is_map(arguments)) {
-        return write_map(arguments, points, columns);
+        return write_map(arguments, points, columns, unit);
     }
     if (extension_of(*arguments.output) == ".vtp") {
         write_vtp(*arguments.output, points.points, columns);
@@ -363,12 +418,17 @@ ExitStatus run(const PointsArguments& arguments, const Terminal& terminal) {
         compute_point_values(lit.mesh, points.points, lit.radiation, lit.enclosure, arguments.rows.factors,
                              arguments.facing.value_or(0.0), observer);
     seconds["points"] = watch.seconds();
-    const PointsAsked asked{lit.channels, arguments.by_group ? lit.mesh.groups() : std::vector<std::string>(),
-                            lit.heat, arguments.posture, arguments.facing.has_value()};
+    const PointsAsked asked{lit.channels,
+                            arguments.by_group ? lit.mesh.groups() : std::vector<std::string>(),
+                            lit.heat,
+                            arguments.posture,
+                            arguments.facing.has_value(),
+                            lit.horizontal};
     const PointColumns columns = point_columns(points.points, values, asked);
     Report report;
     report.add("points", count_text(points.points.size()));
-    report.add(write(arguments, points, columns));
+    report.add("irradiance", "in " + lit.unit, {{"unit", lit.unit}});
+    report.add(write(arguments, points, columns, lit.unit));
     report.add(seconds.report());
     Json json{{"schema", "hemi/points/1"}};
     json.update(points_json(points.points, values, asked));

@@ -160,6 +160,17 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
     return {std::move(found.factors), std::move(found.solution)};
 }
 
+/// What is not there yet for scenes with sun or sky.
+void check_direct(const SolveArguments& arguments, const Scene& scene) {
+    if (!scene.sun && !scene.sky) {
+        return;
+    }
+    if (arguments.refines()) {
+        throw InvalidArgument("--refine and --error-target cut patches by the light that goes between them, "
+                              "not by shadows of a sun or a sky, which the scene has; give --patch-size");
+    }
+}
+
 /// Whether a file of that name is replaced when it is written again; a pipe would get both.
 bool is_replaced(const std::filesystem::path& path) {
     std::error_code unknown;
@@ -190,6 +201,10 @@ void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loa
                          const FormFactors& factors, Observer& observer, Solution& solution,
                          Seconds& seconds) {
     if (!arguments.rows.factors.estimate_error || !solution.error) {
+        return;
+    }
+    if (!solution.direct.empty()) {
+        observer.detail("what the patches' size does to shadows of sun and sky is not estimated");
         return;
     }
     const Stopwatch watch;
@@ -235,6 +250,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         {"load", "factors", "repair", "solve", "gather", "estimate", "search", "refine", "render"});
     LoadedScene loaded = load_scene(arguments.scene, terminal);
     seconds["load"] = loaded.seconds;
+    check_direct(arguments, loaded.scene);
     if (arguments.picture.output) { // tested before the work
         if (arguments.picture.quantity) {
             check_channel(loaded.scene.channels, arguments.picture.channel);
@@ -280,8 +296,9 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         throw;
     }
     write_solution(arguments, loaded, solution, false);
-    const std::optional<LightBalance> balance =
-        light_balance(factors, patch_values(loaded.scene, loaded.mesh), solution.radiosity);
+    PatchValues values = patch_values(loaded.scene, loaded.mesh);
+    values.direct = solution.direct;
+    const std::optional<LightBalance> balance = light_balance(factors, values, solution.radiosity);
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
     Report report =
         solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, balance, seconds);

@@ -118,6 +118,9 @@ Answers::Answers(const Subject& subject, double budget, Observer& observer)
 }
 
 std::string Answers::obstacle() const {
+    if (subject_.scene.sun || subject_.scene.sky) {
+        return "light of sun and sky has no reference to be compared with";
+    }
     if (is_dark(subject_.scene)) {
         return "nothing in the scene gives light";
     }

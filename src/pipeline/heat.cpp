@@ -209,6 +209,7 @@ private:
         sources_.emissivity.assign(std::size_t{size()} * problem_.bands, 0.0);
         sources_.source = sources_.emissivity;
         sources_.environment = environment_exitance(problem_);
+        sources_.direct = problem_.direct;
         for (std::uint32_t i = 0; i < size(); ++i) {
             if (is_flux_source(i)) {
                 sources_.source[i] = buried_[i] != 0 ? 0.0 : fluxes_[problem_.condition_of[i]];
@@ -419,8 +420,9 @@ private:
             powers[factors_.group_of[i]] += area * solution.net_flux[i];
             emitted += area * solution.emitted[i];
             for (std::uint32_t k = 0; k < problem_.bands; ++k) {
+                const double direct = problem_.direct.empty() ? 0.0 : problem_.direct[at(i, k)];
                 solution.environment_power +=
-                    area * network_.environment()[i] * (bright[k] - solution.radiosity[at(i, k)]);
+                    area * (network_.environment()[i] * (bright[k] - solution.radiosity[at(i, k)]) + direct);
             }
         }
         double magnitude = std::abs(solution.environment_power);
@@ -561,6 +563,7 @@ std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem&
                 const double weight = std::isfinite(kelvin) ? shares[k] : 1.0 / problem.bands;
                 eps += weight * emissivity(problem, i, k, kelvin);
                 heat.irradiation += buried ? 0.0 : area * solution.irradiation[at];
+                heat.direct += buried || problem.direct.empty() ? 0.0 : area * problem.direct[at];
                 heat.radiosity += buried ? 0.0 : area * solution.radiosity[at];
             }
             if (buried) {
@@ -582,7 +585,7 @@ std::vector<GroupHeat> group_heat(const FormFactors& factors, const HeatProblem&
         GroupHeat& heat = all[g];
         const double area = exposed[g] > 0.0 ? exposed[g] : 1.0;
         for (double GroupHeat::*mean : {&GroupHeat::emissivity, &GroupHeat::emitted, &GroupHeat::absorbed,
-                                        &GroupHeat::irradiation, &GroupHeat::radiosity}) {
+                                        &GroupHeat::irradiation, &GroupHeat::direct, &GroupHeat::radiosity}) {
             heat.*mean = exposed[g] > 0.0 ? heat.*mean / area : not_known;
         }
         if (exposed[g] == 0.0) {

@@ -47,6 +47,8 @@ Scene reflecting_scene(const Scene& scene, const PatchMesh& mesh, const HeatProb
         surface.heat = no_heat;
     }
     result.thermal.reset();
+    result.sun.reset();
+    result.sky.reset();
     return result;
 }
 
@@ -78,6 +80,8 @@ std::vector<double> patch_size_flux_errors(const Scene& scene, const PatchMesh& 
         light.back_face_share.push_back(row.blocked);
         for (std::uint32_t k = 0; k < problem.bands; ++k) {
             const std::size_t at = std::size_t{i} * problem.bands + k;
+            // What sun and sky give counts as reflected before the light goes from patch to patch.
+            light.irradiance[at] -= problem.direct.empty() ? 0.0 : problem.direct[at];
             light.exitance.push_back(light.radiosity[at] - reflectance[at] * light.irradiance[at]);
         }
     }

@@ -94,6 +94,12 @@ bool is_grey(const Scene& scene) {
     });
 }
 
+/// The same of sun and sky.
+bool has_grey_sky(const Scene& scene) {
+    return (!scene.sun || all_equal(scene.sun->irradiance)) &&
+           (!scene.sky || (all_equal(scene.sky->horizontal) && all_equal(scene.sky->ground)));
+}
+
 void warn_of_unit(const Scene& scene, Observer& observer) {
     constexpr double large = 500.0;
     const double across = scene.bounds().diagonal();
@@ -108,6 +114,9 @@ void warn_of_unit(const Scene& scene, Observer& observer) {
 } // namespace
 
 HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh, Observer& observer, bool conditions) {
+    if (conditions && scene.photometric) {
+        throw InputError("the scene's light is in lumens (luminous_flux, *_illuminance); heat needs watts");
+    }
     const Thermal thermal = scene.thermal.value_or(Thermal{});
     const auto channels = static_cast<std::uint32_t>(scene.channels.size());
     HeatProblem problem;
@@ -117,7 +126,7 @@ HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh, Observer& ob
     problem.environment_temperature = thermal.environment_temperature;
     problem.unit = scene.unit.value_or(1.0);
     if (problem.bands != channels) { // one for all, where they do not differ
-        if (problem.bands > 1 || !all_equal(scene.environment) || !is_grey(scene)) {
+        if (problem.bands > 1 || !all_equal(scene.environment) || !is_grey(scene) || !has_grey_sky(scene)) {
             throw InputError(fmt::format(
                 "the scene has {} ({}) and {}; heat needs one channel a band (\"bands\"), or equal channels",
                 plural(channels, "channel", "channels"), fmt::join(scene.channels, ", "),

@@ -232,6 +232,13 @@ private:
             columns.environment.assign(sources, 0.0);
             const double beside = problem_.environment.empty() ? 0.0 : problem_.environment[k];
             columns.environment.back() = own_environment ? bright[k] : beside;
+            if (!problem_.direct.empty()) {
+                columns.direct.assign(std::size_t{network.size()} * sources, 0.0);
+                for (std::uint32_t i = 0; i < network.size(); ++i) {
+                    columns.direct[std::size_t{i} * sources + columns_] =
+                        problem_.direct[std::size_t{i} * problem_.bands + k];
+                }
+            }
             for (std::size_t c = 0; c < columns_; ++c) {
                 columns.environment[c] = condition_[c] == of_environment ? 1.0 : 0.0;
             }
@@ -247,8 +254,10 @@ private:
                     const std::size_t at = std::size_t{i} * sources + s;
                     const double area = factors_.areas[i] * problem_.unit * problem_.unit;
                     if (buried[i] == 0) {
-                        response.environment +=
-                            area * network.environment()[i] * (columns.environment[s] - fluxes.radiosity[at]);
+                        const double direct = columns.direct.empty() ? 0.0 : columns.direct[at];
+                        response.environment += area * (network.environment()[i] *
+                                                            (columns.environment[s] - fluxes.radiosity[at]) +
+                                                        direct);
                         response.net[factors_.group_of[i]] +=
                             area * (columns.source[at] - columns.emissivity[at] * fluxes.irradiation[at]);
                     }

@@ -15,12 +15,15 @@ std::optional<LightBalance> light_balance(const FormFactors& factors, const Patc
     const std::size_t channels = values.channels;
     const std::size_t count = patches * channels;
     if (radiosity.size() != count || values.reflectance.size() != count || values.exitance.size() != count ||
-        (!values.environment.empty() && values.environment.size() != channels)) {
+        (!values.environment.empty() && values.environment.size() != channels) ||
+        (!values.direct.empty() && values.direct.size() != count)) {
         throw InvalidArgument(fmt::format("balance: {} values for {} patches of {} channels",
                                           radiosity.size(), patches, channels));
     }
-    const bool is_lit_from_outside = std::any_of(values.environment.begin(), values.environment.end(),
-                                                 [](double exitance) { return exitance > 0.0; });
+    const auto shines = [](double value) { return value > 0.0; };
+    const bool is_lit_from_outside =
+        std::any_of(values.environment.begin(), values.environment.end(), shines) ||
+        std::any_of(values.direct.begin(), values.direct.end(), shines);
     std::vector<double> absorbing(count);
     std::transform(values.reflectance.begin(), values.reflectance.end(), absorbing.begin(),
                    [](double reflectance) { return 1.0 - reflectance; });
@@ -38,7 +41,8 @@ std::optional<LightBalance> light_balance(const FormFactors& factors, const Patc
             }
             const double leaving = area * radiosity[at];
             const double coming =
-                values.environment.empty() ? 0.0 : area * row.environment * values.environment[c];
+                area * ((values.environment.empty() ? 0.0 : row.environment * values.environment[c]) +
+                        (values.direct.empty() ? 0.0 : values.direct[at]));
             balance.emitted += area * values.exitance[at];
             balance.incoming += area * values.exitance[at] + coming;
             balance.absorbed += leaving * absorbed_share[at] + coming * absorbing[at];

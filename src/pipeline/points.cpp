@@ -2,12 +2,12 @@
 
 #include "core/parallel_for.hpp"
 #include "display/smooth_surfaces.hpp"
-#include "engine/analytic/convex_polygon.hpp"
 #include "engine/visibility_weighted/factor_assembly.hpp"
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "pipeline/heat_rows.hpp"
+#include "pipeline/point_daylight.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
 #include <fmt/format.h>
@@ -94,6 +94,13 @@ public:
         exitance_ += share * total;
         known_ += share;
     }
+    /// Of sun and sky, in addition to what was added for the share.
+    [[nodiscard]] auto adder() {
+        return [this](std::uint32_t channel, double irradiance) {
+            irradiance_[channel] += irradiance;
+            direct_ += irradiance;
+        };
+    }
     /// @param seen  else it is a leak, which counts as light but not among the surroundings
     void add_environment(double share, bool seen) {
         double total = 0.0;
@@ -107,13 +114,16 @@ public:
         }
     }
     [[nodiscard]] std::span<const double> irradiance() const { return irradiance_; }
-    [[nodiscard]] double surroundings() const { return known_ > 0.0 ? exitance_ / known_ : not_known; }
+    [[nodiscard]] double surroundings() const {
+        return known_ > 0.0 ? exitance_ / known_ + direct_ : not_known;
+    }
 
 private:
     const Radiation& radiation_;
     std::vector<double> irradiance_;
     double exitance_ = 0.0;
     double known_ = 0.0;
+    double direct_ = 0.0;
 };
 
 /// The six rows of a sphere, while they come.
@@ -131,7 +141,7 @@ public:
     Values(const PatchMesh& mesh, std::span<const Receiver> points, const Radiation& radiation,
            Enclosure enclosure, ExchangeRule rule, double facing)
         : mesh_(mesh), points_(points), radiation_(radiation), enclosure_(enclosure), areas_(mesh, rule),
-          directions_(plane_directions(facing)) {
+          directions_(plane_directions(facing)), daylight_(mesh, radiation.sun, radiation.sky) {
         const std::size_t count = points.size();
         values_.channels = radiation.channels;
         values_.groups = static_cast<std::uint32_t>(mesh.groups().size());
@@ -142,17 +152,6 @@ public:
         values_.blocked.assign(count, 0.0);
         values_.surroundings.assign(count, not_known);
         values_.planes.assign(count * plane_count, not_known);
-        for (std::uint32_t j = 0; j < mesh.size(); ++j) {
-            const PatchCorners corners = mesh.corners(j);
-            double low = std::numeric_limits<double>::infinity();
-            double high = -low;
-            for (const Vec3& corner : corners.polygon()) {
-                low = std::min(low, corner.z);
-                high = std::max(high, corner.z);
-            }
-            low_.push_back(low);
-            high_.push_back(high);
-        }
     }
 
     /// @param direction  of the six of a sphere
@@ -163,26 +162,26 @@ public:
         }
         const bool open = sees_environment(row.environment, enclosure_);
         sum.add_environment(row.environment, open);
-        if (!points_[point].normal) {
+        const bool is_plane = points_[point].normal.has_value();
+        const Vec3& normal = is_plane ? *points_[point].normal : directions_[direction];
+        for (std::size_t k = 0; is_plane && k < row.columns.size(); ++k) {
+            values_.factors[std::size_t{point} * values_.groups + mesh_.group(row.columns[k])] +=
+                static_cast<double>(row.values[k]);
+        }
+        const Vec3& at = points_[point].position;
+        PointDaylight::Environment seen;
+        if (open && (is_plane || daylight_.has_sky())) {
+            seen = daylight_.seen_by(at, normal, row);
+        } else {
+            seen = PointDaylight::split(row.environment, row.blocked, open_sky(normal), {});
+        }
+        daylight_.irradiance(at, normal, seen, sum.adder());
+        if (!is_plane) {
             values_.planes[std::size_t{point} * plane_count + direction] = sum.surroundings();
             take_of_sphere(point, row);
             return;
         }
-        set(point, sum);
-        const Vec3& normal = *points_[point].normal;
-        const double available = 0.5 * (1.0 + normal.z);
-        double above = 0.0;
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            const std::uint32_t j = row.columns[k];
-            const auto share = static_cast<double>(row.values[k]);
-            values_.factors[std::size_t{point} * values_.groups + mesh_.group(j)] += share;
-            if (open) {
-                above += share * share_above(point, j, [&](std::span<const Vec3> polygon) {
-                             return point_factor(points_[point].position, normal, polygon);
-                         });
-            }
-        }
-        split_environment(point, row.environment, row.blocked, available, above);
+        set(point, sum, seen, row.blocked);
     }
     /// Finishes what is left. @return the values; call once
     [[nodiscard]] PointValues finish() {
@@ -191,49 +190,15 @@ public:
     }
 
 private:
-    void set(std::uint32_t point, const Sum& sum) {
+    void set(std::uint32_t point, const Sum& sum, const PointDaylight::Environment& environment,
+             double blocked) {
+        values_.sky[point] = environment.above.share;
+        values_.below_horizon[point] = environment.below;
+        values_.blocked[point] = blocked;
         std::copy(sum.irradiance().begin(), sum.irradiance().end(),
                   values_.irradiance.begin() +
                       static_cast<std::ptrdiff_t>(std::size_t{point} * radiation_.channels));
         values_.surroundings[point] = sum.surroundings();
-    }
-
-    /// How much of what is seen of a patch is above the point's horizon.
-    /// @param measure  of a polygon
-    template <class Measure>
-    [[nodiscard]] double share_above(std::uint32_t point, std::uint32_t patch, const Measure& measure) const {
-        const Vec3& at = points_[point].position;
-        if (low_[patch] >= at.z) {
-            return 1.0;
-        }
-        if (high_[patch] <= at.z) {
-            return 0.0;
-        }
-        const PatchCorners corners = mesh_.corners(patch);
-        const double all = measure(corners.polygon());
-        if (!(all > 0.0)) {
-            return 0.0;
-        }
-        const ConvexPolygon part = clip(corners.polygon(), {at, upwards});
-        double above = 0.0;
-        for (std::size_t k = 0; part.count >= 3 && k < part.pieces(); ++k) {
-            const ConvexPolygon piece = part.piece(k);
-            above += measure(piece.span());
-        }
-        return std::min(1.0, above / all);
-    }
-
-    /// @param available  share of all directions that is above the horizon
-    /// @param above      share of patches there
-    void split_environment(std::uint32_t point, double environment, double blocked, double available,
-                           double above) {
-        const double patches = std::max(0.0, 1.0 - environment - blocked);
-        const double free_above = std::clamp(available - above, 0.0, available);
-        const double free_below = std::clamp((1.0 - available) - (patches - above), 0.0, 1.0 - available);
-        const double free = free_above + free_below;
-        values_.sky[point] = free > 0.0 ? environment * (free_above / free) : 0.0;
-        values_.below_horizon[point] = environment - values_.sky[point];
-        values_.blocked[point] = blocked;
     }
 
     void take_of_sphere(std::uint32_t point, const RowView& row) {
@@ -297,7 +262,7 @@ private:
         const double environment = open ? std::max(0.0, 1.0 - blocked - sum) : measured;
         const double scale = !open && sum > 0.0 ? (1.0 - environment - blocked) / sum : 1.0;
         Sum light(radiation_);
-        double above = 0.0;
+        SkyMoments above;
         double* const factors = &values_.factors[std::size_t{sphere.point} * values_.groups];
         for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
             const double share = scale * sphere.seen[j];
@@ -307,14 +272,13 @@ private:
             light.add(j, share);
             factors[mesh_.group(j)] += share;
             if (open) {
-                above += share * share_above(sphere.point, j, [&](std::span<const Vec3> polygon) {
-                             return solid_angle(points_[sphere.point].position, polygon);
-                         });
+                above += share * daylight_.seen_above(points_[sphere.point].position, std::nullopt, j);
             }
         }
         light.add_environment(environment, open);
-        set(sphere.point, light);
-        split_environment(sphere.point, environment, blocked, 0.5, above);
+        const PointDaylight::Environment seen = PointDaylight::split(environment, blocked, open_sky(), above);
+        daylight_.spherical_irradiance(points_[sphere.point].position, seen, light.adder());
+        set(sphere.point, light, seen, blocked);
     }
 
     const PatchMesh& mesh_;
@@ -323,8 +287,7 @@ private:
     Enclosure enclosure_;
     ExchangeAreas areas_;
     std::array<Vec3, plane_count> directions_;
-    std::vector<double> low_;  ///< z of every patch
-    std::vector<double> high_; ///< likewise
+    PointDaylight daylight_;
     std::map<std::uint32_t, Sphere> pending_;
     std::vector<Sphere> ready_;
     PointValues values_;

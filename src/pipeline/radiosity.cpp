@@ -4,6 +4,7 @@
 #include "hemi/core/interrupt.hpp"
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/core/text.hpp"
+#include "hemi/pipeline/daylight.hpp"
 
 #include <fmt/format.h>
 
@@ -34,7 +35,8 @@ bool is_grey(const PatchValues& values) {
         }
         return true;
     };
-    return all_equal(values.environment) && grey(values.reflectance) && grey(values.exitance);
+    return all_equal(values.environment) && grey(values.reflectance) && grey(values.exitance) &&
+           grey(values.direct);
 }
 
 /// Patches that reflect in some channel.
@@ -52,12 +54,14 @@ std::vector<std::uint32_t> reflecting(const PatchValues& values, std::uint32_t s
 void check_sizes(const PatchValues& values, std::uint32_t size) {
     const std::size_t count = std::size_t{size} * values.channels;
     if (values.channels == 0 || values.reflectance.size() != count || values.exitance.size() != count ||
-        (!values.environment.empty() && values.environment.size() != values.channels)) {
+        (!values.environment.empty() && values.environment.size() != values.channels) ||
+        (!values.direct.empty() && values.direct.size() != count)) {
         throw InvalidArgument(
-            fmt::format("{} reflectances, {} exitances and {} values of the environment for {} "
-                        "in {}",
+            fmt::format("{} reflectances, {} exitances, {} values of the environment and {} direct "
+                        "irradiances for {} in {}",
                         values.reflectance.size(), values.exitance.size(), values.environment.size(),
-                        plural(size, "patch", "patches"), plural(values.channels, "channel", "channels")));
+                        values.direct.size(), plural(size, "patch", "patches"),
+                        plural(values.channels, "channel", "channels")));
     }
 }
 
@@ -123,12 +127,18 @@ std::vector<std::uint32_t> reflecting_patches(const Scene& scene, const PatchMes
 PatchValues patch_values(const Scene& scene, const PatchMesh& mesh) {
     return {static_cast<std::uint32_t>(scene.channels.size()),
             patch_values(mesh, scene.materials, &Material::reflectance),
-            patch_values(mesh, scene.materials, &Material::exitance), scene.environment};
+            patch_values(mesh, scene.materials, &Material::exitance),
+            scene.environment,
+            {},
+            scene.sun,
+            scene.sky};
 }
 
 Solution solve_radiosity(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
                          const SolverSettings& settings, Observer& observer, bool with_irradiance) {
-    return solve_radiosity(factors, patch_values(scene, mesh), settings, observer, with_irradiance);
+    PatchValues values = patch_values(scene, mesh);
+    values.direct = direct_irradiance(scene, mesh, factors.matrix);
+    return solve_radiosity(factors, std::move(values), settings, observer, with_irradiance);
 }
 
 Solution solve_radiosity(const FormFactors& factors, PatchValues values, const SolverSettings& settings,
@@ -141,14 +151,16 @@ Solution solve_radiosity(const FormFactors& factors, PatchValues values, const S
     const std::uint32_t solved = is_grey(values) ? 1 : channels;
     const auto reflectance = first_channels(values.reflectance, channels, solved);
     const auto exitance = first_channels(values.exitance, channels, solved);
+    const auto direct = first_channels(values.direct, channels, solved);
     const std::span<const double> environment(values.environment);
     const RadiosityProblem problem{&matrix,
                                    solved,
                                    reflectance,
                                    exitance,
                                    environment.first(std::min<std::size_t>(solved, environment.size())),
-                                   factors.areas};
-    if (all_zero(exitance) && all_zero(environment)) {
+                                   factors.areas,
+                                   direct};
+    if (all_zero(exitance) && all_zero(environment) && all_zero(direct)) {
         observer.warning("nothing radiates: no material has exitance, and the environment is dark",
                          "environment");
     }
@@ -161,6 +173,7 @@ Solution solve_radiosity(const FormFactors& factors, PatchValues values, const S
     solution.channels = channels;
     solution.radiosity = repeated(std::move(solution.radiosity), channels / solved);
     solution.exitance = std::move(values.exitance);
+    solution.direct = std::move(values.direct);
     for (std::uint32_t i = 0; i < matrix.size(); ++i) {
         const RowView row = matrix.row(i);
         solution.row_sum.push_back(row.sum());

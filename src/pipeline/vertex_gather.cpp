@@ -10,6 +10,7 @@
 #include "hemi/core/text.hpp"
 #include "hemi/display/vertex_colours.hpp"
 #include "pipeline/gathered_radiosity.hpp"
+#include "pipeline/point_daylight.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
 #include <fmt/format.h>
@@ -148,6 +149,18 @@ struct VertexGather::State {
         }
     }
 
+    /// Adds what a point reflects of sun and sky.
+    void add_direct(const PointDaylight& daylight, std::size_t point, const RowView& row,
+                    const PatchValues& values, std::span<float> light) const {
+        const SurfacePoint& at = points[point];
+        const PointDaylight::Environment seen =
+            daylight.has_sky() ? daylight.seen_by(at.position, at.normal, row) : PointDaylight::Environment{};
+        const double* const rho = &values.reflectance[std::size_t{hosts[point]} * values.channels];
+        daylight.irradiance(at.position, at.normal, seen, [&](std::uint32_t c, double irradiance) {
+            light[c] += static_cast<float>(rho[c] * irradiance);
+        });
+    }
+
     /// Values of the points as values of all corners.
     [[nodiscard]] std::vector<float> corners(const std::vector<float>& at_points,
                                              const std::vector<std::uint8_t>& buried, std::uint32_t channels,
@@ -218,12 +231,14 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
             kept.blocked.resize(state.points.size());
         }
         const auto engine = make_point_visibility_provider(state.mesh, state.points, plan.hemicube, settings);
+        const PointDaylight daylight(state.mesh, values.sun, values.sky);
         compute_point_rows(
             *engine, state.mesh, state.points, plan.weighted.value_or(VisibilityWeightedSettings{}),
             enclosure, weights,
             [&](std::uint32_t index, const RowView& row) {
-                gathered_radiosity(row, values, seen, state.hosts[index],
-                                   std::span(at_points).subspan(std::size_t{index} * channels, channels));
+                const auto light = std::span(at_points).subspan(std::size_t{index} * channels, channels);
+                gathered_radiosity(row, values, seen, state.hosts[index], light);
+                state.add_direct(daylight, index, row, values, light);
                 buried[index] = row.blocked > buried_above ? 1 : 0;
                 if (!keep) {
                     return;
@@ -261,6 +276,7 @@ std::vector<float> VertexGather::gather(const PatchValues& values, std::span<con
     const std::uint32_t channels = values.channels;
     std::vector<float> at_points(state.points.size() * channels, 0.0F);
     std::vector<std::uint8_t> buried(state.points.size(), 0);
+    const PointDaylight daylight(state.mesh, values.sun, values.sky);
     constexpr std::size_t points_at_once = 64;
     parallel_for(state.points.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -269,8 +285,9 @@ std::vector<float> VertexGather::gather(const PatchValues& values, std::span<con
                               {},
                               state.kept.environment[k],
                               state.kept.blocked[k]};
-            gathered_radiosity(row, values, seen, state.hosts[k],
-                               std::span(at_points).subspan(k * channels, channels));
+            const auto light = std::span(at_points).subspan(k * channels, channels);
+            gathered_radiosity(row, values, seen, state.hosts[k], light);
+            state.add_direct(daylight, k, row, values, light);
             buried[k] = row.blocked > buried_above ? 1 : 0;
         }
     });

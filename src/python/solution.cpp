@@ -1,6 +1,7 @@
 #include "hemi/io/paths.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/vtp_file.hpp"
+#include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/picture.hpp"
 #include "hemi/pipeline/radiosity.hpp"
@@ -81,6 +82,11 @@ PatchValues given_values(const FactorsOfScene& factors, const py::object& reflec
     values.reflectance = rho.spread(size, channels, "patches");
     values.exitance = radiated.spread(size, channels, "patches");
     values.environment = light.spread(1, channels, "environment");
+    if (factors.scene && channels == factors.scene->scene.channels.size()) {
+        values.sun = factors.scene->scene.sun;
+        values.sky = factors.scene->scene.sky;
+        values.direct = direct_irradiance(factors.scene->scene, factors.scene->mesh, factors.factors.matrix);
+    }
     return values;
 }
 
@@ -227,7 +233,7 @@ SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectan
             gather_at_vertices(factors.scene->mesh, values, factors.factors.enclosure, factors.settings,
                                wanted, solution, observer);
         }
-        if (estimate && result.scene_values && solution.error) {
+        if (estimate && result.scene_values && solution.error && solution.direct.empty()) {
             solution.patch_size_error =
                 try_estimate_patch_size_error(factors.scene->scene, factors.scene->mesh, factors.factors,
                                               solution, factors.settings, observer);
@@ -283,6 +289,10 @@ The radiosity of all patches, W/m² or lm/m². Arrays have the shape [N, channel
     channel_property(
         "irradiance", &Solution::irradiance,
         "ndarray, [N, channels], or None : what arrives at a patch; None where it was not asked for.");
+    channel_property(
+        "direct", &Solution::direct,
+        "ndarray, [N, channels], or None : of what arrives, what comes straight from sun and sky; "
+        "None without them.");
     share_property("row_sums", &Solution::row_sum, "ndarray, [N] : sum_j F(i, j).");
     share_property("environment", &Solution::environment_share,
                    "ndarray, [N] : share of what leaves a patch that meets no surface.");

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hemi {
 
@@ -90,6 +91,30 @@ void validate(const Scene& scene) {
     if (!scene.environment.empty() && scene.environment.size() != scene.channels.size()) {
         throw InputError(fmt::format("environment: {} exitances; the scene has {} channels",
                                      scene.environment.size(), scene.channels.size()));
+    }
+    const auto check_light = [&scene](const char* name, const std::vector<double>& values, double most) {
+        if (values.size() != scene.channels.size()) {
+            throw InputError(fmt::format("{}: {} values; the scene has {} channels", name, values.size(),
+                                         scene.channels.size()));
+        }
+        for (const double value : values) {
+            if (!(value >= 0.0 && value <= most)) {
+                throw InputError(fmt::format("{}: {}; must be finite and not negative{}", name, value,
+                                             most == 1.0 ? ", and at most 1" : ""));
+            }
+        }
+    };
+    constexpr double finite_values = std::numeric_limits<double>::max();
+    if (scene.sun) {
+        check_light("sun", scene.sun->irradiance, finite_values);
+        if (!(std::abs(glm::length(scene.sun->direction) - 1.0) <= 1e-9)) {
+            throw InputError(
+                fmt::format("sun: a direction of length {}; must be 1", glm::length(scene.sun->direction)));
+        }
+    }
+    if (scene.sky) {
+        check_light("sky", scene.sky->horizontal, finite_values);
+        check_light("ground", scene.sky->ground, 1.0);
     }
     for (const double value : scene.environment) {
         if (!(value >= 0.0) || !std::isfinite(value)) {

@@ -18,7 +18,7 @@ double relative(double sum, double reference) {
 }
 
 /// Conjugate gradients for u = J - common on the patches with eps < 1:
-///   (A eps / rho + L) u = A (s - eps common) / rho + A e (J_env - common),  rho = 1 - eps,
+///   (A eps / rho + L) u = A (s - eps common) / rho + A (e (J_env - common) + D),  rho = 1 - eps,
 /// L u = sum_j x_ij (u_i - u_j) + A_i e_i u_i; the others have u = s - common.
 class NetworkSolver {
 public:
@@ -68,6 +68,12 @@ private:
     [[nodiscard]] double source(std::uint32_t i, std::uint32_t c) const {
         return sources_.source[std::size_t{i} * columns_ + c];
     }
+    /// What comes from beyond the patches, over the common radiosity.
+    [[nodiscard]] double beyond(std::uint32_t i, std::uint32_t c) const {
+        const bool direct = !sources_.direct.empty() && isolated_[i] == 0;
+        return environment_[i] * (sources_.environment[c] - common_[c]) +
+               (direct ? sources_.direct[std::size_t{i} * columns_ + c] : 0.0);
+    }
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(areas_.size()); }
     /// A share of the area that is 0 where nothing holds the radiosity.
     [[nodiscard]] double diagonal(std::uint32_t i, std::uint32_t c) const {
@@ -108,7 +114,7 @@ private:
             if (e == 1.0) {
                 u_.patch(i)[c] = driven;
             }
-            driven += (1.0 - e) * environment_[i] * (sources_.environment[c] - common_[c]);
+            driven += (1.0 - e) * beyond(i, c);
             source_squares_[c] += driven * driven;
             const double all = std::abs(source(i, c)) + std::abs(common_[c]);
             rounding_squares_[c] += all * all;
@@ -142,8 +148,8 @@ private:
                 return;
             }
             const double e = eps(i, c);
-            r = areas_[i] * ((source(i, c) - e * common_[c] - e * u_.patch(i)[c]) / (1.0 - e) +
-                             environment_[i] * (sources_.environment[c] - common_[c])) -
+            r = areas_[i] *
+                    ((source(i, c) - e * common_[c] - e * u_.patch(i)[c]) / (1.0 - e) + beyond(i, c)) -
                 product_.patch(i)[c];
         });
         return worst();
@@ -215,8 +221,7 @@ private:
         fluxes.irradiation.reserve(std::size_t{size()} * columns_);
         for_all([&](std::uint32_t i, std::uint32_t c) {
             const double radiosity = common_[c] + u_.patch(i)[c];
-            const double net =
-                product_.patch(i)[c] / areas_[i] - environment_[i] * (sources_.environment[c] - common_[c]);
+            const double net = product_.patch(i)[c] / areas_[i] - beyond(i, c);
             fluxes.radiosity.push_back(radiosity);
             fluxes.irradiation.push_back(radiosity - net);
         });

@@ -18,6 +18,7 @@ struct NetworkSources {
     std::vector<double> emissivity;  ///< eps, N·columns, in [0, 1]; 0: what leaves is source + irradiation
     std::vector<double> source;      ///< s, W/m², N·columns, of any sign
     std::vector<double> environment; ///< J_env, W/m², columns
+    std::vector<double> direct{};    ///< D, irradiation beside that, W/m², N·columns; empty: none
 };
 
 /// What comes of them, W/m², N·columns.
@@ -29,8 +30,8 @@ struct NetworkFluxes {
 };
 
 /// Radiative exchange J = s + (1 - eps) G in the form of a network of the exchange areas x_ij = A_i F(i, j),
-/// A_i (J_i - G_i) = sum_j x_ij (J_i - J_j) + A_i e_i (J_i - J_env): what leaves and does not arrive comes
-/// back, so that every pair and every row balances exactly, patches that see nothing have J = G, and
+/// A_i (J_i - G_i) = sum_j x_ij (J_i - J_j) + A_i (e_i (J_i - J_env) - D_i): what leaves and does not arrive
+/// comes back, so that every pair and every row balances exactly, patches that see nothing have J = G, and
 /// emissivities of 0 are allowed. Solved by conjugate gradients with a diagonal preconditioner, in what the
 /// radiosities differ from a common value. Source: A. K. Oppenheim, "Radiation analysis by the network
 /// method", Trans. ASME 78, 1956.

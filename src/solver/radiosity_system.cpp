@@ -40,7 +40,8 @@ void RadiositySystem::add_row(const RadiosityProblem& problem, std::uint32_t i) 
         }
         const double bright = problem.environment.empty() ? 0.0 : problem.environment[c];
         reflectance_.patch(i)[c] = rho;
-        source_.patch(i)[c] = problem.exitance[k] + rho * row.environment * bright;
+        const double direct = problem.direct.empty() ? 0.0 : problem.direct[k];
+        source_.patch(i)[c] = problem.exitance[k] + rho * (row.environment * bright + direct);
         dominance_ = std::max(dominance_, rho * (1.0 - balance.lost));
     }
 }

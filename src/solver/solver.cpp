@@ -22,6 +22,11 @@ void check_sizes(const RadiosityProblem& problem) {
         throw InvalidArgument(fmt::format("{} values of the environment for {} channels",
                                           problem.environment.size(), problem.channels));
     }
+    if (!problem.direct.empty() &&
+        problem.direct.size() != std::size_t{problem.factors->size()} * problem.channels) {
+        throw InvalidArgument(fmt::format("{} direct irradiances for {} patches of {} channels",
+                                          problem.direct.size(), problem.factors->size(), problem.channels));
+    }
     for (const double value : problem.environment) {
         if (!(value >= 0.0) || !std::isfinite(value)) {
             throw InvalidArgument(
@@ -37,6 +42,12 @@ void check_values(const RadiosityProblem& problem) {
         throw InvalidArgument(fmt::format("{} reflectances and {} exitances for {} patches of {} channels",
                                           problem.reflectance.size(), problem.exitance.size(), size,
                                           problem.channels));
+    }
+    for (const double value : problem.direct) {
+        if (!(value >= 0.0) || !std::isfinite(value)) {
+            throw InvalidArgument(
+                fmt::format("direct irradiance {}; it must be finite and not negative", value));
+        }
     }
     for (std::size_t k = 0; k < values; ++k) {
         const double reflectance = problem.reflectance[k];
@@ -160,7 +171,9 @@ std::vector<double> irradiance(const RadiosityProblem& problem, std::span<const 
             factors.known(i) ? balance_row(row.sum(), row.environment, row.blocked).defect : 0.0;
         for (std::uint32_t c = 0; c < channels; ++c) {
             const double bright = problem.environment.empty() ? 0.0 : problem.environment[c];
-            result.push_back(sums[c] + defect * field.patch(i)[c] + row.environment * bright);
+            const double direct =
+                problem.direct.empty() ? 0.0 : problem.direct[std::size_t{i} * channels + c];
+            result.push_back(sums[c] + defect * field.patch(i)[c] + row.environment * bright + direct);
         }
     }
     return result;

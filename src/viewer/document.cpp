@@ -6,6 +6,7 @@
 #include "display/picture_mesh.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
+#include "hemi/pipeline/daylight.hpp"
 
 #include <fmt/format.h>
 
@@ -120,6 +121,7 @@ void Document::show_factors(std::shared_ptr<const FormFactors> factors) {
     solution.factor_error = factors->error;
     blocked_ = solution.back_face_share;
     usual_factor_ = usual_largest_factor(matrix);
+    solution.direct = direct_irradiance(*input_.scene, *input_.mesh, matrix);
     input_.factors = std::move(factors);
 }
 
@@ -268,9 +270,10 @@ void Document::save_result(const std::filesystem::path& path) {
     solution.radiosity = light_.radiosity;
     solution.exitance = light_.exitance;
     solution.vertex_radiosity = light_.vertices;
-    solution.irradiance = irradiance({&input_.factors->matrix, input_.channels(), light_.reflectance,
-                                      light_.exitance, scene.environment, input_.mesh->areas()},
-                                     light_.radiosity);
+    solution.irradiance =
+        irradiance({&input_.factors->matrix, input_.channels(), light_.reflectance, light_.exitance,
+                    scene.environment, input_.mesh->areas(), solution.direct},
+                   light_.radiosity);
     solution.method = found.method;
     solution.sweeps = found.sweeps;
     solution.residual = found.residual;

@@ -1,6 +1,7 @@
 #include "viewer/look.hpp"
 
 #include "display/painted.hpp"
+#include "hemi/scene/light_unit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -108,20 +109,21 @@ Field light_field(const Look& look, const ViewerInput& input, const Light& light
         return one_channel(values, input.channels(), look.channel);
     };
     const std::string channel = channel_text(input, look);
+    const std::string unit = flux_density_unit(*input.scene);
     if (look.quantity == Quantity::reflectance) {
         return {"Reflectance" + channel, "", take(light.reflectance), {0.0, 1.0, false}};
     }
     if (look.quantity == Quantity::exitance) {
-        Field field{"Exitance" + channel, "W/m²", take(light.exitance), {}};
+        Field field{"Exitance" + channel, unit, take(light.exitance), {}};
         field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
         return field;
     }
     if (const std::optional<Error> error = error_of(look.quantity, input.solution)) {
-        Field field{error->title + channel, "W/m²", take(error->values), {}};
+        Field field{error->title + channel, unit, take(error->values), {}};
         field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
         return field;
     }
-    Field field{"Radiosity" + channel, "W/m²", take(light.radiosity), {}, "not known"};
+    Field field{"Radiosity" + channel, unit, take(light.radiosity), {}, "not known"};
     field.scale =
         scale_to(most_reflected(field.values, take(light.exitance)), look.logarithmic, radiosity_range);
     for (std::uint32_t i = 0; i < field.values.size(); ++i) {

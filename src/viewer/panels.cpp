@@ -1,6 +1,7 @@
 #include "viewer/panels.hpp"
 
 #include "display/orbit_camera.hpp"
+#include "hemi/scene/light_unit.hpp"
 #include "viewer/widgets.hpp"
 
 #include <fmt/format.h>
@@ -161,14 +162,15 @@ void patch_lines(const PanelContent& content, std::uint32_t i) {
     const Solution& solution = input.solution;
     const PatchMesh& mesh = *input.mesh;
     const Vec3& centre = mesh.centres()[i];
+    const std::string unit = flux_density_unit(*input.scene);
     line("patch", std::to_string(i) + (mesh.is_back(i) ? " (back)" : ""));
     line("group", mesh.groups()[mesh.group(i)]);
     line("material", input.scene->materials[mesh.material(i)].name);
     line("area", number(mesh.areas()[i]));
     line("centre", fmt::format("{:.4g} {:.4g} {:.4g}", centre.x, centre.y, centre.z));
     line("reflectance", channels_text(light.reflectance, input.channels(), i));
-    line("exitance W/m²", channels_text(light.exitance, input.channels(), i));
-    line("radiosity W/m²",
+    line(("exitance " + unit).c_str(), channels_text(light.exitance, input.channels(), i));
+    line(("radiosity " + unit).c_str(),
          light.knows(i) ? channels_text(light.radiosity, input.channels(), i) : "not known yet");
     if (!solution.row_sum.empty()) {
         const double defect =
@@ -178,7 +180,8 @@ void patch_lines(const PanelContent& content, std::uint32_t i) {
         line("back faces", number(solution.back_face_share[i]));
     }
     if (input.solution.error) {
-        line("est. error W/m²", channels_text(input.solution.error->patches, input.channels(), i, 1));
+        line(("est. error " + unit).c_str(),
+             channels_text(input.solution.error->patches, input.channels(), i, 1));
     }
 }
 

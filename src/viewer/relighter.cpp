@@ -129,12 +129,14 @@ void Relighter::try_to_gather(SolveUpdate& update, const std::stop_token& stop) 
     solution.radiosity = update.light.radiosity;
     solution.exitance = update.light.exitance;
     solution.back_face_share = input_.solution.back_face_share;
+    solution.direct = input_.solution.direct;
     if (!input_.factor_settings ||
         !should_gather(input_.gather, *input_.factor_settings, *input_.mesh, solution)) {
         return;
     }
-    const PatchValues values{solution.channels, update.light.reflectance, update.light.exitance,
-                             input_.scene->environment};
+    const PatchValues values{solution.channels,         update.light.reflectance, update.light.exitance,
+                             input_.scene->environment, solution.direct,          input_.scene->sun,
+                             input_.scene->sky};
     if (!gather_) {
         gather_.emplace(*input_.mesh, solution.back_face_share, all_patches(input_.mesh->size()));
     }
@@ -164,9 +166,9 @@ void Relighter::solve(Wish wish, const std::stop_token& stop) {
     const std::vector<double> start = update.light.radiosity;
     Clock::time_point began = Clock::now();
     try {
-        const RadiosityProblem problem{&input_.factors->matrix,   input_.channels(),
-                                       update.light.reflectance,  update.light.exitance,
-                                       input_.scene->environment, input_.mesh->areas()};
+        const RadiosityProblem problem{
+            &input_.factors->matrix,   input_.channels(),    update.light.reflectance, update.light.exitance,
+            input_.scene->environment, input_.mesh->areas(), input_.solution.direct};
         SolverSettings settings = input_.solver;
         settings.start = start;
         if (wish.stepwise && settings.method == SolverMethod::automatic) {

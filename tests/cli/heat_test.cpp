@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <sstream>
 
@@ -327,6 +328,33 @@ TEST_CASE("hemi heat: a furnace with a load on its hearth balances", "[cli][heat
         CHECK(heat["temperature"][brick] < 1273.15);
     }
     CHECK(heat["emissivity"][load].get<double>() == Approx(0.6 + 0.2 * 430.0 / 780.0));
+}
+
+TEST_CASE("hemi heat: a street in the sun balances, and its sunny side is the warmer one",
+          "[cli][heat][scenes][sun]") {
+    const Outcome run =
+        run_hemi(on_cpu({"heat", HEMI_SOURCE_DIR "/scenes/street-heat.json", "--json", "--preset", "fast"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json heat = run.json();
+    CHECK(std::abs(heat["balance"]["relative"].get<double>()) < 1e-7);
+    std::map<std::string, std::size_t> index;
+    for (std::size_t g = 0; g < heat["groups"].size(); ++g) {
+        index[heat["groups"][g]] = g;
+    }
+    const auto of = [&](const char* quantity, const char* group) {
+        return heat[quantity][index.at(group)].get<double>();
+    };
+    // At half past three in summer time the sun is in the south-west: it shines on what looks west.
+    CHECK(of("direct", "wall_east") > 2.0 * of("direct", "wall_west"));
+    CHECK(of("direct", "roofs") > 500.0);
+    CHECK(of("direct", "road") < of("irradiation", "road"));
+    for (const auto& [name, g] : index) {
+        INFO(name);
+        CHECK(heat["temperature"][g] > 283.0);
+        CHECK(heat["temperature"][g] < 360.0);
+    }
+    CHECK(heat["environment_power"] > 0.0);
 }
 
 TEST_CASE("hemi heat: groups of a mesh get what the command line says", "[cli][heat]") {

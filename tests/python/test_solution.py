@@ -1,5 +1,7 @@
 """Radiosity, result files and pictures."""
 
+import json
+
 import numpy
 import pytest
 
@@ -35,6 +37,27 @@ def test_a_solution_is_the_programs(scenes, program, tmp_path):
     assert (solution.patch_errors > 0).all()
     numpy.testing.assert_equal(stored.errors, solution.errors)
     assert (tmp_path / "module.hres").read_bytes() == (tmp_path / "program.hres").read_bytes()
+
+
+def test_sun_and_sky_are_known_apart(scenes, program, tmp_path):
+    document = json.loads((scenes / "cube.json").read_text())
+    document["surfaces"] = [surface for surface in document["surfaces"] if surface["name"] != "z1"]
+    document["enclosure"] = "open"
+    document["sun"] = {"azimuth": 150, "elevation": 55, "normal_irradiance": 800}
+    document["environment"] = {"sky": "overcast", "horizontal_irradiance": 100}
+    path = tmp_path / "court.json"
+    path.write_text(json.dumps(document))
+    scene = hemi.read_scene(path, patches_per_face=16)
+    solution = hemi.form_factors(scene, device="osmesa").solve()
+    assert solution.direct.shape == solution.radiosity.shape
+    assert (solution.irradiance > solution.direct).all() and solution.direct.max() > 600
+    solution.save(tmp_path / "module.hres")
+    program("solve", path, "--patches-per-face", 16, "--device", "osmesa", "-q", "--gather", "off",
+            "--result", tmp_path / "program.hres")
+    stored = hemi.load(tmp_path / "program.hres")
+    assert numpy.array_equal(stored.direct, solution.direct)
+    assert numpy.array_equal(stored.radiosity, solution.radiosity)
+    assert hemi.form_factors(hemi.read_scene(scenes / "cube.json"), device="osmesa").solve().direct is None
 
 
 def test_radiosity_solves_its_equation(small_box, small_factors):

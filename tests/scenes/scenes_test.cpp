@@ -84,7 +84,10 @@ TEST_CASE("scenes: every file reads without a warning and says what it shows", "
             CHECK(scene.name.size() > 20);
             CHECK(scene.camera.has_value());
             const std::vector<std::string> colours{"red", "green", "blue"};
-            CHECK(scene.channels == (scene.thermal ? std::vector<std::string>{"heat"} : colours));
+            const std::vector<std::string> heat = scene.thermal && !scene.thermal->band_limits.empty()
+                                                      ? std::vector<std::string>{"solar", "infrared"}
+                                                      : std::vector<std::string>{"heat"};
+            CHECK(scene.channels == (scene.thermal ? heat : colours));
         }
     }
 }

@@ -3,6 +3,7 @@
 #include "display/picture_renderer.hpp"
 #include "gl/context.hpp"
 #include "hemi/core/diagnostics.hpp"
+#include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 
 #include <array>
@@ -82,6 +83,27 @@ TEST_CASE("Viewer: the light converges a sweep at a time, to the same solution",
     CHECK(two["radiosity"][0][0].get<double>() > one["radiosity"][0][0].get<double>());
     CHECK(solved["radiosity"][0][0].get<double>() > two["radiosity"][0][0].get<double>());
     CHECK(two["light"].get<std::string>().find("sweep 2") != std::string::npos);
+}
+
+TEST_CASE("Viewer: sun and sky give the light that they give elsewhere", "[viewer][gl][sun]") {
+    const Workplace place;
+    std::string scene = place.read("room.json");
+    replace(scene, R"({"hemi": 1,)", R"({"hemi": 1,
+  "sun": {"azimuth": 190, "elevation": 40, "normal_irradiance": 700},
+  "environment": {"sky": "overcast", "horizontal_irradiance": [100, 120, 150], "ground": 0.1},)");
+    place.write("room.json", scene);
+    REQUIRE(place.view("save-result window.hres\nscreenshot window.png\n", small) == 0);
+    REQUIRE(place.run(fmt::format("'{}' solve room.json --device osmesa --preset plain --resolution 32 "
+                                  "--result solve.hres",
+                                  HEMI_PROGRAM)) == 0);
+    const Solution window = io::read_hres(place.path("window.hres")).solution;
+    const Solution solve = io::read_hres(place.path("solve.hres")).solution;
+    REQUIRE(window.direct.size() == solve.radiosity.size());
+    CHECK(window.direct == solve.direct);
+    for (std::size_t k = 0; k < solve.radiosity.size(); ++k) {
+        REQUIRE(window.radiosity[k] == Approx(solve.radiosity[k]).epsilon(1e-5));
+        REQUIRE(window.irradiance[k] == Approx(solve.irradiance[k]).epsilon(1e-5));
+    }
 }
 
 TEST_CASE("Viewer: a large scene shows about its light before its form factors are there", "[viewer][gl]") {

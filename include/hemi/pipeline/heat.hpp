@@ -29,15 +29,17 @@ struct HeatProblem {
     std::optional<double> environment_temperature; ///< K
     std::vector<double> environment;               ///< exitance of the environment beside that, W/m², bands
     double unit = 1.0;                             ///< metres in a unit of the areas' lengths
+    std::vector<double> direct{}; ///< irradiance from sun and sky, W/m², N·bands, >= 0; empty: neither
 };
 
-/// That of a scene.
+/// That of a scene, without what comes from sun and sky: that needs rows, see direct_heat().
 /// @param scene     with emissivities (1 - reflectance), conditions and exitances
 /// @param mesh      its patches
 /// @param observer  gets warnings: of groups of which nothing is known, of temperatures that look like °C, of
 ///   lengths that look like millimetres
 /// @param conditions  whether temperatures and fluxes are of interest, and warnings of them
-/// @throws InputError where channels are neither the bands nor equal, in materials that surfaces use
+/// @throws InputError where channels are neither the bands nor equal, in materials that surfaces use; with
+///   `conditions` for a scene in lumens
 [[nodiscard]] HeatProblem heat_problem(const Scene& scene, const PatchMesh& mesh,
                                        Observer& observer = no_observer(), bool conditions = true);
 
@@ -69,9 +71,9 @@ struct HeatSolution {
     double residual = 0.0;            ///< of the linear systems, the worst
 };
 
-/// Net fluxes and temperatures by J = eps f(T) sigma T⁴ + exitance + (1 - eps) G, G = F J + b J + e J_env in
-/// every band: what of a row meets back faces comes back, so that buried patches have no flux. Where the flux
-/// is given, J = G + q, and T follows. One linear solve a band by conjugate gradients on the symmetric
+/// Net fluxes and temperatures by J = eps f(T) sigma T⁴ + exitance + (1 - eps) G, G = F J + b J + e J_env + D
+/// in every band: what of a row meets back faces comes back, so that buried patches have no flux. Where the
+/// flux is given, J = G + q, and T follows. One linear solve a band by conjugate gradients on the symmetric
 /// system; several bands with fluxes, isothermal groups and emissivities by temperature by fixed-point
 /// iterations with Anderson's acceleration around it. In closed scenes leaks come back, too. Source: D. G.
 /// Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12, 1965.
@@ -98,6 +100,7 @@ struct GroupHeat {
     double emitted = 0.0;     ///< W/m²
     double absorbed = 0.0;    ///< W/m²
     double irradiation = 0.0; ///< W/m²
+    double direct = 0.0;      ///< of the irradiation what comes straight from sun and sky, W/m²
     double radiosity = 0.0;   ///< W/m²
     double net_flux = 0.0;    ///< W/m², leaving positive
     double net_power = 0.0;   ///< W, leaving positive

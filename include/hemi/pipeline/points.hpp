@@ -25,20 +25,24 @@ struct Receiver {
     std::uint32_t surface = no_surface;
 };
 
-/// What patches and the environment send out, the same in all directions, W/m² (or lm/m²).
+/// What patches and the environment send out, the same in all directions, W/m² (or lm/m²), and what comes
+/// from sun and sky.
 struct Radiation {
     std::uint32_t channels = 1;      ///< wavelengths, bands or colours
     std::vector<double> radiosity;   ///< B, N·channels; not a number where it is not known: counts as none
     std::vector<double> environment; ///< exitance of the environment, channels; empty: dark
+    std::optional<Sun> sun{};        ///< channels as the radiosity
+    std::optional<Sky> sky{};        ///< likewise
 };
-/// That of a solution, with what can be seen of patches that something stands on.
+/// That of a solution, with what can be seen of patches that something stands on. Sun and sky are the
+/// scene's, and are left to be set.
 /// @param mesh      N patches
 /// @param values    what patches and the environment radiate
 /// @param solution  radiosity and back-face shares are used
 /// @throws InvalidArgument for values that do not fit
 [[nodiscard]] Radiation radiation_of(const PatchMesh& mesh, const PatchValues& values,
                                      const Solution& solution);
-/// Heat radiation, by bands.
+/// Heat radiation, by bands; sun and sky likewise.
 [[nodiscard]] Radiation radiation_of(const HeatProblem& problem, const HeatSolution& solution);
 
 /// Directions of a point's six planes, in this order: up, down, and to the right, left, front and back of
@@ -58,8 +62,8 @@ struct PointValues {
     std::vector<double> below_horizon; ///< share of the environment below it, P
     std::vector<double> blocked; ///< share of back faces, P, from which nothing comes; inside a body about 1
     /// Exitance of black surroundings that would send as much as what is seen does, all channels together,
-    /// W/m², P: of patches, and of the environment unless what is seen of it is but a leak. Backs and patches
-    /// of unknown radiosity are left out; not a number where nothing else is seen.
+    /// W/m², P: of patches, and of the environment unless what is seen of it is but a leak, with sun and sky.
+    /// Backs and patches of unknown radiosity are left out; not a number where nothing else is seen.
     std::vector<double> surroundings;
     /// The same for the six planes of points without a normal, see plane_directions(): P·6, not a number with
     /// a normal.

@@ -6,6 +6,7 @@
 #include "hemi/solver/solver.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace hemi {
@@ -19,12 +20,15 @@ struct PatchValues {
     std::vector<double> reflectance; ///< N·channels, in [0, 1)
     std::vector<double> exitance;    ///< N·channels, >= 0
     std::vector<double> environment; ///< channels, >= 0; empty: dark
+    std::vector<double> direct{};    ///< irradiance from sun and sky, N·channels, >= 0; empty: neither
+    std::optional<Sun> sun{};        ///< for points beside the patches, which have no `direct`
+    std::optional<Sky> sky{};        ///< likewise
 };
-/// Those of a scene.
+/// Those of a scene, without what sun and sky give patches; see direct_irradiance().
 [[nodiscard]] PatchValues patch_values(const Scene& scene, const PatchMesh& mesh);
 
 /// The radiosity of a scene, with the estimated error that its form factors bring. Channels that are all the
-/// same problem are solved once.
+/// same problem are solved once. Sun and sky count, see direct_irradiance().
 /// @param scene            materials and environment
 /// @param mesh             its patches
 /// @param factors          prepared, see prepare_form_factors()

@@ -2,6 +2,7 @@
 
 #include "hemi/core/enclosure.hpp"
 #include "hemi/core/geometry.hpp"
+#include "hemi/core/names.hpp"
 
 #include <array>
 #include <cstdint>
@@ -88,6 +89,40 @@ struct Camera {
     bool orthographic = false;  ///< else perspective
 };
 
+/// Parallel light from afar. It is not seen itself.
+struct Sun {
+    Vec3 direction{0.0, 0.0, 1.0};  ///< towards it, of unit length
+    std::vector<double> irradiance; ///< of an area normal to the beam, W/m² (or lx), one value per channel
+
+    bool operator==(const Sun&) const = default; ///< member by member
+};
+
+/// How bright a sky is in which direction above the horizon.
+enum class SkyDistribution {
+    uniform,  ///< the same everywhere
+    overcast, ///< L = L_z (1 + 2 sin(elevation)) / 3. Source: CIE standard overcast sky, ISO 15469.
+};
+
+/// Words of SkyDistribution.
+template <>
+struct Names<SkyDistribution> {
+    /// Every value with its word.
+    static constexpr NamedValue<SkyDistribution> table[] = {{SkyDistribution::uniform, "uniform"},
+                                                            {SkyDistribution::overcast, "overcast"}};
+};
+
+/// What comes from above and below the horizon, beside what Scene::environment sends from everywhere.
+/// Upwards is +z.
+struct Sky {
+    SkyDistribution distribution = SkyDistribution::uniform; ///< above the horizon
+    std::vector<double>
+        horizontal; ///< of an unobstructed horizontal area, W/m² (or lx), one value per channel
+    /// Reflectance of the half-space below the horizon, which is lit by `horizontal`; one value per channel.
+    std::vector<double> ground;
+
+    bool operator==(const Sky&) const = default; ///< member by member
+};
+
 /// A scene as its file tells it: plain data, in the file's order and units.
 struct Scene {
     std::string name;                           ///< Its own, or the file's.
@@ -102,6 +137,9 @@ struct Scene {
     std::optional<double> unit;      ///< Metres in a scene unit; none: 1.
     /// What it says of heat. Reflectances of 1 are allowed where there is some: such surfaces are adiabatic.
     std::optional<Thermal> thermal;
+    std::optional<Sun> sun;   ///< a beam that casts shadows
+    std::optional<Sky> sky;   ///< what comes from above and below the horizon
+    bool photometric = false; ///< Fluxes are in lumens: exitances in lm/m², irradiances in lx.
 
     /// Index of the group of that name, made if it is new.
     std::uint32_t group_index(const std::string& group_name);

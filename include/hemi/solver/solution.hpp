@@ -67,7 +67,8 @@ struct Solution {
     std::uint32_t channels = 1;     ///< wavelengths, bands or colours
     std::vector<double> radiosity;  ///< B, N·channels
     std::vector<double> exitance;   ///< E, what patches radiate by themselves, N·channels
-    std::vector<double> irradiance; ///< H = F B + e B_env, N·channels; empty where it was not asked for
+    std::vector<double> irradiance; ///< H = F B + e B_env + D, N·channels; empty where it was not asked for
+    std::vector<double> direct;     ///< D, what comes straight from sun and sky, N·channels; empty: neither
 
     /// B at the corners of the patches, gathered by rows of their own (see VertexGather): channel c of corner
     /// k of patch i at [(i·4 + k)·channels + c]. Empty: corners have means over the patches that meet there.
@@ -81,7 +82,8 @@ struct Solution {
     std::string reason;                               ///< a sentence: why this method
     std::uint32_t channels_solved = 1; ///< 1 where all channels are equal, and one was solved for all
     std::uint32_t sweeps = 0;          ///< sweeps over the rows, or iterations
-    double residual = 0.0;  ///< worst channel's ||E' - (I - rho F) B||_2 / ||E'||_2, E' = E + rho e B_env
+    double residual =
+        0.0; ///< worst channel's ||E' - (I - rho F) B||_2 / ||E'||_2, E' = E + rho (e B_env + D)
     double dominance = 0.0; ///< max over i and channels of rho_i·sum_j F(i, j); below 1 the sweeps converge
 
     double seconds = 0.0; ///< spent on solving; not stored

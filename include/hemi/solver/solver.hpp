@@ -13,7 +13,7 @@
 
 namespace hemi {
 
-/// B = E + rho (F B + e B_env), all channels at once.
+/// B = E + rho (F B + e B_env + D), all channels at once.
 /// Arrays of N·channels hold channel c of patch i at [i·channels + c].
 ///
 /// Rows balance, sum_j F(i, j) + e_i + b_i = 1, and where they miss it by no more than 0.01 the difference is
@@ -28,6 +28,9 @@ struct RadiosityProblem {
     std::span<const double> exitance;          ///< E, N·channels, >= 0
     std::span<const double> environment;       ///< B_env, channels, >= 0; empty: zero
     std::span<const double> areas = {};        ///< A, N; needed by conjugate gradients
+    /// D, N·channels, >= 0: irradiance that comes neither from patches nor, as e B_env, from the environment,
+    /// such as that of the sun; empty: zero.
+    std::span<const double> direct = {};
 };
 
 /// Called after every sweep with its number, an estimate of the residual, and a function that gives the
@@ -57,7 +60,7 @@ struct SolverSettings {
 ///   reciprocal; NotConverged when the tolerance is not met; Cancelled when the watcher returns false.
 [[nodiscard]] Solution solve_radiosity(const RadiosityProblem& problem, const SolverSettings& settings = {});
 
-/// Irradiance H = F B + e B_env of every patch with a known row (0 elsewhere), N·channels; B = E + rho H.
+/// Irradiance H = F B + e B_env + D of every patch with a known row (0 elsewhere), N·channels; B = E + rho H.
 [[nodiscard]] std::vector<double> irradiance(const RadiosityProblem& problem,
                                              std::span<const double> radiosity);
 

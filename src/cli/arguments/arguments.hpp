@@ -185,7 +185,8 @@ struct PointsArguments {
         double height = 0.0;
     };
     std::optional<Grid> grid;
-    bool spheres = false; ///< points have no normals
+    bool spheres = false;  ///< points have no normals
+    bool daylight = false; ///< factors by the sky alone
     std::optional<Posture> posture;
     std::optional<double> facing; ///< degrees
     std::optional<std::filesystem::path> output;

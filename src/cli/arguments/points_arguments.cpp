@@ -22,6 +22,8 @@ void add_point_options(CLI::App& app, PointsArguments& a) {
         ->group("Points")
         ->excludes(file);
     points.flag("--spheres", a.spheres, "leave normals out: what small spheres get");
+    points.flag("--daylight", a.daylight,
+                "daylight factors, %: what the sky alone gives, over the horizontal illuminance outside");
     auto* person =
         points.choice<Posture>("--person", "standing|seated",
                                "mean radiant temperature of a person, by six planes (ISO 7726)", a.posture);
@@ -56,9 +58,11 @@ void add_point_options(CLI::App& app, PointsArguments& a) {
         ->needs(out);
     output.path("--factors", "FILE.hff", a.factors,
                 "use these form factors if the file exists, else write them there");
-    app.footer("Examples:\n"
-               "  hemi points scenes/office.json --grid floor 0.5 0.8 -o desk.csv\n"
-               "  hemi points room.hres --points sensors.csv --by-group");
+    app.footer(
+        "Examples:\n"
+        "  hemi points scenes/office.json --grid floor 0.5 0.8 -o desk.csv\n"
+        "  hemi points classroom.json --grid floor 0.5 0.8 --daylight --show daylight_factor -o df.png\n"
+        "  hemi points room.hres --points sensors.csv --by-group");
 }
 
 } // namespace hemi::cli

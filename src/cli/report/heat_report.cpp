@@ -75,22 +75,40 @@ Report heat_report(const FormFactors& factors, const HeatProblem& problem, const
             errors.push_back(value_json(combined[g]));
         }
     }
-    Table table({"group", "area m²", "emissivity", "T K", "emitted W/m²", "absorbed W/m²", "irradiation W/m²",
-                 "radiosity W/m²", "net flux W/m²", "+-", "net power W"});
+    const bool lit = !problem.direct.empty();
+    constexpr std::ptrdiff_t direct_column = 7;
+    std::vector<std::string> columns{
+        "group",         "area m²",          "emissivity",     "T K",           "emitted W/m²",
+        "absorbed W/m²", "irradiation W/m²", "radiosity W/m²", "net flux W/m²", "+-",
+        "net power W"};
+    if (lit) {
+        columns.insert(columns.begin() + direct_column, "sun and sky W/m²");
+    }
+    Table table(columns);
     for (std::size_t g = 0; g < all.size(); ++g) {
         const GroupHeat& heat = all[g];
         const bool total = g + 1 == all.size();
-        table.add({total ? "(all surfaces)" : factors.groups[g], number_text(heat.area),
-                   value_text(heat.emissivity), value_text(heat.temperature), value_text(heat.emitted),
-                   value_text(heat.absorbed), value_text(heat.irradiation), value_text(heat.radiosity),
-                   number_text(heat.net_flux),
-                   std::isfinite(combined[g]) ? fmt::format("{:.2g}", combined[g]) : "-",
-                   number_text(heat.net_power)});
+        std::vector<std::string> cells{total ? "(all surfaces)" : factors.groups[g],
+                                       number_text(heat.area),
+                                       value_text(heat.emissivity),
+                                       value_text(heat.temperature),
+                                       value_text(heat.emitted),
+                                       value_text(heat.absorbed),
+                                       value_text(heat.irradiation),
+                                       value_text(heat.radiosity),
+                                       number_text(heat.net_flux),
+                                       std::isfinite(combined[g]) ? fmt::format("{:.2g}", combined[g]) : "-",
+                                       number_text(heat.net_power)};
+        if (lit) {
+            cells.insert(cells.begin() + direct_column, value_text(heat.direct));
+        }
+        table.add(std::move(cells));
     }
-    const std::string none;
-    table.add({"(environment)", none, none,
-               problem.environment_temperature ? number_text(*problem.environment_temperature) : none, none,
-               none, none, none, none, none, number_text(solution.environment_power)});
+    std::vector<std::string> environment(columns.size());
+    environment.front() = "(environment)";
+    environment[3] = problem.environment_temperature ? number_text(*problem.environment_temperature) : "";
+    environment.back() = number_text(solution.environment_power);
+    table.add(std::move(environment));
     Report report;
     Json names = Json::array();
     for (const std::string& name : factors.groups) {
@@ -103,6 +121,7 @@ Report heat_report(const FormFactors& factors, const HeatProblem& problem, const
                    {"emitted", column_json(all, &GroupHeat::emitted)},
                    {"absorbed", column_json(all, &GroupHeat::absorbed)},
                    {"irradiation", column_json(all, &GroupHeat::irradiation)},
+                   {"direct", column_json(all, &GroupHeat::direct)},
                    {"radiosity", column_json(all, &GroupHeat::radiosity)},
                    {"net_flux", column_json(all, &GroupHeat::net_flux)},
                    {"net_power", column_json(all, &GroupHeat::net_power)},

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t planes = 6;
+constexpr double percent = 100.0;
 constexpr std::array<const char*, planes> plane_names{"plane_up",   "plane_down",  "plane_right",
                                                       "plane_left", "plane_front", "plane_back"};
 
@@ -66,6 +67,14 @@ PointColumns point_columns(std::span<const Receiver> points, const PointValues& 
     for (std::size_t c = 0; c < values.channels; ++c) {
         add(values.channels == asked.channels.size() ? "irradiance_" + asked.channels[c] : "irradiance",
             every(values.irradiance, c, values.channels));
+    }
+    for (std::size_t c = 0; c < asked.horizontal.size(); ++c) {
+        std::vector<double> factors = every(values.irradiance, c, values.channels);
+        for (double& factor : factors) {
+            factor *= percent / asked.horizontal[c];
+        }
+        add(asked.horizontal.size() == 1 ? "daylight_factor" : "daylight_factor_" + asked.channels[c],
+            std::move(factors));
     }
     add("sky", values.sky);
     add("below_horizon", values.below_horizon);
@@ -152,6 +161,14 @@ Json points_json(std::span<const Receiver> points, const PointValues& values, co
     if (asked.heat) {
         json["mean_radiant_temperature"] = std::move(temperatures);
         json["plane_radiant_temperature"] = std::move(plane_temperatures);
+    }
+    if (!asked.horizontal.empty()) {
+        std::vector<double> factors = values.irradiance;
+        for (std::size_t k = 0; k < factors.size(); ++k) {
+            factors[k] *= percent / asked.horizontal[k % values.channels];
+        }
+        json["daylight_factor"] = rows_json(factors, values.channels);
+        json["horizontal"] = asked.horizontal;
     }
     if (asked.posture) {
         json["posture"] = to_word(*asked.posture);

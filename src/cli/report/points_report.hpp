@@ -24,7 +24,8 @@ struct PointsAsked {
     std::vector<std::string> groups;   ///< names; empty: factors are not wanted
     bool heat = false;                 ///< whether the radiation is that of temperatures
     std::optional<Posture> posture;
-    bool faces = false; ///< whether the person faces front
+    bool faces = false;             ///< whether the person faces front
+    std::vector<double> horizontal; ///< irradiance outside, channels; empty: no daylight factors are wanted
 };
 
 /// Irradiances, shares, radiant temperatures, factors.

@@ -1,6 +1,7 @@
 #include "cli/report/scene_report.hpp"
 
 #include "cli/report/group_sizes.hpp"
+#include "hemi/scene/light_unit.hpp"
 
 #include <fmt/format.h>
 
@@ -162,6 +163,23 @@ Report contents_report(const Scene& scene, const PatchMesh& mesh, std::span<cons
                {{"bounds", {{"lower", point_json(lower)}, {"upper", point_json(upper)}}}});
     report.add("enclosure", to_word(scene.enclosure), {{"enclosure", to_word(scene.enclosure)}});
     report.add("environment", values_text(scene.environment), {{"environment", scene.environment}});
+    if (scene.sun) {
+        report.add("sun",
+                   fmt::format("{} {}, towards {}", values_text(scene.sun->irradiance),
+                               irradiance_unit(scene), point_text(scene.sun->direction)),
+                   {{"sun",
+                     {{"direction", point_json(scene.sun->direction)},
+                      {"normal_irradiance", scene.sun->irradiance}}}});
+    }
+    if (scene.sky) {
+        report.add("sky",
+                   fmt::format("{}, {} {}", to_word(scene.sky->distribution),
+                               values_text(scene.sky->horizontal), irradiance_unit(scene)),
+                   {{"sky",
+                     {{"distribution", to_word(scene.sky->distribution)},
+                      {"horizontal_irradiance", scene.sky->horizontal},
+                      {"ground", scene.sky->ground}}}});
+    }
     report.add("camera", scene.camera ? "yes" : "no", {{"camera", scene.camera.has_value()}});
     report.add(more);
     report.add(groups_report(mesh, areas));

@@ -202,7 +202,7 @@ Report stored_solution_report(const Solution& solution, const PatchMesh& mesh) {
     return report;
 }
 
-Report light_balance_report(const std::optional<LightBalance>& balance, double metres) {
+Report light_balance_report(const std::optional<LightBalance>& balance, double metres, const char* unit) {
     Report report;
     report.json["balance"] = nullptr;
     if (!balance) {
@@ -210,12 +210,12 @@ Report light_balance_report(const std::optional<LightBalance>& balance, double m
     }
     const auto watts = [&](double power) { return power * metres * metres; };
     const auto part = [&](double power) {
-        return fmt::format("{} ({:.3g} %)", number_text(watts(power)),
+        return fmt::format("{}{} ({:.3g} %)", number_text(watts(power)), unit,
                            balance->incoming > 0.0 ? 100.0 * power / balance->incoming : 0.0);
     };
     report.add("balance",
-               fmt::format("emitted {}; absorbed {}, to the environment {}, lost on backs {}",
-                           number_text(watts(balance->emitted)), part(balance->absorbed),
+               fmt::format("emitted {}{}; absorbed {}, to the environment {}, lost on backs {}",
+                           number_text(watts(balance->emitted)), unit, part(balance->absorbed),
                            part(balance->environment), part(balance->lost)),
                {{"balance",
                  {{"emitted", watts(balance->emitted)},
@@ -232,16 +232,19 @@ Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const
     report.add(rows);
     report.add(repair_report(factors, seconds["repair"]));
     report.add(solution_report(solution, loaded.mesh));
-    report.add(light_balance_report(balance, loaded.scene.unit.value_or(1.0)));
+    report.add(light_balance_report(balance, loaded.scene.unit.value_or(1.0),
+                                    loaded.scene.photometric ? " lm" : ""));
+    report.json["photometric"] = loaded.scene.photometric;
     report.add(seconds.report());
     report.json.update(group_means_json(loaded, factors.matrix, solution));
     report.json["reciprocity"] =
         factors.matrix.all_known()
             ? reciprocity_json(factors.repair->reciprocity_after, factors.parts.patch_of)
             : Json(nullptr);
-    report.select("hemi/solve/1", {"renderer", "patches", "parts", "channels", "groups", "areas", "radiosity",
-                                   "exitance", "environment", "blocked", "solver", "row_sum", "reciprocity",
-                                   "repair", "chosen_for", "error", "error_estimate", "balance", "seconds"});
+    report.select("hemi/solve/1", {"renderer", "patches",        "parts",       "channels",    "groups",
+                                   "areas",    "radiosity",      "exitance",    "environment", "blocked",
+                                   "solver",   "row_sum",        "reciprocity", "repair",      "chosen_for",
+                                   "error",    "error_estimate", "balance",     "photometric", "seconds"});
     return report;
 }
 

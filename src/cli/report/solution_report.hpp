@@ -19,7 +19,9 @@ namespace hemi::cli {
                                   const Seconds& seconds);
 /// Where the light goes.
 /// @param metres  in a unit of the scene
-[[nodiscard]] Report light_balance_report(const std::optional<LightBalance>& balance, double metres);
+/// @param unit    behind powers; may be empty
+[[nodiscard]] Report light_balance_report(const std::optional<LightBalance>& balance, double metres,
+                                          const char* unit = "");
 /// Warns where more than 0.1 % of the light is lost.
 /// @param groups  their names
 void report_lost_light(const std::optional<LightBalance>& balance, const std::vector<std::string>& groups,

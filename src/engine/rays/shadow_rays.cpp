@@ -103,7 +103,9 @@ public:
             return;
         }
         const double squared = glm::dot(way, way);
-        const double weight = area * leaving * arriving / (squared * squared);
+        add(a, b, area * leaving * arriving / (squared * squared));
+    }
+    void add(const Vec3& a, const Vec3& b, double weight) {
         all_ += weight;
         squares_ += weight * weight;
         packet_.from[packet_.count] = a;
@@ -186,6 +188,34 @@ ShadowRays::Estimate ShadowRays::visibility_from(const Vec3& at, const Vec3& nor
         sum.add(at, normal, to.point(even[0], even[1]), normal_j, to.jacobian_at(even[0], even[1]));
     }
     return sum.finish();
+}
+
+Vec3 ShadowRays::beyond(const Vec3& at, const Vec3& towards) const {
+    const Bounds& bounds = mesh_.bounds();
+    return at + (glm::length(at - bounds.centre()) + bounds.diagonal()) * towards;
+}
+
+double ShadowRays::lit_share(std::uint32_t i, const Vec3& towards, std::uint32_t rays) const {
+    const Vec3 normal = mesh_.normal(i);
+    if (!(glm::dot(normal, towards) > 0.0)) {
+        return 0.0;
+    }
+    const PatchCorners corners = mesh_.corners(i);
+    const BilinearMap from(corners.polygon(), normal);
+    const EvenPoints points(i);
+    Sum sum(*this);
+    for (std::uint32_t ray = 0; ray < rays; ++ray) {
+        const auto even = points[ray];
+        const Vec3 at = from.point(even[0], even[1]);
+        sum.add(at, beyond(at, towards), from.jacobian_at(even[0], even[1]));
+    }
+    return sum.finish().visibility;
+}
+
+bool ShadowRays::is_lit(const Vec3& at, const Vec3& towards) const {
+    Sum sum(*this);
+    sum.add(at, beyond(at, towards), 1.0);
+    return sum.finish().visibility > 0.5;
 }
 
 } // namespace hemi

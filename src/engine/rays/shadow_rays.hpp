@@ -35,10 +35,19 @@ public:
     /// @param key     shifts the rays' ends on the patch
     [[nodiscard]] Estimate visibility_from(const Vec3& at, const Vec3& normal, std::uint32_t j,
                                            std::uint32_t rays, std::uint64_t key) const;
+    /// Share of a patch that parallel light reaches, by rays from Sobol points on it. Backs get none.
+    /// @param towards  direction of the light, of unit length
+    /// @param rays     to trace; powers of two are spread best
+    [[nodiscard]] double lit_share(std::uint32_t i, const Vec3& towards, std::uint32_t rays) const;
+    /// Whether parallel light reaches a point; its own surface hides nothing.
+    [[nodiscard]] bool is_lit(const Vec3& at, const Vec3& towards) const;
 
 private:
     struct Packet;
     class Sum;
+
+    /// A point in that direction beyond all surfaces.
+    [[nodiscard]] Vec3 beyond(const Vec3& at, const Vec3& towards) const;
 
     const PatchMesh& mesh_;
     double rounding_;

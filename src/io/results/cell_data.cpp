@@ -32,6 +32,9 @@ std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh
     const std::vector<std::string> names = channels.size() > 1 ? channels : std::vector<std::string>();
     arrays.push_back({"radiosity", solution.radiosity, names});
     arrays.push_back({"irradiance", solution.irradiance, names});
+    if (!solution.direct.empty()) {
+        arrays.push_back({"direct", solution.direct, names});
+    }
     arrays.push_back({"exitance", patch_values(mesh, result.scene.materials, &Material::exitance), names});
     arrays.push_back(
         {"reflectance", patch_values(mesh, result.scene.materials, &Material::reflectance), names});

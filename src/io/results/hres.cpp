@@ -83,6 +83,20 @@ Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional
     if (as_read) {
         head["as_read"] = {{"surfaces", as_read->surfaces().size()}, {"patches", as_read->size()}};
     }
+    if (scene.photometric) {
+        head["photometric"] = true;
+    }
+    if (scene.sun) {
+        head["sun"] = {{"direction", point(scene.sun->direction)}, {"irradiance", scene.sun->irradiance}};
+    }
+    if (scene.sky) {
+        head["sky"] = {{"distribution", to_word(scene.sky->distribution)},
+                       {"horizontal", scene.sky->horizontal},
+                       {"ground", scene.sky->ground}};
+    }
+    if (!result.solution.direct.empty()) {
+        head["direct"] = true;
+    }
     if (scene.camera) {
         const Camera& camera = *scene.camera;
         head["camera"] = {{"eye", point(camera.eye)},
@@ -180,12 +194,22 @@ void check_patch_size(const ResultFile& result, const Fail& fail) {
     }
 }
 
+Sky read_sky(const JsonNode& node) {
+    const JsonNode word = node.member("distribution");
+    const std::optional<SkyDistribution> distribution = from_word<SkyDistribution>(word.any_text());
+    if (!distribution) {
+        word.expect(fmt::format("one of {}", fmt::join(words<SkyDistribution>(), ", ")));
+    }
+    return {*distribution, node.member("horizontal").numbers(), node.member("ground").numbers()};
+}
+
 /// What the header says of sizes.
 struct Sizes {
     std::uint64_t surfaces = 0;
     std::uint64_t patches = 0;
     bool gathered = false;              ///< there is radiosity at vertices
     bool parts = false;                 ///< patches of some surfaces differ in size
+    bool direct = false;                ///< there is irradiance of sun and sky
     std::uint64_t surfaces_as_read = 0; ///< 0: the surfaces are as they were read
     std::uint64_t patches_as_read = 0;
 };
@@ -200,6 +224,14 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     scene.environment = head.member("environment").numbers();
     if (head.has("camera")) {
         scene.camera = read_camera(head.member("camera"));
+    }
+    scene.photometric = head.has("photometric") && head.member("photometric").boolean();
+    if (head.has("sun")) {
+        const JsonNode sun = head.member("sun");
+        scene.sun = Sun{sun.member("direction").point(), sun.member("irradiance").numbers()};
+    }
+    if (head.has("sky")) {
+        scene.sky = read_sky(head.member("sky"));
     }
     result.solution.channels = static_cast<std::uint32_t>(scene.channels.size());
     const std::optional<SolverMethod> method = from_word<SolverMethod>(head.member("solver").any_text());
@@ -228,7 +260,8 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     }
     Sizes sizes{head.member("surfaces").integer(most), head.member("patches").integer(most),
                 head.has("gathered") && head.member("gathered").boolean(),
-                head.has("parts") && head.member("parts").boolean()};
+                head.has("parts") && head.member("parts").boolean(),
+                head.has("direct") && head.member("direct").boolean()};
     if (head.has("as_read")) {
         const JsonNode as_read = head.member("as_read");
         sizes.surfaces_as_read = as_read.member("surfaces").integer(most);
@@ -380,6 +413,9 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     if (!result.solution.vertex_radiosity.empty()) {
         check_array(result.solution.vertex_radiosity, values * 4, "radiosity at vertices");
     }
+    if (!result.solution.direct.empty()) {
+        check_array(result.solution.direct, values, "irradiance of sun and sky");
+    }
 
     ChunkWriter writer(path, hres_format);
     writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh, as_read)))});
@@ -405,6 +441,9 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     }
     if (!result.solution.vertex_radiosity.empty()) {
         writer.chunk("VERT", {bytes_of(result.solution.vertex_radiosity)});
+    }
+    if (!result.solution.direct.empty()) {
+        writer.chunk("DIRE", {bytes_of(result.solution.direct)});
     }
     writer.finish();
 }
@@ -456,6 +495,9 @@ ResultFile read_hres(const std::filesystem::path& path) {
     }
     if (sizes.gathered) {
         result.solution.vertex_radiosity = read_array<float>(reader, "VERT", values * 4);
+    }
+    if (sizes.direct) {
+        result.solution.direct = read_array(reader, "DIRE", values);
     }
     reader.finish();
     return result;

@@ -122,7 +122,8 @@ void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh,
 void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
                          std::span<const std::string> channels, std::span<const double> exitance,
                          std::span<const double> irradiance, std::span<const double> radiosity,
-                         std::span<const double> errors, const PatchPlaces& left) {
+                         std::span<const double> errors, const PatchPlaces& left,
+                         std::span<const double> direct) {
     const std::size_t values = std::size_t{mesh.size()} * channels.size();
     if (exitance.size() != values || irradiance.size() != values || radiosity.size() != values) {
         throw InvalidArgument(fmt::format(
@@ -133,6 +134,10 @@ void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mes
         throw InvalidArgument(fmt::format("{} errors for {} patches with {} channels; must be {}",
                                           errors.size(), mesh.size(), channels.size(), values));
     }
+    if (!direct.empty() && direct.size() != values) {
+        throw InvalidArgument(fmt::format("{} direct irradiances for {} patches with {} channels; must be {}",
+                                          direct.size(), mesh.size(), channels.size(), values));
+    }
     const std::vector<std::string> names(channels.begin(), channels.end());
     const auto array = [&names](const char* name, std::span<const double> of_patches) {
         return CellArray{name, {of_patches.begin(), of_patches.end()}, names};
@@ -141,6 +146,9 @@ void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mes
                                   array("radiosity", radiosity)};
     if (!errors.empty()) {
         arrays.push_back(array("error", errors));
+    }
+    if (!direct.empty()) {
+        arrays.push_back(array("direct", direct));
     }
     write_patch_table(path, mesh, arrays, left);
 }
@@ -154,7 +162,8 @@ void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& re
                                              : solution.exitance;
     const std::vector<double> errors = radiosity_errors(solution);
     if (!result.parts.any()) {
-        write_radiosity_csv(path, mesh, channels, exitance, solution.irradiance, solution.radiosity, errors);
+        write_radiosity_csv(path, mesh, channels, exitance, solution.irradiance, solution.radiosity, errors,
+                            {}, solution.direct);
         return;
     }
     const PatchMesh as_read(result.scene_as_read());
@@ -163,7 +172,8 @@ void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& re
                               : means_of_patches(result.parts, mesh.areas(), values, channels.size());
     };
     write_radiosity_csv(path, as_read, channels, means(exitance), means(solution.irradiance),
-                        means(solution.radiosity), means(errors), places_left(as_read, mesh, result.parts));
+                        means(solution.radiosity), means(errors), places_left(as_read, mesh, result.parts),
+                        means(solution.direct));
 }
 
 } // namespace hemi::io

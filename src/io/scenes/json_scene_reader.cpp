@@ -6,6 +6,7 @@
 #include "io/formats/text_scan.hpp"
 #include "io/meshes/face_mender.hpp"
 #include "io/meshes/face_mesh.hpp"
+#include "io/scenes/json_daylight.hpp"
 #include "io/scenes/json_materials.hpp"
 #include "io/scenes/json_thermal.hpp"
 #include "io/scenes/obj_materials.hpp"
@@ -18,6 +19,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -131,9 +133,13 @@ public:
         mender_.tell(file_, diagnostics_);
         scene_.materials = materials.take();
         read_settings();
-        if (root_.has("groups")) {
-            read_heat_of_groups(root_.member("groups"), scene_);
+        for (const auto& [index, lit] : fluxes_) {
+            read_luminous_flux(surfaces.element(index), lit, scene_);
         }
+        if (root_.has("groups")) {
+            read_groups(root_.member("groups"), scene_);
+        }
+        check_units(root_, scene_);
         set_sides(scene_, options_, file_, diagnostics_);
         return std::move(scene_);
     }
@@ -141,7 +147,7 @@ public:
 private:
     void check_version() {
         root_.check_keys({"hemi", "name", "channels", "materials", "surfaces", "patch_size", "enclosure",
-                          "environment", "camera", "groups", "bands", "unit"});
+                          "environment", "camera", "groups", "bands", "unit", "sun"});
         if (!root_.has("hemi")) {
             root_.fail("\"hemi\": 1 is missing, the version of the format");
         }
@@ -246,7 +252,7 @@ private:
 
     void read_surface(const JsonNode& node, std::size_t index, JsonMaterials& materials) {
         node.check_keys({"name", "material", "polygon", "holes", "mesh", "transform", "patches", "two_sided",
-                         "flip", "temperature", "heat_flux", "power", "isothermal"});
+                         "flip", "temperature", "heat_flux", "power", "isothermal", "luminous_flux"});
         if (node.has("polygon") == node.has("mesh")) {
             node.fail(node.has("mesh") ? "both \"polygon\" and \"mesh\"; must have one of them"
                                        : "neither \"polygon\" nor \"mesh\"; must have one of them");
@@ -261,6 +267,7 @@ private:
             common.heat = static_cast<std::uint32_t>(thermal.conditions.size());
             thermal.conditions.push_back(*heat);
         }
+        const auto first = static_cast<std::uint32_t>(scene_.surfaces.size());
         if (node.has("mesh")) {
             if (node.has("holes")) {
                 node.fail("\"holes\" belong to a polygon");
@@ -268,6 +275,11 @@ private:
             add_mesh(node, common, materials);
         } else {
             add_polygon(node, index, common, materials);
+        }
+        if (node.has("luminous_flux")) {
+            std::vector<std::uint32_t>& lit = fluxes_[index];
+            lit.resize(scene_.surfaces.size() - first);
+            std::iota(lit.begin(), lit.end(), first);
         }
     }
 
@@ -405,15 +417,20 @@ private:
         scene_.environment.assign(scene_.channels.size(), 0.0);
         if (root_.has("environment")) {
             const JsonNode environment = root_.member("environment");
-            environment.check_keys({"exitance", "temperature"});
+            environment.check_keys({"exitance", "temperature", "sky", "horizontal_irradiance",
+                                    "horizontal_illuminance", "ground"});
+            read_sky(environment, scene_);
             if (environment.has("temperature")) {
                 thermal_of(scene_).environment_temperature =
                     read_temperature(environment.member("temperature"));
             }
-            if (environment.has("exitance") || !environment.has("temperature")) {
+            if (environment.has("exitance") || !(environment.has("temperature") || scene_.sky)) {
                 scene_.environment = channel_values(environment.member("exitance"), scene_.channels,
                                                     std::numeric_limits<double>::infinity());
             }
+        }
+        if (root_.has("sun")) {
+            read_sun(root_.member("sun"), scene_, diagnostics_);
         }
         if (root_.has("unit")) {
             scene_.unit = read_unit(root_.member("unit"));
@@ -434,6 +451,7 @@ private:
     Scene scene_;
     std::map<std::string, LoadedMesh> meshes_;
     std::unordered_map<std::string, std::uint32_t> groups_;
+    std::map<std::size_t, std::vector<std::uint32_t>> fluxes_; // surfaces by their node's index
 };
 
 } // namespace

@@ -4,6 +4,7 @@
 #include "hemi/core/length_unit.hpp"
 #include "hemi/core/nearest_word.hpp"
 #include "io/formats/text_scan.hpp"
+#include "io/scenes/json_daylight.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,6 +14,9 @@
 namespace hemi::io {
 
 namespace {
+
+/// Keys of a group.
+const std::vector<std::string> group_keys{"temperature", "heat_flux", "power", "isothermal", "luminous_flux"};
 
 double emissivity_value(const JsonNode& node) {
     const double value = node.number();
@@ -136,15 +140,24 @@ std::optional<HeatCondition> read_heat(const JsonNode& node) {
     return condition;
 }
 
-void read_heat_of_groups(const JsonNode& groups, Scene& scene) {
+void read_groups(const JsonNode& groups, Scene& scene) {
     groups.check_object();
     for (const auto& [name, ignored] : groups.value().items()) {
         const JsonNode group = groups.member(name);
-        group.check_keys(heat_keys);
+        group.check_keys(group_keys);
         const auto found = std::find(scene.groups.begin(), scene.groups.end(), name);
         if (found == scene.groups.end()) {
             groups.fail(
                 fmt::format("unknown group {}{}", in_quotes(name), did_you_mean_or_list(name, scene.groups)));
+        }
+        if (group.has("luminous_flux")) {
+            std::vector<std::uint32_t> surfaces;
+            for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
+                if (scene.surfaces[s].group == found - scene.groups.begin()) {
+                    surfaces.push_back(s);
+                }
+            }
+            read_luminous_flux(group, surfaces, scene);
         }
         const std::optional<HeatCondition> condition = read_heat(group);
         if (!condition) {

@@ -34,9 +34,9 @@ inline const std::vector<std::string> heat_keys{"temperature", "heat_flux", "pow
 /// What the heat keys of a surface or a group say; nothing where there are none.
 [[nodiscard]] std::optional<HeatCondition> read_heat(const JsonNode& node);
 
-/// Adds conditions by the "groups" of the scene to its surfaces.
+/// Adds conditions and luminous fluxes by the "groups" of the scene to its surfaces.
 /// @throws InputError for unknown groups, with the nearest, and for surfaces that have one of their own
-void read_heat_of_groups(const JsonNode& groups, Scene& scene);
+void read_groups(const JsonNode& groups, Scene& scene);
 
 /// The conditions of a scene, made where there are none.
 [[nodiscard]] Thermal& thermal_of(Scene& scene);

@@ -1,0 +1,200 @@
+#include "hemi/pipeline/daylight.hpp"
+
+#include "core/parallel_for.hpp"
+#include "engine/analytic/convex_polygon.hpp"
+#include "engine/rays/shadow_rays.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/core/interrupt.hpp"
+#include "hemi/engine/exchange_area.hpp"
+#include "pipeline/point_daylight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace hemi {
+
+namespace {
+
+/// Rays to a patch that are enough where all or none are blocked, and where some are.
+constexpr std::uint32_t first_rays = 64;
+constexpr std::uint32_t edge_rays = 1024;
+/// Distance of centres, in sums of radii, from which a patch lies in one direction, and from which it is seen
+/// in one way from all of a patch.
+constexpr double far = 10.0;
+constexpr double apart = 3.0;
+constexpr std::size_t patches_at_once = 16;
+
+std::vector<double> sun_irradiance(const PatchMesh& mesh, const Sun& sun, std::size_t channels) {
+    const ShadowRays rays(mesh);
+    std::vector<double> result(mesh.size() * channels, 0.0);
+    parallel_for(mesh.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto patch = static_cast<std::uint32_t>(i);
+            const double cosine = glm::dot(mesh.normal(patch), sun.direction);
+            if (!(cosine > 0.0)) {
+                continue;
+            }
+            double lit = rays.lit_share(patch, sun.direction, first_rays);
+            if (lit > 0.0 && lit < 1.0) {
+                lit = rays.lit_share(patch, sun.direction, edge_rays);
+            }
+            for (std::size_t c = 0; c < channels; ++c) {
+                result[i * channels + c] = sun.irradiance[c] * cosine * lit;
+            }
+        }
+        stop_if_interrupted();
+    });
+    return result;
+}
+
+/// What patches see of the sky.
+class SkyShares {
+public:
+    SkyShares(const PatchMesh& mesh, const FormFactorMatrix& factors) : mesh_(mesh), factors_(factors) {
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            double radius = 0.0;
+            const PatchCorners corners = mesh.corners(i);
+            for (const Vec3& corner : corners.polygon()) {
+                radius = std::max(radius, glm::length(corner - mesh.centres()[i]));
+            }
+            radii_.push_back(radius);
+        }
+    }
+
+    [[nodiscard]] PointDaylight::Environment seen(std::uint32_t i) const {
+        const RowView row = factors_.row(i);
+        if (!factors_.known(i) || !(row.environment > 0.0)) {
+            return {};
+        }
+        const Eyes eyes = eyes_of(i);
+        SkyMoments hidden;
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            hidden += static_cast<double>(row.values[k]) * behind(i, eyes, row.columns[k]);
+        }
+        return PointDaylight::split(row.environment, row.blocked, open_sky(mesh_.normal(i)), hidden);
+    }
+
+private:
+    /// Points of a patch with the areas that they stand for; the last one, its centre, stands for all.
+    struct Eyes {
+        std::array<Vec3, 5> at;
+        std::array<double, 5> weight;
+    };
+
+    [[nodiscard]] Eyes eyes_of(std::uint32_t i) const {
+        const PatchCorners corners = mesh_.corners(i);
+        const BilinearMap map(corners.polygon(), mesh_.normal(i));
+        const double place = 1.0 / std::numbers::sqrt3;
+        Eyes eyes;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double s = k % 2 == 0 ? -place : place;
+            const double t = k / 2 == 0 ? -place : place;
+            eyes.at[k] = map.point(s, t);
+            eyes.weight[k] = map.jacobian_at(s, t);
+        }
+        eyes.at[4] = mesh_.centres()[i];
+        eyes.weight[4] = 1.0;
+        return eyes;
+    }
+
+    /// Mean over what a patch sees of another, of being above the horizon, and of sin(elevation) there.
+    [[nodiscard]] SkyMoments behind(std::uint32_t i, const Eyes& eyes, std::uint32_t j) const {
+        const Vec3 way = mesh_.centres()[j] - mesh_.centres()[i];
+        const double distance = glm::length(way);
+        const double size = radii_[i] + radii_[j];
+        if (distance > far * size && std::abs(way.z) > size) {
+            return in_direction(way.z / distance);
+        }
+        const PatchCorners corners = mesh_.corners(j);
+        const Vec3 normal = mesh_.normal(i);
+        const std::size_t first = distance > apart * size ? 4 : 0;
+        const std::size_t end = distance > apart * size ? 5 : 4;
+        SkyMoments above;
+        double all = 0.0;
+        for (std::size_t k = first; k < end; ++k) {
+            all += eyes.weight[k] * point_factor(eyes.at[k], normal, corners.polygon());
+            above += eyes.weight[k] * sky_behind(eyes.at[k], normal, corners.polygon());
+        }
+        if (!(all > 0.0)) {
+            return distance > 0.0 ? in_direction(way.z / distance) : SkyMoments{};
+        }
+        const double share = std::min(1.0, above.share / all);
+        return {share, std::min(share, above.elevation / all)};
+    }
+    static SkyMoments in_direction(double sine) { return sine > 0.0 ? SkyMoments{1.0, sine} : SkyMoments{}; }
+
+    const PatchMesh& mesh_;
+    const FormFactorMatrix& factors_;
+    std::vector<double> radii_;
+};
+
+std::vector<double> sky_irradiance(const PatchMesh& mesh, const Sky& sky, std::size_t channels,
+                                   const FormFactorMatrix& factors) {
+    const SkyShares shares(mesh, factors);
+    std::vector<double> result(mesh.size() * channels, 0.0);
+    parallel_for(mesh.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const PointDaylight::Environment seen = shares.seen(static_cast<std::uint32_t>(i));
+            const double above = sky_irradiance(sky.distribution, seen.above);
+            for (std::size_t c = 0; c < channels; ++c) {
+                result[i * channels + c] = sky.horizontal[c] * (above + sky.ground[c] * seen.below);
+            }
+        }
+        stop_if_interrupted();
+    });
+    return result;
+}
+
+} // namespace
+
+DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,
+                                    const FormFactorMatrix& factors) {
+    DirectIrradiance result;
+    if (factors.size() != mesh.size()) {
+        throw InvalidArgument(
+            fmt::format("rows of {} patches for a mesh of {}", factors.size(), mesh.size()));
+    }
+    const std::size_t channels = scene.channels.size();
+    if (scene.sun) {
+        result.sun = sun_irradiance(mesh, *scene.sun, channels);
+    }
+    if (scene.sky) {
+        result.sky = sky_irradiance(mesh, *scene.sky, channels, factors);
+    }
+    return result;
+}
+
+std::vector<double> direct_irradiance(const Scene& scene, const PatchMesh& mesh,
+                                      const FormFactorMatrix& factors) {
+    DirectIrradiance parts = direct_irradiances(scene, mesh, factors);
+    if (parts.sun.empty()) {
+        return std::move(parts.sky);
+    }
+    for (std::size_t k = 0; k < parts.sky.size(); ++k) {
+        parts.sun[k] += parts.sky[k];
+    }
+    return std::move(parts.sun);
+}
+
+std::vector<double> direct_heat(const Scene& scene, const PatchMesh& mesh, const FormFactorMatrix& factors,
+                                std::uint32_t bands) {
+    std::vector<double> all = direct_irradiance(scene, mesh, factors);
+    const std::size_t channels = scene.channels.size();
+    if (bands == channels) {
+        return all;
+    }
+    if (bands != 1) {
+        throw InvalidArgument(fmt::format("{} bands for {} channels", bands, channels));
+    }
+    std::vector<double> grey;
+    for (std::size_t k = 0; k < all.size(); k += channels) {
+        grey.push_back(all[k]);
+    }
+    return grey;
+}
+
+} // namespace hemi

@@ -1,0 +1,72 @@
+#include "pipeline/point_daylight.hpp"
+
+#include "hemi/engine/exchange_area.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace hemi {
+
+PointDaylight::PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky)
+    : mesh_(mesh), sun_(std::move(sun)), sky_(std::move(sky)) {
+    if (sun_) {
+        rays_.emplace(mesh);
+    }
+    for (std::uint32_t j = 0; j < mesh.size(); ++j) {
+        const PatchCorners corners = mesh.corners(j);
+        double low = std::numeric_limits<double>::infinity();
+        double high = -low;
+        for (const Vec3& corner : corners.polygon()) {
+            low = std::min(low, corner.z);
+            high = std::max(high, corner.z);
+        }
+        low_.push_back(low);
+        high_.push_back(high);
+    }
+}
+
+SkyMoments PointDaylight::seen_above(const Vec3& at, const std::optional<Vec3>& normal,
+                                     std::uint32_t patch) const {
+    const bool all_above = low_[patch] >= at.z;
+    if (all_above && !sky_) {
+        return {1.0, 0.0};
+    }
+    if (high_[patch] <= at.z) {
+        return {};
+    }
+    const PatchCorners corners = mesh_.corners(patch);
+    const std::span<const Vec3> polygon = corners.polygon();
+    const double all =
+        normal ? point_factor(at, *normal, polygon) : solid_angle(at, polygon) / (4.0 * std::numbers::pi);
+    if (!(all > 0.0)) {
+        return {all_above ? 1.0 : 0.0, 0.0};
+    }
+    const SkyMoments above = normal ? sky_behind(at, *normal, polygon) : sky_behind(at, polygon);
+    const double share = all_above ? 1.0 : std::min(1.0, above.share / all);
+    return {share, std::min(share, above.elevation / all)};
+}
+
+PointDaylight::Environment PointDaylight::split(double environment, double blocked,
+                                                const SkyMoments& available, const SkyMoments& above) {
+    const double patches = std::max(0.0, 1.0 - environment - blocked);
+    const double free_above = std::clamp(available.share - above.share, 0.0, available.share);
+    const double free_below =
+        std::clamp((1.0 - available.share) - (patches - above.share), 0.0, 1.0 - available.share);
+    const double free = free_above + free_below;
+    const double scale = free > 0.0 ? environment / free : 0.0;
+    const double elevation = std::clamp(available.elevation - above.elevation, 0.0, free_above);
+    return {{scale * free_above, scale * elevation}, environment - scale * free_above};
+}
+
+PointDaylight::Environment PointDaylight::seen_by(const Vec3& at, const Vec3& normal,
+                                                  const RowView& row) const {
+    SkyMoments above;
+    for (std::size_t k = 0; k < row.columns.size(); ++k) {
+        above += static_cast<double>(row.values[k]) * seen_above(at, normal, row.columns[k]);
+    }
+    return split(row.environment, row.blocked, open_sky(normal), above);
+}
+
+} // namespace hemi

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "engine/analytic/sky_integral.hpp"
+#include "engine/rays/shadow_rays.hpp"
+#include "hemi/matrix/form_factor_matrix.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// What comes straight from sun and sky to points, by rows of theirs over the patches. Thread-safe after
+/// construction.
+class PointDaylight {
+public:
+    /// @param mesh  must outlive this
+    /// @param sun   none: no beam
+    /// @param sky   none: no light; moments of what is seen are of shares alone then
+    PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky);
+
+    /// What is seen of the environment.
+    struct Environment {
+        SkyMoments above;   ///< of the horizon
+        double below = 0.0; ///< share
+    };
+
+    /// Of what is seen of a patch: the share above the point's horizon, and the mean of sin(elevation) there.
+    /// @param normal  none: of a small sphere
+    [[nodiscard]] SkyMoments seen_above(const Vec3& at, const std::optional<Vec3>& normal,
+                                        std::uint32_t patch) const;
+    /// The environment's share of a row, split at the horizon.
+    /// @param blocked    share of backs, which hide sky as evenly as that is seen
+    /// @param available  of all directions
+    /// @param above      of patches
+    [[nodiscard]] static Environment split(double environment, double blocked, const SkyMoments& available,
+                                           const SkyMoments& above);
+    /// That of an area by its row.
+    [[nodiscard]] Environment seen_by(const Vec3& at, const Vec3& normal, const RowView& row) const;
+
+    /// Irradiance of an area; what it sees need not be told where there is no sky.
+    /// @param add  takes a channel and an irradiance
+    template <class Add>
+    void irradiance(const Vec3& at, const Vec3& normal, const Environment& seen, const Add& add) const {
+        const double cosine = sun_ ? glm::dot(normal, sun_->direction) : 0.0;
+        add_all(at, cosine, seen, add);
+    }
+    /// Mean spherical irradiance: a sphere's cross-section is a quarter of its surface.
+    template <class Add>
+    void spherical_irradiance(const Vec3& at, const Environment& seen, const Add& add) const {
+        constexpr double cross_section = 0.25;
+        add_all(at, cross_section, seen, add);
+    }
+
+    [[nodiscard]] bool has_sky() const { return sky_.has_value(); }
+
+private:
+    template <class Add>
+    void add_all(const Vec3& at, double beam, const Environment& seen, const Add& add) const {
+        if (sky_) {
+            const double above = sky_irradiance(sky_->distribution, seen.above);
+            for (std::uint32_t c = 0; c < sky_->horizontal.size(); ++c) {
+                add(c, sky_->horizontal[c] * (above + sky_->ground[c] * seen.below));
+            }
+        }
+        if (rays_ && beam > 0.0 && rays_->is_lit(at, sun_->direction)) {
+            for (std::uint32_t c = 0; c < sun_->irradiance.size(); ++c) {
+                add(c, beam * sun_->irradiance[c]);
+            }
+        }
+    }
+
+    const PatchMesh& mesh_;
+    std::optional<Sun> sun_;
+    std::optional<Sky> sky_;
+    std::optional<ShadowRays> rays_; ///< where there is a sun
+    std::vector<double> low_;        ///< z of every patch
+    std::vector<double> high_;       ///< likewise
+};
+
+} // namespace hemi

@@ -1,0 +1,138 @@
+#include "cli/program.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+using namespace hemi::cli_test;
+
+namespace {
+
+Words on_cpu(Words words) {
+    words.insert(words.end(), {"--device", "cpu", "--jobs", "1"});
+    return words;
+}
+
+/// The unit cube without its ceiling, whose walls have an exitance of 1, under a sky.
+Json court(const Json& environment) {
+    Json scene = open_cube(4, "open");
+    scene["environment"] = environment;
+    return scene;
+}
+
+const Json overcast{{"sky", "overcast"}, {"horizontal_illuminance", 8000}};
+
+std::string first_line(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
+
+} // namespace
+
+TEST_CASE("hemi points --daylight: daylight factors of the sky alone", "[cli][points][sky]") {
+    const Directory directory;
+    Json scene = court(overcast);
+    scene["materials"]["white"]["exitance"] = 500;
+    scene["sun"] = {{"direction", {0, 0, 1}}, {"normal_illuminance", 50000}};
+    const std::string file = directory.write("court.json", scene);
+    const std::string points =
+        directory.write("points.csv", "x,y,z,nx,ny,nz\n0.5,0.5,9,0,1,0\n0.5,0.5,9,0,0,1\n"
+                                      "0.5,0.5,0.5,0,0,1\n");
+    const Outcome run = run_hemi(on_cpu({"points", file, "--points", points, "--daylight", "--json"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json json = run.json();
+    CHECK(json["unit"] == "lx");
+    CHECK(json["horizontal"] == Json::array({8000.0}));
+    const auto factor = [&](std::size_t k) { return json["daylight_factor"][k][0].get<double>(); };
+    CHECK(factor(0) == Approx(100.0 * (3.0 / 14.0 + 4.0 / (7.0 * std::numbers::pi))).epsilon(1e-4));
+    CHECK(factor(1) == Approx(100.0).epsilon(1e-6));
+    CHECK(factor(2) > 30.0);
+    CHECK(factor(2) < 80.0);
+    CHECK(json["irradiance"][1][0].get<double>() == Approx(8000.0));
+    // A table has it by name.
+    const std::string table = directory.path("df.csv");
+    REQUIRE(run_hemi(on_cpu({"points", file, "--points", points, "--daylight", "-o", table})).status == 0);
+    CHECK_THAT(first_line(directory.read("df.csv")), Catch::Contains("irradiance_grey,daylight_factor,sky"));
+
+    const Outcome none = run_hemi(on_cpu(
+        {"points", directory.write("dark.json", open_cube(2, "open")), "--points", points, "--daylight"}));
+    CHECK(none.status == 3);
+    CHECK(none.err_has("needs a sky"));
+    const Outcome warm =
+        run_hemi(on_cpu({"points", file, "--points", points, "--daylight", "--temperature", "floor=300"}));
+    CHECK(warm.status == 2);
+    CHECK(warm.err_has("--daylight"));
+}
+
+TEST_CASE("hemi solve: sun and sky are reported apart, and stored", "[cli][solve][sky][sun]") {
+    const Directory directory;
+    Json scene = court({{"sky", "overcast"}, {"horizontal_irradiance", 200}, {"ground", 0.1}});
+    scene["sun"] = {{"azimuth", 180}, {"elevation", 60}, {"normal_irradiance", 800}};
+    const std::string file = directory.write("court.json", scene);
+    const std::string result = directory.path("court.hres");
+    const Outcome run = run_hemi(
+        on_cpu({"solve", file, "--result", result, "--radiosity", directory.path("court.csv"), "--json"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    CHECK_FALSE(run.err_has("nothing radiates"));
+    const Json json = run.json();
+    CHECK(json["photometric"] == false);
+    CHECK(json["balance"]["emitted"] == 5.0); // each of its five walls
+    const double coming = -json["balance"]["environment"].get<double>();
+    CHECK(coming > 0.0);
+    CHECK(coming + 5.0 == Approx(json["balance"]["absorbed"].get<double>()).epsilon(1e-5));
+    CHECK(coming < 200.0 + 800.0 * std::sin(std::numbers::pi / 3.0));
+    CHECK_THAT(first_line(directory.read("court.csv")), Catch::EndsWith("direct_grey"));
+    CHECK(json["error"].is_null()); // nothing is known of shadows within patches
+    CHECK_FALSE(json["error_estimate"].is_null());
+
+    const std::string points = directory.write(
+        "points.csv", "x,y,z,nx,ny,nz\n0.5,0.8,0.2,0,0,1\n0.5,0.1,0.2,0,0,1\n0.5,0.5,2,0,-1,0\n");
+    const Words words{"--points", points, "--json", "--preset", "fast"};
+    Words of_scene{"points", file};
+    Words of_result{"points", result};
+    of_scene.insert(of_scene.end(), words.begin(), words.end());
+    of_result.insert(of_result.end(), words.begin(), words.end());
+    const Json a = run_hemi(on_cpu(of_scene)).json();
+    const Json b = run_hemi(on_cpu(of_result)).json();
+    for (std::size_t k = 0; k < 3; ++k) {
+        CHECK(a["irradiance"][k][0].get<double>() ==
+              Approx(b["irradiance"][k][0].get<double>()).epsilon(0.02));
+    }
+    // The sun is in the south: its beam ends at the north of the floor, where nothing hides it.
+    CHECK(a["irradiance"][0][0].get<double>() > 692.0);
+    CHECK(a["irradiance"][1][0].get<double>() < 600.0);
+    CHECK(a["irradiance"][2][0].get<double>() > 400.0);
+
+    const Outcome refined = run_hemi(on_cpu({"solve", file, "--refine", "3"}));
+    CHECK(refined.status == 2);
+    CHECK(refined.err_has("--refine"));
+    const Outcome picture =
+        run_hemi(on_cpu({"solve", file, "-o", directory.path("court.png"), "--size", "64x64"}));
+    CHECK(picture.status == 0);
+}
+
+TEST_CASE("hemi solve: lumens are what a lamp gives", "[cli][solve][daylight]") {
+    const Directory directory;
+    Json scene = cube(6); // 1 m: an integrating cube, whose mean illuminance is flux / (area (1 - rho))
+    scene["materials"]["lamp"] = {{"reflectance", 0.5}};
+    scene["groups"] = {{"ceiling", {{"luminous_flux", 3000}}}};
+    const std::string file = directory.write("cube.json", scene);
+    const Outcome run = run_hemi(on_cpu({"solve", file, "--json"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json json = run.json();
+    CHECK(json["photometric"] == true);
+    CHECK(json["balance"]["emitted"].get<double>() == Approx(3000.0));
+    double mean = 0.0; // B = E + rho H, all areas 1
+    for (std::size_t g = 0; g < 6; ++g) {
+        mean += (json["radiosity"][g][0].get<double>() - json["exitance"][g][0].get<double>()) / 0.5 / 6.0;
+    }
+    CHECK(mean == Approx(3000.0 / (6.0 * 0.5)).epsilon(1e-4));
+    CHECK(run_hemi(on_cpu({"solve", file})).out_has("emitted 3000 lm"));
+    const Outcome heat = run_hemi(on_cpu({"heat", file, "--temperature", "floor=300"}));
+    CHECK(heat.status == 3);
+    CHECK(heat.err_has("lumens"));
+}
