@@ -431,7 +431,8 @@ InvalidArgument, InputError
                py::arg("flip") = std::vector<std::string>(), py::arg("orient") = "as-read",
                py::arg("strict") = false, py::arg("planarity") = 1e-5, py::arg("allow_outside") = false,
                py::arg("imprint") = true, R"(
-Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .inp, .vtk, .vtp, .vtu, .ply or .stl, by its extension.
+Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .inp, .bdf, .nas, .vtk, .vtp, .vtu, .ply or .stl, by its
+extension.
 
 Parameters
 ----------

@@ -26,7 +26,8 @@ struct SceneReaderOptions {
 };
 
 /// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3 (View3D),
-/// .msh (Gmsh), .ply, .stl. Files that the scene names must be in its folder or below it, unless allowed.
+/// .msh (Gmsh), .inp (Abaqus), .bdf and .nas (Nastran), .vtk, .vtp and .vtu (VTK), .ply, .stl. Files that the
+/// scene names must be in its folder or below it, unless allowed.
 /// @throws ParseError or InputError with file, place, value and what would be right; InvalidArgument for
 ///         options that name groups the scene does not have, or call one both two-sided and one-sided.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& options,

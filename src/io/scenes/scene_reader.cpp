@@ -23,7 +23,8 @@ constexpr Reader readers[] = {
     {".json", read_json_scene}, {".obj", read_obj_scene},  {".gltf", read_gltf_scene},
     {".glb", read_gltf_scene},  {".vs3", read_vs3_scene},  {".msh", read_msh_scene},
     {".ply", read_ply_scene},   {".stl", read_stl_scene},  {".inp", read_mesh_scene},
-    {".vtk", read_mesh_scene},  {".vtp", read_mesh_scene}, {".vtu", read_mesh_scene}};
+    {".vtk", read_mesh_scene},  {".vtp", read_mesh_scene}, {".vtu", read_mesh_scene},
+    {".bdf", read_mesh_scene},  {".nas", read_mesh_scene}};
 
 const Reader* reader_of(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
