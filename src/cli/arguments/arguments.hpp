@@ -69,6 +69,7 @@ struct PictureOptions {
     std::uint32_t samples = 4;
     std::vector<std::string> show; ///< channel names; empty: all of one or three channels
     std::optional<CameraOption> camera;
+    std::optional<UpAxis> up; ///< none: the scene's
 };
 
 struct SolveArguments {

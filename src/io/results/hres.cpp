@@ -83,6 +83,9 @@ Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional
     if (as_read) {
         head["as_read"] = {{"surfaces", as_read->surfaces().size()}, {"patches", as_read->size()}};
     }
+    if (scene.up != UpAxis::z) {
+        head["up"] = to_word(scene.up);
+    }
     if (scene.camera) {
         const Camera& camera = *scene.camera;
         head["camera"] = {{"eye", point(camera.eye)},
@@ -198,6 +201,14 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     scene.groups = head.member("groups").texts();
     scene.enclosure = static_cast<Enclosure>(head.member("enclosure").integer(2));
     scene.environment = head.member("environment").numbers();
+    if (head.has("up")) {
+        const JsonNode up = head.member("up");
+        const std::optional<UpAxis> axis = from_word<UpAxis>(up.any_text());
+        if (!axis) {
+            up.expect("y or z");
+        }
+        scene.up = *axis;
+    }
     if (head.has("camera")) {
         scene.camera = read_camera(head.member("camera"));
     }

@@ -28,9 +28,11 @@ public:
         if (names_.size() == 1) {
             result_.channels = scene.channels;
             result_.enclosure = scene.enclosure;
+            result_.up = scene.up;
         }
         take_channels(path, scene);
         result_.enclosure = result_.enclosure == scene.enclosure ? scene.enclosure : Enclosure::automatic;
+        result_.up = result_.up == scene.up ? scene.up : UpAxis::z;
         result_.camera = result_.camera ? result_.camera : scene.camera;
         const auto first_material = static_cast<std::uint32_t>(result_.materials.size());
         const auto first_group = static_cast<std::uint32_t>(result_.groups.size());
