@@ -244,6 +244,45 @@ TEST_CASE("glTF reader: quantized positions, plain and as shares, signed and not
     CHECK(first_triangle(5123, true, u16) == corners({0, 0, 0}, {1, 0, 0}, {0, 0.2, 0}));
 }
 
+TEST_CASE("glTF reader: a closed room that is double-sided has its inside alone, unless asked otherwise",
+          "[io]") {
+    const Folder folder;
+    Json document = square();
+    std::vector<float> points;
+    for (int k = 0; k < 8; ++k) {
+        for (const int axis : {1, 2, 4}) {
+            points.push_back((k & axis) != 0 ? 1.0f : 0.0f);
+        }
+    }
+    const std::vector<std::uint16_t> corners{0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                             2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    const std::string bytes = bytes_of<float>(points) + bytes_of<std::uint16_t>(corners);
+    document["buffers"][0]["byteLength"] = bytes.size();
+    document["bufferViews"] = Json::parse(
+        R"([{"buffer": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 72}])");
+    document["accessors"][0]["count"] = 8;
+    document["accessors"][1]["count"] = 36;
+    document["materials"][0]["doubleSided"] = true;
+    const auto path = folder.write("room.glb", glb(document, bytes));
+    Diagnostics diagnostics;
+    const Scene scene = read(path, &diagnostics);
+    REQUIRE(scene.surfaces.size() == 12);
+    for (const Surface& surface : scene.surfaces) {
+        CHECK_FALSE(surface.two_sided);
+        CHECK(glm::dot(area_vector(surface.polygon()), Vec3(0.5) - surface.vertices[0]) > 0.0);
+    }
+    REQUIRE(diagnostics.warnings().size() == 1);
+    require_parts(diagnostics.warnings()[0],
+                  {"12 double-sided faces taken as one-sided", "--two-sided GROUP"});
+    CHECK(read(path, nullptr, {.two_sided_groups = {"*"}}).surfaces[0].two_sided);
+    // Beside another file it is one of two bodies, and its outside may be meant.
+    Diagnostics joined;
+    folder.write("far.glb", glb(document, bytes));
+    folder.write("plate.obj", "v 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3\n");
+    const std::vector<std::filesystem::path> both{folder / "far.glb", folder / "plate.obj"};
+    CHECK(io::read_scenes(both, {}, joined).surfaces[0].two_sided);
+}
+
 TEST_CASE("glTF reader: nodes place, turn, scale and mirror what is below them", "[io]") {
     const Folder folder;
     Json document = square();

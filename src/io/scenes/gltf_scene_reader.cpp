@@ -135,7 +135,12 @@ public:
             throw InputError(fmt::format("{}: no triangles; a scene needs at least one", file_));
         }
         tell_left_out();
-        set_sides(scene_, options_, file_, diagnostics_);
+        std::vector<bool> groups;
+        if (options_.close_bodies) {
+            groups.assign(scene_.groups.size(), true);
+        }
+        set_sides(scene_, options_, file_, diagnostics_, std::move(groups));
+        tell_double_sided();
         return std::move(scene_);
     }
 
@@ -356,7 +361,6 @@ private:
             primitive.fail(fmt::format("triangle {} (placed by nodes[{}]): {}", triangle, node, *defect));
         }
         if (!mender_.pieces().empty()) {
-            double_sided_ += surface.two_sided ? 1 : 0;
             scene_.surfaces.push_back(surface);
         }
     }
@@ -465,17 +469,24 @@ private:
         scene_.camera = Camera{eye, eye - glm::normalize(back), glm::normalize(up), fov};
     }
 
+    void tell_double_sided() {
+        const auto count =
+            static_cast<std::size_t>(std::count_if(scene_.surfaces.begin(), scene_.surfaces.end(),
+                                                   [](const Surface& surface) { return surface.two_sided; }));
+        if (options_.close_bodies && 2 * count > scene_.surfaces.size() &&
+            options_.one_sided_groups.empty() && options_.two_sided_groups.empty()) {
+            warn(fmt::format(
+                "{} of {} triangles are double-sided, as exporters mark them by default: their backs count "
+                "as surfaces of their own (--one-sided-group makes groups one-sided)",
+                count, scene_.surfaces.size()));
+        }
+    }
+
     void tell_left_out() {
         if (without_faces_ > 0) {
             warn(fmt::format("{} primitives of points or lines left out", without_faces_));
         }
         mender_.tell(file_, diagnostics_);
-        if (2 * double_sided_ > scene_.surfaces.size() && options_.one_sided_groups.empty()) {
-            warn(fmt::format(
-                "{} of {} triangles are double-sided, as exporters mark them by default: their backs count "
-                "as surfaces of their own (--one-sided-group makes groups one-sided)",
-                double_sided_, scene_.surfaces.size()));
-        }
         if (has_morph_targets_) {
             warn("morph targets are not used");
         }
@@ -511,7 +522,6 @@ private:
     std::size_t without_faces_ = 0;
     bool quantized_; ///< positions may be integers
     bool has_morph_targets_ = false;
-    std::size_t double_sided_ = 0; ///< triangles
     bool textures_ = false;
     bool transparent_ = false;
 };
