@@ -405,7 +405,7 @@ TEST_CASE("read_scene: goes by the extension, whatever its case, and lists what 
     };
     require_parts(refusal("a.3ds"), {"a.3ds: unknown extension \".3ds\"; scenes are read from .json, .obj, "
                                      ".gltf, .glb, .vs3, .msh, .ply, "
-                                     ".stl, .inp, .vtk, .vtp, .vtu, .bdf, .nas files"});
+                                     ".stl, .inp, .vtk, .vtp, .vtu, .bdf, .nas, .epjson files"});
     require_parts(refusal("a"), {"a: no extension; scenes are read from"});
     require_parts(refusal("no.obj"), {"no.obj: cannot be read: No such file"});
     require_parts(refusal("no.json"), {"no.json: cannot be read: No such file"});
