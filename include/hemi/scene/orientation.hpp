@@ -45,7 +45,8 @@ struct OneSidedBodies {
 /// Makes two-sided faces one-sided where they are a watertight body (connected by edges, two faces at each)
 /// of which one side meets nothing: a body that has all other faces inside it, or is convex and all there is,
 /// keeps its inside; one within another such body, with nothing in it, keeps its outside. All others stay as
-/// they are. Of very many faces in and around a body some are looked at.
+/// they are. Of very many faces in and around a body some are looked at; where bodies are so many and so
+/// large that it would take minutes, nothing is done.
 /// @param scene   its faces may be turned
 /// @param groups  for every group whether its faces are meant; bodies with others stay as they are
 OneSidedBodies make_bodies_one_sided(Scene& scene, const std::vector<bool>& groups);
