@@ -46,12 +46,11 @@ void check_point_options(const FactorsArguments& arguments, bool is_scene) {
         throw InvalidArgument(fmt::format("--from-point does not apply to {}, which is not a scene",
                                           arguments.scene.path.string()));
     }
-    static const std::vector<std::string> allowed{"--from-point", "--patch-size",      "--patches-per-face",
-                                                  "--two-sided",  "--one-sided-group", "--orient",
-                                                  "--flip",       "--flip-group",      "--strict",
-                                                  "--planarity",  "--no-imprint",      "--allow-outside",
-                                                  "--json",       "--quiet",           "--verbose",
-                                                  "--color"};
+    static const std::vector<std::string> allowed{
+        "--from-point", "--patch-size", "--patches-per-face", "--two-sided", "--one-sided-group",
+        "--orient",     "--flip",       "--flip-group",       "--strict",    "--planarity",
+        "--no-imprint", "--zone",       "--allow-outside",    "--json",      "--quiet",
+        "--verbose",    "--color"};
     for (const std::string& option : arguments.common.given) {
         if (std::find(allowed.begin(), allowed.end(), option) == allowed.end()) {
             throw InvalidArgument(

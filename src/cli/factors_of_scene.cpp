@@ -85,13 +85,14 @@ void discard(RowCheckpoint* checkpoint) {
     }
 }
 
+/// @param zone  the scene's name, where it is a zone
 void write_prepared(const std::filesystem::path& path, const FormFactors& factors, const LoadedScene& loaded,
-                    Diagnostics& diagnostics) {
+                    const std::string& zone, Diagnostics& diagnostics) {
     if (extension_of(path) == ".vtp") {
         io::write_vtp(path, loaded.mesh, io::factor_arrays(factors));
     } else {
         const std::vector<double> emissivity = emissivities(loaded.patches(), loaded.scene.materials);
-        io::write_factors(path, merge_parts(factors), {emissivity}, diagnostics);
+        io::write_factors(path, merge_parts(factors), {emissivity, zone}, diagnostics);
     }
 }
 
@@ -135,7 +136,8 @@ ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, c
         loaded.write_patches(*arguments.patches, factors.matrix);
     }
     if (writes_rows(arguments) && !raw) {
-        write_prepared(*arguments.output, factors, loaded, diagnostics);
+        const bool is_zone = arguments.scene.also.empty() && extension_of(arguments.scene.path) == ".epjson";
+        write_prepared(*arguments.output, factors, loaded, is_zone ? loaded.scene.name : "", diagnostics);
     }
     terminal.warn(diagnostics);
     discard(checkpoint);

@@ -64,19 +64,29 @@ std::array<std::uint32_t, 3> channels_to_show(const std::vector<std::string>& ch
 
 Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOptions& options) {
     const std::optional<CameraOption>& option = options.camera;
-    Camera camera = option ? scene.camera.value_or(default_camera(mesh.bounds())) : scene_camera(scene, mesh);
+    if (option && option->up && options.up) {
+        throw InvalidArgument("--up: --camera names an up direction, too; leave one out");
+    }
+    const UpAxis up = options.up.value_or(scene.up);
+    Camera camera = scene.camera ? *scene.camera
+                    : option     ? default_camera(mesh.bounds(), up)
+                                 : interior_camera(mesh, up).value_or(default_camera(mesh.bounds(), up));
     camera.orthographic = options.orthographic || (camera.orthographic && !option);
     if (option) {
         camera.eye = option->eye;
         camera.target = option->target;
         camera.up = option->up.value_or(camera.up);
         camera.fov = option->fov.value_or(camera.fov);
-        const Vec3 view = camera.target - camera.eye;
-        const double sine = glm::length(glm::cross(view, camera.up));
-        if (!(sine > 1e-9 * glm::length(view) * glm::length(camera.up))) {
-            throw InvalidArgument(
-                "--camera: looks along its up direction; name another, as in EYE:TARGET:0,1,0");
-        }
+    }
+    if (options.up) {
+        camera.up = turned_upright({0.0, 0.0, 1.0}, up);
+    }
+    const Vec3 view = camera.target - camera.eye;
+    const double sine = glm::length(glm::cross(view, camera.up));
+    if ((option || options.up) && !(sine > 1e-9 * glm::length(view) * glm::length(camera.up))) {
+        throw InvalidArgument(option ? "--camera: looks along its up direction; name another, as in "
+                                       "EYE:TARGET:0,1,0"
+                                     : "--up: the scene's camera looks that way; name the other axis");
     }
     return camera;
 }

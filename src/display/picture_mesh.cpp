@@ -141,13 +141,14 @@ double automatic_exposure(const PatchMesh& mesh, const PictureMesh& picture, std
     return level > 0.0 ? bright_level / level : 1.0;
 }
 
-Camera default_camera(const Bounds& bounds) {
+Camera default_camera(const Bounds& bounds, UpAxis up) {
     Camera camera;
     camera.fov = 40.0;
     camera.target = bounds.empty() ? Vec3(0.0) : bounds.centre();
     const double radius = bounds.diagonal() > 0.0 ? 0.5 * bounds.diagonal() : 1.0;
     const double distance = radius / std::sin(0.5 * camera.fov * std::numbers::pi / 180.0);
-    camera.eye = camera.target + distance * glm::normalize(Vec3(0.5, -0.8, 0.45));
+    camera.eye = camera.target + distance * turned_upright(glm::normalize(Vec3(0.5, -0.8, 0.45)), up);
+    camera.up = turned_upright({0.0, 0.0, 1.0}, up);
     return camera;
 }
 

@@ -26,7 +26,7 @@ constexpr double room_fov = 62.0; // degrees
 
 class Room {
 public:
-    explicit Room(const PatchMesh& mesh) : mesh_(mesh), tracer_(mesh) {}
+    Room(const PatchMesh& mesh, UpAxis up) : mesh_(mesh), up_(up), tracer_(mesh) {}
 
     /// Whether fronts are all round a point.
     [[nodiscard]] bool closes_in(const Vec3& point) const {
@@ -61,19 +61,20 @@ public:
         return least;
     }
 
-    [[nodiscard]] static Vec3 heading(double angle) {
-        return glm::normalize(Vec3(std::cos(angle), std::sin(angle), -downwards));
+    [[nodiscard]] Vec3 heading(double angle) const {
+        return turned_upright(glm::normalize(Vec3(std::cos(angle), std::sin(angle), -downwards)), up_);
     }
 
 private:
     const PatchMesh& mesh_;
+    UpAxis up_;
     RayTracer tracer_;
 };
 
 } // namespace
 
-std::optional<Camera> interior_camera(const PatchMesh& mesh) {
-    const Room room(mesh);
+std::optional<Camera> interior_camera(const PatchMesh& mesh, UpAxis up) {
+    const Room room(mesh, up);
     const Bounds& bounds = mesh.bounds();
     const Vec3 size = bounds.upper - bounds.lower;
     std::optional<Camera> best;
@@ -81,7 +82,9 @@ std::optional<Camera> interior_camera(const PatchMesh& mesh) {
     for (int j = 0; j < places; ++j) {
         for (int i = 0; i < places; ++i) {
             const auto along = [](int k) { return margin + (1.0 - 2.0 * margin) * k / (places - 1); };
-            const Vec3 eye = bounds.lower + size * Vec3(along(i), along(j), eye_height);
+            const Vec3 share = up == UpAxis::z ? Vec3(along(i), along(j), eye_height)
+                                               : Vec3(along(i), eye_height, 1.0 - along(j));
+            const Vec3 eye = bounds.lower + size * share;
             if (!room.closes_in(eye)) {
                 continue;
             }
@@ -90,7 +93,8 @@ std::optional<Camera> interior_camera(const PatchMesh& mesh) {
                 const double far = room.view(eye, angle);
                 if (far > farthest * (1.0 + 1e-6)) { // of equal ones the first, whatever the rounding
                     farthest = far;
-                    best = Camera{eye, eye + 0.5 * far * Room::heading(angle), {0.0, 0.0, 1.0}, room_fov};
+                    best = Camera{eye, eye + 0.5 * far * room.heading(angle),
+                                  turned_upright({0.0, 0.0, 1.0}, up), room_fov};
                 }
             }
         }

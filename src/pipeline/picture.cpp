@@ -26,7 +26,8 @@ std::array<std::uint32_t, 3> all_channels(const Scene& scene) {
 } // namespace
 
 Camera scene_camera(const Scene& scene, const PatchMesh& mesh) {
-    return scene.camera ? *scene.camera : interior_camera(mesh).value_or(default_camera(mesh.bounds()));
+    return scene.camera ? *scene.camera
+                        : interior_camera(mesh, scene.up).value_or(default_camera(mesh.bounds(), scene.up));
 }
 
 std::array<float, 3> shown_environment(const Scene& scene, const std::array<std::uint32_t, 3>& show) {

@@ -3,6 +3,7 @@
 #include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/nearest_word.hpp"
+#include "hemi/scene/light_unit.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -118,7 +119,7 @@ FalseColours patch_quantity(Quantity quantity, const Scene& scene, const PatchMe
         throw InvalidArgument("a quantity of patches: the solution belongs to another mesh");
     }
     const std::string of = scene.channels.size() == 1 ? "" : ", " + channel;
-    const char* const flux = "W/m²";
+    const std::string flux = flux_density_unit(scene);
     FalseColours shown;
     const auto shares = [&](const char* title, const std::vector<double>& share) {
         if (share.size() != mesh.size()) {
@@ -139,7 +140,13 @@ FalseColours patch_quantity(Quantity quantity, const Scene& scene, const PatchMe
         if (solution.irradiance.size() != values) {
             missing("irradiance", "is not known; `solve --result` stores it");
         }
-        shown = {one_value(solution.irradiance, weights), "Irradiance" + of, flux};
+        shown = {one_value(solution.irradiance, weights), "Irradiance" + of, irradiance_unit(scene)};
+        break;
+    case Quantity::direct:
+        if (solution.direct.size() != values) {
+            missing("direct irradiance", "there is neither sun nor sky");
+        }
+        shown = {one_value(solution.direct, weights), "Direct irradiance" + of, irradiance_unit(scene)};
         break;
     case Quantity::exitance:
         shown = {one_value(solution.exitance, weights), "Exitance" + of, flux};

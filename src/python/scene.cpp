@@ -199,8 +199,9 @@ ScenePointer read_scene(const py::object& path, std::optional<double> patch_size
                         std::optional<std::uint32_t> patches_per_face,
                         const std::optional<std::string>& enclosure, const py::object& environment,
                         const std::vector<std::string>& two_sided, const std::vector<std::string>& one_sided,
-                        const std::vector<std::string>& flip, const std::string& orient, bool strict,
-                        double planarity, bool allow_outside, bool with_imprint) {
+                        const std::vector<std::string>& flip, const std::string& orient,
+                        const std::string& zone, bool strict, double planarity, bool allow_outside,
+                        bool with_imprint) {
     const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
     if (!two_sided.empty() && io::extension_of(file) == ".json") {
         throw InvalidArgument("two_sided is not for JSON scenes, which say \"two_sided\": true");
@@ -210,6 +211,7 @@ ScenePointer read_scene(const py::object& path, std::optional<double> patch_size
     options.one_sided_groups = one_sided;
     options.flipped_groups = flip;
     options.orientation = argument_word<Orientation>("orient", orient);
+    options.zone = zone;
     options.strict = strict;
     options.allow_outside = allow_outside;
     options.planarity = planarity;
@@ -429,9 +431,10 @@ InvalidArgument, InputError
                py::arg("environment") = py::none(), py::arg("two_sided") = std::vector<std::string>(),
                py::arg("one_sided") = std::vector<std::string>(),
                py::arg("flip") = std::vector<std::string>(), py::arg("orient") = "as-read",
-               py::arg("strict") = false, py::arg("planarity") = 1e-5, py::arg("allow_outside") = false,
-               py::arg("imprint") = true, R"(
-Reads a scene: .json, .obj, .gltf, .glb, .vs3, .msh, .inp, .vtk, .vtp, .vtu, .ply or .stl, by its extension.
+               py::arg("zone") = "", py::arg("strict") = false, py::arg("planarity") = 1e-5,
+               py::arg("allow_outside") = false, py::arg("imprint") = true, R"(
+Reads a scene: .json, .obj, .gltf, .glb, .vs3, .epJSON, .msh, .inp, .bdf, .nas, .vtk, .vtp, .vtu, .ply or .stl, by its
+extension.
 
 Parameters
 ----------
@@ -453,6 +456,8 @@ flip : sequence of str
     Groups whose faces are turned round, "*": all.
 orient : {"as-read", "in", "out"}
     Turn the faces of every watertight body inwards or outwards.
+zone : str
+    The zone of an .epJSON file that is the scene; needed where it has several.
 strict : bool
     Refuse faces without area or out of plane, instead of leaving those out and cutting these, with a HemiWarning.
 planarity : float

@@ -174,7 +174,7 @@ py::array_t<std::uint8_t> draw(const SolutionOfScene& self, const py::object& pa
         if (known.scene.channels.size() == scene.channels.size()) {
             scene.environment = known.scene.environment;
         }
-        Camera camera = eye ? scene.camera.value_or(default_camera(known.mesh.bounds()))
+        Camera camera = eye ? scene.camera.value_or(default_camera(known.mesh.bounds(), known.scene.up))
                             : scene_camera(known.scene, known.mesh);
         camera.eye = eye ? vector(*eye) : camera.eye;
         camera.target = target ? vector(*target) : camera.target;

@@ -5,6 +5,7 @@
 #include "core/welder.hpp"
 #include "hemi/core/error.hpp"
 #include "scene/convex_polygon.hpp"
+#include "scene/duplicate_faces.hpp"
 #include "scene/rectangles.hpp"
 #include "scene/surroundings.hpp"
 
@@ -74,12 +75,13 @@ WeldedFaces weld(const Scene& scene, double tolerance) {
     return result;
 }
 
-/// A scene without one-sided faces back to back in one place.
+/// A scene without faces that are there again, and one-sided ones back to back in one place.
 struct Joined {
     Scene scene;
-    std::vector<std::uint32_t> face_of;
-    std::vector<Imprint::Finding> findings;
-    std::vector<std::vector<std::uint32_t>> backs; ///< of every face that was joined: its backs' patches
+    std::vector<std::uint32_t> face_of{};
+    std::vector<Imprint::Finding> findings{};
+    double left_out = 0.0;                           ///< area
+    std::vector<std::vector<std::uint32_t>> backs{}; ///< of every face that was joined: its backs' patches
 };
 
 /// Of the patches of face `front` in their order, those of face `back` with the same centres; nothing where
@@ -107,11 +109,13 @@ std::optional<std::vector<std::uint32_t>> opposite_patches(const PatchMesh& mesh
     return result;
 }
 
+/// Of faces that are the same keeps the last one, which is on top of the others.
 /// Of two one-sided faces with the same corners, which look different ways and are of one material and group
 /// and alike subdivided, makes one that is two-sided: a picture cannot tell which of two in one place is
 /// nearer.
 Joined join_back_to_back(const Scene& scene, const Subdivision& subdivision) {
-    Joined result{scene, {}, {}, {}};
+    Joined result{scene};
+    const std::vector<std::uint32_t> next = next_duplicates(scene);
     const double tolerance = contact_share * scene.bounds().diagonal();
     const WeldedFaces welded = weld(scene, tolerance);
     std::map<std::array<std::uint32_t, 4>, std::vector<std::uint32_t>> found; // by sorted corners
@@ -119,6 +123,11 @@ Joined join_back_to_back(const Scene& scene, const Subdivision& subdivision) {
     std::optional<PatchMesh> mesh; // where there is something to join
     for (std::uint32_t f = 0; f < scene.surfaces.size(); ++f) {
         const Surface& surface = scene.surfaces[f];
+        if (next[f] != no_duplicate) {
+            result.findings.push_back({Imprint::What::duplicate, f, next[f]});
+            result.left_out += (surface.two_sided ? 2.0 : 1.0) * glm::length(area_vector(surface.polygon()));
+            continue;
+        }
         std::array<std::uint32_t, 4> key = welded.corners[f];
         std::sort(key.begin(), key.end());
         auto& there = found[key]; // indices of surfaces of the result
@@ -652,6 +661,7 @@ std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivisio
         finding.face = joined.face_of[finding.face];
         finding.other = finding.other == no_face ? no_face : joined.face_of[finding.other];
     }
+    result->covered += joined.left_out;
     result->findings.insert(result->findings.end(), joined.findings.begin(), joined.findings.end());
     std::stable_sort(result->findings.begin(), result->findings.end(),
                      [](const auto& one, const auto& other) { return one.face < other.face; });

@@ -52,7 +52,8 @@ struct HashPoint {
     }
 };
 
-std::vector<Edge> edges_of(const Scene& scene) {
+/// @param two_sided  of faces of that kind alone
+std::vector<Edge> edges_of(const Scene& scene, bool two_sided) {
     std::unordered_map<std::array<double, 3>, std::uint32_t, HashPoint> numbers;
     const auto number_of = [&numbers](const Vec3& point) {
         // Zero of either sign is one place.
@@ -62,7 +63,7 @@ std::vector<Edge> edges_of(const Scene& scene) {
     std::vector<Edge> edges;
     for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
         const Surface& surface = scene.surfaces[s];
-        for (std::uint32_t k = 0; !surface.two_sided && k < surface.vertex_count; ++k) {
+        for (std::uint32_t k = 0; surface.two_sided == two_sided && k < surface.vertex_count; ++k) {
             const std::uint32_t from = number_of(surface.vertices[k]);
             const std::uint32_t to = number_of(surface.vertices[(k + 1) % surface.vertex_count]);
             edges.push_back({std::min(from, to), std::max(from, to), s, k, from < to});
@@ -98,8 +99,9 @@ void measure(Body& body, const Scene& scene, const std::vector<bool>& against) {
     body.volume = std::abs(body.volume) > 1e-9 * size * size * size ? body.volume : 0.0;
 }
 
-Bodies find_bodies(const Scene& scene) {
-    const std::vector<Edge> edges = edges_of(scene);
+/// @param two_sided  faces of that kind alone
+Bodies find_bodies(const Scene& scene, bool two_sided = false) {
+    const std::vector<Edge> edges = edges_of(scene, two_sided);
     struct Neighbour {
         std::uint32_t surface;
         bool opposed;
@@ -129,7 +131,7 @@ Bodies find_bodies(const Scene& scene) {
     constexpr std::uint32_t none = ~0u;
     std::vector<std::uint32_t> body_of(scene.surfaces.size(), none);
     for (std::uint32_t seed = 0; seed < scene.surfaces.size(); ++seed) {
-        if (scene.surfaces[seed].two_sided || body_of[seed] != none) {
+        if (scene.surfaces[seed].two_sided != two_sided || body_of[seed] != none) {
             continue;
         }
         const auto index = static_cast<std::uint32_t>(bodies.all.size());
@@ -248,7 +250,182 @@ private:
     double slack_ = 0.0;
 };
 
+/// What is in and around the bodies of a scene.
+class Inhabitants {
+public:
+    Inhabitants(const Scene& scene, const Bodies& bodies)
+        : scene_(scene), bodies_(bodies), body_of_(scene.surfaces.size(), none) {
+        for (std::uint32_t b = 0; b < bodies.all.size(); ++b) {
+            for (const std::uint32_t s : bodies.all[b].surfaces) {
+                body_of_[s] = b;
+            }
+        }
+        for (const Surface& surface : scene.surfaces) {
+            Bounds& box = boxes_.emplace_back();
+            for (const Vec3& vertex : surface.polygon()) {
+                box.add(vertex);
+                all_.add(vertex);
+            }
+        }
+        tree_.emplace(boxes_);
+    }
+
+    /// Whether other faces are within the body, or may be in part.
+    [[nodiscard]] bool any_within(std::uint32_t b) const {
+        const Body& body = bodies_.all[b];
+        const double slack = slack_of(body);
+        std::vector<std::uint32_t> inside_box;
+        bool crosses = false;
+        tree_->overlapping({body.bounds.lower + slack, body.bounds.upper - slack}, [&](std::uint32_t s) {
+            if (body_of_[s] != b) {
+                crosses = crosses || !contains(body.bounds, boxes_[s], slack);
+                inside_box.push_back(s);
+            }
+        });
+        return crosses || most_winding(body, inside_box) > 0.75;
+    }
+
+    /// Whether there are other faces, and all are within the body or on it.
+    [[nodiscard]] bool all_within(std::uint32_t b) const {
+        const Body& body = bodies_.all[b];
+        if (!contains(body.bounds, all_, slack_of(body))) {
+            return false;
+        }
+        std::vector<std::uint32_t> others;
+        for (std::uint32_t s = 0; s < boxes_.size(); ++s) {
+            if (body_of_[s] != b) {
+                others.push_back(s);
+            }
+        }
+        return !others.empty() && least_winding(body, others) > 0.25;
+    }
+
+    /// Whether the body is all there is, and no face of it sees another from outside.
+    [[nodiscard]] bool is_alone_and_convex(std::uint32_t b) const {
+        const Body& body = bodies_.all[b];
+        if (body.surfaces.size() != scene_.surfaces.size()) {
+            return false;
+        }
+        const Vec3 centre = body.bounds.centre();
+        std::vector<Vec3> corners;
+        for (const Surface& surface : scene_.surfaces) {
+            corners.insert(corners.end(), surface.polygon().begin(), surface.polygon().end());
+        }
+        const std::size_t step = (body.surfaces.size() + most_tested - 1) / most_tested;
+        for (std::size_t k = 0; k < body.surfaces.size(); k += step) {
+            const std::span<const Vec3> polygon = scene_.surfaces[body.surfaces[k]].polygon();
+            Vec3 outwards = glm::normalize(area_vector(polygon));
+            outwards *= glm::dot(polygon[0] - centre, outwards) < 0.0 ? -1.0 : 1.0;
+            for (const Vec3& corner : corners) {
+                if (glm::dot(corner - polygon[0], outwards) > 1e-6 * body.bounds.diagonal()) {
+                    return false;
+                }
+            }
+        }
+        return true;
+    }
+
+private:
+    static constexpr std::uint32_t none = ~0u;
+    static constexpr std::size_t most_tested = 32; // faces; the rest are taken to be like those
+
+    static double slack_of(const Body& body) { return 1e-6 * body.bounds.diagonal(); }
+
+    static bool contains(const Bounds& outer, const Bounds& inner, double slack) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (inner.lower[axis] < outer.lower[axis] - slack ||
+                inner.upper[axis] > outer.upper[axis] + slack) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    [[nodiscard]] std::vector<double> windings(const Body& body, std::span<const std::uint32_t> faces) const {
+        std::vector<double> result;
+        const std::size_t step = (faces.size() + most_tested - 1) / most_tested;
+        for (std::size_t k = 0; k < faces.size(); k += step) {
+            result.push_back(
+                winding(body, bodies_, scene_, area_centroid(scene_.surfaces[faces[k]].polygon())));
+        }
+        return result;
+    }
+    [[nodiscard]] double most_winding(const Body& body, std::span<const std::uint32_t> faces) const {
+        const std::vector<double> all = windings(body, faces);
+        return all.empty() ? 0.0 : *std::max_element(all.begin(), all.end());
+    }
+    [[nodiscard]] double least_winding(const Body& body, std::span<const std::uint32_t> faces) const {
+        const std::vector<double> all = windings(body, faces);
+        return all.empty() ? 1.0 : *std::min_element(all.begin(), all.end());
+    }
+
+    const Scene& scene_;
+    const Bodies& bodies_;
+    std::vector<std::uint32_t> body_of_; ///< of every surface
+    std::vector<Bounds> boxes_;          ///< of every surface
+    Bounds all_;
+    std::optional<BoxTree> tree_;
+};
+
+/// Bodies times faces of the largest one: some seconds.
+constexpr double most_work = 2e7;
+
 } // namespace
+
+OneSidedBodies make_bodies_one_sided(Scene& scene, const std::vector<bool>& groups) {
+    const Bodies bodies = find_bodies(scene, true);
+    OneSidedBodies result;
+    const auto is_meant = [&](const Body& body) {
+        return body.watertight && can_be_decided(body) &&
+               std::all_of(body.surfaces.begin(), body.surfaces.end(),
+                           [&](std::uint32_t s) { return groups[scene.surfaces[s].group]; });
+    };
+    std::size_t largest = 0;
+    std::size_t meant = 0;
+    for (const Body& body : bodies.all) {
+        largest = std::max(largest, body.surfaces.size());
+        meant += is_meant(body) ? 1 : 0;
+    }
+    if (meant == 0 || static_cast<double>(meant) * static_cast<double>(largest) > most_work) {
+        return result;
+    }
+    const Containers containers(bodies);
+    const Inhabitants inhabitants(scene, bodies);
+    std::vector<std::uint32_t> inwards;
+    std::vector<std::uint32_t> outwards;
+    for (std::uint32_t b = 0; b < bodies.all.size(); ++b) {
+        if (!is_meant(bodies.all[b])) {
+            continue;
+        }
+        if (containers.around(bodies.all[b], bodies, scene) > 0) {
+            if (!inhabitants.any_within(b)) {
+                outwards.push_back(b);
+            }
+        } else if (inhabitants.all_within(b) || inhabitants.is_alone_and_convex(b)) {
+            inwards.push_back(b);
+        }
+    }
+    const auto turn = [&](std::uint32_t b, bool out) {
+        const Body& body = bodies.all[b];
+        const bool first_turns = (body.volume > 0.0) != out;
+        for (const std::uint32_t s : body.surfaces) {
+            scene.surfaces[s].two_sided = false;
+            if (bodies.against[s] != first_turns) {
+                turn_round(scene.surfaces[s]);
+            }
+            ++result.faces;
+        }
+    };
+    for (const std::uint32_t b : inwards) {
+        turn(b, false);
+    }
+    for (const std::uint32_t b : outwards) {
+        turn(b, true);
+    }
+    result.inwards = inwards.size();
+    result.outwards = outwards.size();
+    return result;
+}
 
 void turn_round(Surface& surface) {
     std::reverse(surface.vertices.begin() + 1, surface.vertices.begin() + surface.vertex_count);

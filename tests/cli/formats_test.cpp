@@ -4,6 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <sstream>
+#include <string>
 
 using namespace hemi::cli_test;
 
@@ -45,6 +49,67 @@ TEST_CASE("View3D input: what an obstruction hides arrives there, and the rest b
     CHECK(json["factors"][0][2].get<double>() > 0.99);
     CHECK(json["factors"][1][2].get<double>() > 0.99);
     CHECK(json["blocked"] == Json({0.0, 0.0, 0.0}));
+}
+
+TEST_CASE("EnergyPlus input: view factors of a zone by the names of its surfaces and windows", "[cli]") {
+    const Directory directory;
+    Json model = Json::parse(R"({"GlobalGeometryRules": {"R": {"vertex_entry_direction": "Counterclockwise",
+        "coordinate_system": "World"}}, "Zone": {"Cube": {}, "Other": {}}, "FenestrationSurface:Detailed": {"Pane": {
+        "building_surface_name": "x1", "vertex_1_x_coordinate": 1, "vertex_1_y_coordinate": 0.25,
+        "vertex_1_z_coordinate": 0.5, "vertex_2_x_coordinate": 1, "vertex_2_y_coordinate": 0.75,
+        "vertex_2_z_coordinate": 0.5, "vertex_3_x_coordinate": 1, "vertex_3_y_coordinate": 0.75,
+        "vertex_3_z_coordinate": 0.8}}})");
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const int end : {0, 1}) {
+            Json polygon = Json::array();
+            for (int k = 0; k < 4; ++k) {
+                std::array<double, 3> point{};
+                const std::size_t a = static_cast<std::size_t>(axis);
+                point[a] = end;
+                point[(a + 1) % 3] = (end == 1 ? k == 1 || k == 2 : k >= 2) ? 1 : 0;
+                point[(a + 2) % 3] = (end == 1 ? k >= 2 : k == 1 || k == 2) ? 1 : 0;
+                polygon.push_back({{"vertex_x_coordinate", point[0]},
+                                   {"vertex_y_coordinate", point[1]},
+                                   {"vertex_z_coordinate", point[2]}});
+            }
+            const std::string name{"xyz"[axis], static_cast<char>('0' + end)};
+            model["BuildingSurface:Detailed"][name] = {{"zone_name", "cube"}, {"vertices", polygon}};
+        }
+    }
+    const std::string path = directory.write("model.epJSON", model);
+    const std::string idf = directory.path("factors.idf");
+    const Outcome run = run_hemi(quick(
+        {"factors", path, "--zone", "CUBE", "-o", idf, "--patches-per-face", "64", "--preset", "default"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    std::istringstream text(directory.read("factors.idf"));
+    std::map<std::string, std::map<std::string, double>> factors;
+    for (std::string line; std::getline(text, line);) {
+        const std::size_t comma = line.find(',');
+        const std::size_t second = line.find(',', comma + 1);
+        if (line.starts_with("  ") && second != std::string::npos && line.find('!') == std::string::npos) {
+            factors[line.substr(2, comma - 2)][line.substr(comma + 1, second - comma - 1)] =
+                std::stod(line.substr(second + 1));
+        }
+    }
+    CHECK(directory.read("factors.idf").find("BySurfaceName,\n  Cube,  !- Zone Name\n") != std::string::npos);
+    REQUIRE(factors.size() == 7);
+    for (const auto& [from, row] : factors) {
+        INFO(from);
+        REQUIRE(row.size() == 7);
+        double sum = 0.0;
+        for (const auto& [to, factor] : row) {
+            sum += factor;
+        }
+        CHECK(sum == Approx(1.0).margin(1e-6));
+        CHECK(row.at(from) == 0.0);
+    }
+    CHECK(factors["x0"]["x1"] + factors["x0"]["Pane"] == Approx(0.199825).margin(1e-5));
+    CHECK(factors["z0"]["x1"] + factors["z0"]["Pane"] == Approx(0.200044).margin(1e-5));
+    CHECK(factors["Pane"]["z0"] * 0.075 == Approx(factors["z0"]["Pane"]).margin(1e-6));
+    const Outcome several = run_hemi({"info", path});
+    CHECK(several.status == 2);
+    CHECK(several.err_has("2 zones; one must be chosen (--zone NAME); there is Cube, Other"));
 }
 
 TEST_CASE("Bad input in an exchange format: exit status 3, with the file and the line", "[cli]") {

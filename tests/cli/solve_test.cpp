@@ -1,8 +1,11 @@
 #include "cli/program.hpp"
+#include "support/png.hpp"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -315,6 +318,63 @@ TEST_CASE("render: draws a stored solution as solve drew it", "[cli]") {
     CHECK(info["patches"] == 54);
     CHECK(info["solver"]["name"] == "gauss-seidel");
     CHECK(run_hemi({"info", result}).out_has("gauss-seidel"));
+}
+
+TEST_CASE("solve, render: --up says which axis is upwards in the picture, else the file or its shape does",
+          "[cli]") {
+    const Directory directory;
+    // A room of 3 x 4 x 2 with a lamp in its ceiling, as it is and with its y axis upwards.
+    const auto room = [](bool y_up) {
+        std::string text;
+        for (int k = 0; k < 8; ++k) {
+            const int y = k / 2 % 2 * 4;
+            const int z = k / 4 * 2;
+            text += fmt::format("v {} {} {}\n", k % 2 * 3, y_up ? z : y, y_up ? -y : z);
+        }
+        return text + "mtllib a.mtl\nusemtl white\nf 1 2 4 3\nf 1 3 7 5\nf 2 6 8 4\nf 1 5 6 2\nf 3 4 8 7\n"
+                      "usemtl lamp\nf 5 7 8 6\n";
+    };
+    (void)directory.write("a.mtl", "newmtl white\nKd 0.5 0.6 0.7\nnewmtl lamp\nKd 0 0 0\nKe 3 3 3\n");
+    const std::string upright = directory.write("upright.obj", room(false));
+    const std::string turned = directory.write("turned.obj", room(true));
+    const auto draws = [&](const std::string& scene, const char* name, const Words& options) {
+        Words words = quick({"solve", scene, "-o", directory.path(name), "--size", "32x32", "--flat"});
+        words.insert(words.end(), options.begin(), options.end());
+        const Outcome run = run_hemi(words);
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        return hemi::test::read_png(directory.path(name));
+    };
+    const auto difference = [](const auto& a, const auto& b) {
+        double sum = 0.0;
+        REQUIRE(a.pixels.size() == b.pixels.size());
+        for (std::size_t k = 0; k < a.pixels.size(); ++k) {
+            sum += std::abs(static_cast<double>(a.pixels[k]) - static_cast<double>(b.pixels[k]));
+        }
+        return sum / static_cast<double>(a.pixels.size());
+    };
+    const auto expected = draws(upright, "a.png", {});
+    CHECK(difference(draws(turned, "b.png", {"--result", directory.path("b.hres")}), expected) < 1.0);
+    CHECK(difference(draws(turned, "c.png", {"--up", "z"}), expected) > 5.0);
+    const auto renders = [&](const Words& options) {
+        Words words{"render", directory.path("b.hres"),
+                    "-o",     directory.path("d.png"),
+                    "--size", "32x32",
+                    "--flat", "--device",
+                    "osmesa"};
+        words.insert(words.end(), options.begin(), options.end());
+        return run_hemi(words);
+    };
+    REQUIRE(renders({}).status == 0);
+    CHECK(difference(hemi::test::read_png(directory.path("d.png")), expected) < 1.0);
+    REQUIRE(renders({"--up", "z"}).status == 0);
+    CHECK(difference(hemi::test::read_png(directory.path("d.png")), expected) > 5.0);
+    const Outcome both = renders({"--up", "z", "--camera", "1,1,1:1,2,1:0,1,1"});
+    CHECK(both.status == 2);
+    CHECK(both.err_has("--camera names an up direction, too"));
+    const Outcome along = renders({"--up", "y", "--camera", "1,1,-1:1,0.5,-1"});
+    CHECK(along.status == 2);
+    CHECK(along.err_has("looks along its up direction"));
 }
 
 TEST_CASE("solve: pictures of two channels ask which to show, before the work", "[cli]") {

@@ -207,6 +207,17 @@ TEST_CASE("OrbitCamera: framing and axis views have the whole scene in the pictu
     CHECK(orbit.camera().eye == Vec3(30, 1, 2));
 }
 
+TEST_CASE("OrbitCamera: axis views go by the axis that is upwards", "[display]") {
+    OrbitCamera orbit({{5, 1, 2}, {0, 0, 0}, {0, 1, 0}, 40.0}, unit_bounds());
+    orbit.look_along(OrbitCamera::Axis::front, false, 1.0);
+    CHECK(orbit.camera().eye.z > 1.0);
+    CHECK(orbit.camera().up == Vec3(0, 1, 0));
+    orbit.look_along(OrbitCamera::Axis::right, false, 1.0);
+    CHECK(orbit.camera().eye.x > 1.0);
+    orbit.look_along(OrbitCamera::Axis::top, false, 1.0);
+    CHECK(orbit.camera().eye.y > 1.0);
+}
+
 TEST_CASE("VisiblePoint: finds the nearest front side and passes through backs", "[display]") {
     SceneBuilder builder;
     builder.floor("low", 0.0, 0.0, 1.0, 1.0);

@@ -129,3 +129,19 @@ TEST_CASE("DefaultCamera: has the whole scene in view", "[display]") {
     }
     CHECK(std::isfinite(default_camera(Bounds{}).eye.x));
 }
+
+TEST_CASE("DefaultCamera: of a scene with y upwards it is that of the same scene with z upwards, turned",
+          "[display]") {
+    Bounds upright;
+    upright.add({-3.0, 1.0, 5.0});
+    upright.add({40.0, 12.0, 9.0});
+    Bounds turned;
+    turned.add(turned_upright(upright.lower, UpAxis::y));
+    turned.add(turned_upright(upright.upper, UpAxis::y));
+    const Camera expected = default_camera(upright);
+    const Camera camera = default_camera(turned, UpAxis::y);
+    CHECK(glm::distance(camera.eye, turned_upright(expected.eye, UpAxis::y)) < 1e-12);
+    CHECK(glm::distance(camera.target, turned_upright(expected.target, UpAxis::y)) < 1e-12);
+    CHECK(camera.up == Vec3(0.0, 1.0, 0.0));
+    CHECK(expected.up == Vec3(0.0, 0.0, 1.0));
+}

@@ -194,6 +194,26 @@ constexpr std::string_view inp =
     "INSTANCE\n"
     "*ELSET, ELSET=one, INSTANCE=p\n1\n*SURFACE, NAME=down\none, SPOS\n*END ASSEMBLY\n";
 
+constexpr std::string_view bdf =
+    "SOL 101\nBEGIN BULK\n$ a comment\nGRID    1               0.      0.      0.\n"
+    "GRID*   2                               1.5             0.\n*       1.5-3\n"
+    "GRID,3,0,1.,1.,0.\nGRID,4,,0.,1.+0,0.0D0\n"
+    "CQUAD4  1       7       1       2       3       4\n"
+    "CTRIA6,2,8,1,2,3,,+A\n+A,,,4\nCTETRA         3       1       1       2       3       4\nENDDATA\n";
+
+constexpr std::string_view epjson = R"({"GlobalGeometryRules": {"1": {"vertex_entry_direction": "Clockwise",
+"coordinate_system": "Relative"}}, "Zone": {"Z": {"x_origin": 1, "direction_of_relative_north": 30}},
+"BuildingSurface:Detailed": {"wall": {"zone_name": "z", "vertices": [
+{"vertex_x_coordinate": 0, "vertex_y_coordinate": 0, "vertex_z_coordinate": 0},
+{"vertex_x_coordinate": 3, "vertex_y_coordinate": 0, "vertex_z_coordinate": 0},
+{"vertex_x_coordinate": 3, "vertex_y_coordinate": 0, "vertex_z_coordinate": 2},
+{"vertex_x_coordinate": 0, "vertex_y_coordinate": 0, "vertex_z_coordinate": 2}]}},
+"FenestrationSurface:Detailed": {"pane": {"building_surface_name": "wall", "multiplier": 2,
+"vertex_1_x_coordinate": 1, "vertex_1_y_coordinate": 0, "vertex_1_z_coordinate": 1,
+"vertex_2_x_coordinate": 2, "vertex_2_y_coordinate": 0, "vertex_2_z_coordinate": 1,
+"vertex_3_x_coordinate": 2, "vertex_3_y_coordinate": 0.001, "vertex_3_z_coordinate": 1.5}},
+"InternalMass": {"m": {"zone_name": "Z"}}, "Roof": {"r": {"zone_name": "other"}}})";
+
 /// One triangle, 134 bytes.
 std::string binary_stl() {
     std::string text(80, ' ');
@@ -268,6 +288,16 @@ const std::map<std::string, Reader> readers{
     {"vtk", {"fuzzed.vtk", read_as_scene, [](const fs::path& folder) { write(folder / "a.vtk", vtk); }}},
     {"vtk-xml", {"fuzzed.vtu", read_as_scene, [](const fs::path& folder) { write(folder / "a.vtu", vtu); }}},
     {"inp", {"fuzzed.inp", read_as_scene, [](const fs::path& folder) { write(folder / "a.inp", inp); }}},
+    {"bdf", {"fuzzed.bdf", read_as_scene, [](const fs::path& folder) { write(folder / "a.bdf", bdf); }}},
+    {"epjson",
+     {"fuzzed.epJSON",
+      [](const fs::path& path) {
+          try {
+              read_as_scene(path);
+          } catch (const InvalidArgument&) { // no zone, or several
+          }
+      },
+      [](const fs::path& folder) { write(folder / "a.epJSON", epjson); }}},
     {"view3d-text",
      {"fuzzed.txt", [](const fs::path& path) { (void)io::read_view3d(path, io::View3dFormat::text); },
       [](const fs::path& folder) { seed_view3d(folder, "a.txt", io::View3dFormat::text); }}},

@@ -103,6 +103,7 @@ TEST_CASE("glTF reader: triangles become surfaces in the group of their node", "
     REQUIRE(scene.surfaces[1].vertices[2] == Vec3(0, 1, 0));
     REQUIRE_FALSE(scene.surfaces[0].two_sided);
     REQUIRE_FALSE(scene.camera.has_value());
+    REQUIRE(scene.up == UpAxis::y);
 }
 
 TEST_CASE("glTF reader: .glb, a file beside it and a data URI say the same", "[io]") {
@@ -162,6 +163,124 @@ TEST_CASE("glTF reader: every width of index, none, and interleaved positions ar
     }
     document["bufferViews"][1]["byteOffset"] = 0;
     require_same(document, bytes);
+}
+
+TEST_CASE("glTF reader: sparse accessors change some elements, of a buffer or of zeros", "[io]") {
+    const Folder folder;
+    const Scene expected = read(folder, square());
+    const auto require_same = [&](Json document, const std::string& bytes) {
+        document["buffers"][0]["byteLength"] = bytes.size();
+        const Scene scene = read(folder.write("sparse.glb", glb(document, bytes)));
+        REQUIRE(scene.surfaces.size() == 2);
+        for (std::size_t s = 0; s < 2; ++s) {
+            REQUIRE(scene.surfaces[s].vertices == expected.surfaces[s].vertices);
+        }
+    };
+    // Corners 1 to 3 are put in: the first one is 0 by itself.
+    Json document = square();
+    document["accessors"][0].erase("bufferView");
+    document["accessors"][0]["sparse"] = Json::parse(
+        R"({"count": 3, "indices": {"bufferView": 1, "byteOffset": 2, "componentType": 5121},
+            "values": {"bufferView": 0, "byteOffset": 12}})");
+    document["bufferViews"][1]["byteLength"] = 17;
+    document["accessors"][1]["byteOffset"] = 5;
+    const std::string indices = square_bytes.substr(48);
+    require_same(document, square_bytes.substr(0, 48) + std::string("\7\7\1\2\3", 5) + indices);
+
+    // Wrong corners are put right, and wrong indices.
+    document = square();
+    document["accessors"][0]["sparse"] = Json::parse(
+        R"({"count": 2, "indices": {"bufferView": 2, "componentType": 5123},
+            "values": {"bufferView": 2, "byteOffset": 4}})");
+    document["accessors"][1]["sparse"] = Json::parse(
+        R"({"count": 1, "indices": {"bufferView": 3, "componentType": 5125},
+            "values": {"bufferView": 3, "byteOffset": 4}})");
+    document["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 60}, {"byteLength", 28}});
+    document["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 88}, {"byteLength", 6}});
+    std::string wrong = square_bytes;
+    wrong.replace(12, 12, bytes_of<float>({9, 9, 9}));
+    wrong.replace(36, 12, bytes_of<float>({8, 8, 8}));
+    wrong.replace(58, 2, bytes_of<std::uint16_t>({77}));
+    require_same(document, wrong + bytes_of<std::uint16_t>({1, 3}) + bytes_of<float>({1, 0, 0, 0, 1, 0}) +
+                               word(5) + bytes_of<std::uint16_t>({3}));
+}
+
+TEST_CASE("glTF reader: quantized positions, plain and as shares, signed and not", "[io]") {
+    const Folder folder;
+    const auto first_triangle = [&](std::uint32_t type, bool normalized, const std::string& positions) {
+        Json document = square();
+        document["extensionsRequired"] = {"KHR_mesh_quantization"};
+        document["extensionsUsed"] = {"KHR_mesh_quantization"};
+        document["accessors"][0]["componentType"] = type;
+        document["accessors"][0]["count"] = 3;
+        document["accessors"][0]["normalized"] = normalized;
+        document["bufferViews"][0]["byteLength"] = positions.size();
+        document["bufferViews"][0]["byteStride"] = positions.size() / 3;
+        document["buffers"][0]["byteLength"] = positions.size();
+        document["bufferViews"].erase(1);
+        document["accessors"].erase(1);
+        document["meshes"][0]["primitives"][0].erase("indices");
+        Diagnostics diagnostics;
+        const Scene scene = read(folder.write("quantized.glb", glb(document, positions)), &diagnostics);
+        REQUIRE(diagnostics.warnings().empty());
+        REQUIRE(scene.surfaces.size() == 1);
+        return scene.surfaces[0].vertices;
+    };
+    const auto corners = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+        return std::array<Vec3, 4>{a, b, c, Vec3(0.0)};
+    };
+    // Elements of 3 bytes are padded to 4, those of 6 to 8.
+    const auto i8 = bytes_of<std::int8_t>({-128, 0, 5, 0, 127, 0, 5, 0, 0, 127, -127, 0});
+    CHECK(first_triangle(5120, false, i8) == corners({-128, 0, 5}, {127, 0, 5}, {0, 127, -127}));
+    CHECK(first_triangle(5120, true, i8) == corners({-1, 0, 5 / 127.0}, {1, 0, 5 / 127.0}, {0, 1, -1}));
+    const auto u8 = bytes_of<std::uint8_t>({0, 0, 51, 0, 255, 0, 51, 0, 0, 255, 51, 0});
+    CHECK(first_triangle(5121, false, u8) == corners({0, 0, 51}, {255, 0, 51}, {0, 255, 51}));
+    CHECK(first_triangle(5121, true, u8) == corners({0, 0, 0.2}, {1, 0, 0.2}, {0, 1, 0.2}));
+    const auto i16 = bytes_of<std::int16_t>({-32768, 0, 0, 0, 32767, 0, 0, 0, 0, 300, 0, 0});
+    CHECK(first_triangle(5122, false, i16) == corners({-32768, 0, 0}, {32767, 0, 0}, {0, 300, 0}));
+    CHECK(first_triangle(5122, true, i16) == corners({-1, 0, 0}, {1, 0, 0}, {0, 300 / 32767.0, 0}));
+    const auto u16 = bytes_of<std::uint16_t>({0, 0, 0, 0, 65535, 0, 0, 0, 0, 13107, 0, 0});
+    CHECK(first_triangle(5123, false, u16) == corners({0, 0, 0}, {65535, 0, 0}, {0, 13107, 0}));
+    CHECK(first_triangle(5123, true, u16) == corners({0, 0, 0}, {1, 0, 0}, {0, 0.2, 0}));
+}
+
+TEST_CASE("glTF reader: a closed room that is double-sided has its inside alone, unless asked otherwise",
+          "[io]") {
+    const Folder folder;
+    Json document = square();
+    std::vector<float> points;
+    for (int k = 0; k < 8; ++k) {
+        for (const int axis : {1, 2, 4}) {
+            points.push_back((k & axis) != 0 ? 1.0f : 0.0f);
+        }
+    }
+    const std::vector<std::uint16_t> corners{0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                             2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    const std::string bytes = bytes_of<float>(points) + bytes_of<std::uint16_t>(corners);
+    document["buffers"][0]["byteLength"] = bytes.size();
+    document["bufferViews"] = Json::parse(
+        R"([{"buffer": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 72}])");
+    document["accessors"][0]["count"] = 8;
+    document["accessors"][1]["count"] = 36;
+    document["materials"][0]["doubleSided"] = true;
+    const auto path = folder.write("room.glb", glb(document, bytes));
+    Diagnostics diagnostics;
+    const Scene scene = read(path, &diagnostics);
+    REQUIRE(scene.surfaces.size() == 12);
+    for (const Surface& surface : scene.surfaces) {
+        CHECK_FALSE(surface.two_sided);
+        CHECK(glm::dot(area_vector(surface.polygon()), Vec3(0.5) - surface.vertices[0]) > 0.0);
+    }
+    REQUIRE(diagnostics.warnings().size() == 1);
+    require_parts(diagnostics.warnings()[0],
+                  {"12 double-sided faces taken as one-sided", "--two-sided GROUP"});
+    CHECK(read(path, nullptr, {.two_sided_groups = {"*"}}).surfaces[0].two_sided);
+    // Beside another file it is one of two bodies, and its outside may be meant.
+    Diagnostics joined;
+    folder.write("far.glb", glb(document, bytes));
+    folder.write("plate.obj", "v 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3\n");
+    const std::vector<std::filesystem::path> both{folder / "far.glb", folder / "plate.obj"};
+    CHECK(io::read_scenes(both, {}, joined).surfaces[0].two_sided);
 }
 
 TEST_CASE("glTF reader: nodes place, turn, scale and mirror what is below them", "[io]") {
@@ -291,9 +410,28 @@ TEST_CASE("glTF reader: what is wrong is named with its place, its value and wha
         {R"({"op": "replace", "path": "/meshes/0/primitives/0/material", "value": 1})",
          {"primitives[0].material: 1; there are 1 materials"}},
         {R"({"op": "add", "path": "/accessors/0/sparse", "value": {}})",
-         {"accessors[0].sparse: sparse accessors are not supported"}},
-        {R"({"op": "replace", "path": "/accessors/0/componentType", "value": 5120})",
-         {"accessors[0].componentType: 5120; supported are"}},
+         {"accessors[0].sparse: \"count\" is missing"}},
+        {R"({"op": "add", "path": "/accessors/0/sparse", "value": {"count": 5}})",
+         {"accessors[0].sparse.count: 5; must be a whole number"}},
+        {R"({"op": "add", "path": "/accessors/0/sparse", "value": {"count": 0}})",
+         {"accessors[0].sparse.count: 0; must be at least 1"}},
+        {R"({"op": "add", "path": "/accessors/0/sparse", "value":
+             {"count": 2, "indices": {"bufferView": 1, "componentType": 5126}}})",
+         {"accessors[0].sparse.indices.componentType: must be unsigned"}},
+        {R"({"op": "add", "path": "/accessors/0/sparse", "value":
+             {"count": 4, "indices": {"bufferView": 1, "byteOffset": 2, "componentType": 5125}}})",
+         {"accessors[0].sparse.indices: 4 elements of 4 bytes from byte 2 on"}},
+        {R"({"op": "add", "path": "/accessors/0/sparse", "value":
+             {"count": 4, "indices": {"bufferView": 1, "componentType": 5123},
+              "values": {"bufferView": 0, "byteOffset": 4}}})",
+         {"accessors[0].sparse.values: 4 elements of 12 bytes from byte 4 on"}},
+        {R"({"op": "add", "path": "/accessors/0/sparse", "value":
+             {"count": 4, "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 0}}})",
+         {"accessors[0].sparse.indices: index 3 is 0; must ascend, and be below 4"}},
+        {R"({"op": "replace", "path": "/accessors/0/componentType", "value": 5124})",
+         {"accessors[0].componentType: 5124; must be 5120 to 5123"}},
+        {R"({"op": "replace", "path": "/accessors/0/componentType", "value": 5122})",
+         {"attributes.POSITION: must be an accessor of VEC3 of floats (5126); of 8 or 16 bits with"}},
         {R"({"op": "replace", "path": "/accessors/0/type", "value": "MAT4"})",
          {"accessors[0].type: \"MAT4\""}},
         {R"({"op": "replace", "path": "/accessors/0/count", "value": 5})",

@@ -309,7 +309,7 @@ TEST_CASE("JSON reader: what is wrong is named with its place, its value and wha
          {"camera.fov: 180"}},
         {scene(R"({"material": "white", "mesh": "cube.3ds"})"),
          {"surfaces[0].mesh: \"cube.3ds\"; must be the path of a mesh: .obj, .msh, .ply, .stl, .inp, .vtk, "
-          ".vtp, .vtu"}},
+          ".vtp, .vtu, .bdf, .nas"}},
         {scene(R"({"material": "white", "mesh": "cube.obj", "transform": {"scale": 0}})"),
          {"surfaces[0].transform.scale: 0 makes a mesh flat"}},
         {scene(R"({"material": "white", "mesh": "cube.obj", "transform": {"rotation": 0}})"),

@@ -361,6 +361,38 @@ TEST_CASE("OBJ reader: a mesh of many faces is read in linear time", "[io]") {
     REQUIRE(scene.surfaces.back().group == n * n - 1);
 }
 
+TEST_CASE("OBJ reader: the upward axis is that of the floors, where there are more of them than walls across",
+          "[io]") {
+    const Folder folder;
+    // A block x by y by z, without its side towards -y, or -z.
+    const auto block = [](double x, double y, double z, const std::string& faces) {
+        std::string text;
+        for (int k = 0; k < 8; ++k) {
+            text += fmt::format("v {} {} {}\n", k % 2 * x, k / 2 % 2 * y, k / 4 * z);
+        }
+        return text + faces;
+    };
+    const std::string sides = "f 1 5 7 3\nf 2 4 8 6\n";
+    const std::string across_z = "f 1 3 4 2\nf 5 6 8 7\n";
+    const std::string across_y = "f 1 2 6 5\nf 3 7 8 4\n";
+    CHECK(read(folder, block(1, 1, 1, sides + across_z + "f 3 7 8 4\n")).up == UpAxis::z);
+    CHECK(read(folder, block(1, 1, 1, sides + across_y + "f 5 6 8 7\n")).up == UpAxis::y);
+    CHECK(read(folder, block(9, 7, 3, sides + across_y + across_z)).up == UpAxis::z);
+    CHECK(read(folder, block(9, 3, 7, sides + across_y + across_z)).up == UpAxis::y);
+    CHECK(read(folder, block(1, 1, 1, sides + across_y + across_z)).up == UpAxis::z);
+    // Slopes alone: the flat side.
+    CHECK(read(folder, "v 0 0 0\nv 9 1 0\nv 9 2 9\nf 1 2 3\n").up == UpAxis::y);
+    CHECK(read(folder, "v 0 0 0\nv 9 0 1\nv 9 9 2\nf 1 2 3\n").up == UpAxis::z);
+    folder.write("tall.obj", block(9, 3, 7, sides + across_y + across_z));
+    folder.write("wide.obj", block(9, 7, 3, sides + across_y + across_z));
+    Diagnostics unused;
+    const std::vector<std::filesystem::path> mixed{folder / "tall.obj", folder / "wide.obj"};
+    CHECK(io::read_scenes(mixed, {}, unused).up == UpAxis::z);
+    folder.write("other.obj", block(8, 2, 6, sides + across_y + across_z));
+    const std::vector<std::filesystem::path> alike{folder / "tall.obj", folder / "other.obj"};
+    CHECK(io::read_scenes(alike, {}, unused).up == UpAxis::y);
+}
+
 TEST_CASE("read_scene: goes by the extension, whatever its case, and lists what can be read", "[io]") {
     const Folder folder;
     Diagnostics diagnostics;
@@ -373,7 +405,7 @@ TEST_CASE("read_scene: goes by the extension, whatever its case, and lists what 
     };
     require_parts(refusal("a.3ds"), {"a.3ds: unknown extension \".3ds\"; scenes are read from .json, .obj, "
                                      ".gltf, .glb, .vs3, .msh, .ply, "
-                                     ".stl, .inp, .vtk, .vtp, .vtu files"});
+                                     ".stl, .inp, .vtk, .vtp, .vtu, .bdf, .nas, .epjson files"});
     require_parts(refusal("a"), {"a: no extension; scenes are read from"});
     require_parts(refusal("no.obj"), {"no.obj: cannot be read: No such file"});
     require_parts(refusal("no.json"), {"no.json: cannot be read: No such file"});

@@ -27,6 +27,7 @@ io::ResultFile sample() {
     scene.patch_size = 0.4;
     scene.enclosure = Enclosure::open;
     scene.environment = {0.1, 0.2};
+    scene.up = UpAxis::y;
     scene.camera = Camera{{0, -3, 1}, {0, 0, 0.1}, {0, 0.1, 1}, 33.3};
     const std::size_t patches = PatchMesh(scene).size();
     for (std::size_t i = 0; i < patches * 2; ++i) {
@@ -83,6 +84,7 @@ TEST_CASE("HRES: what is written is read back bit for bit", "[io]") {
     REQUIRE(a.scene.groups == b.scene.groups);
     REQUIRE(a.scene.enclosure == b.scene.enclosure);
     REQUIRE(a.scene.environment == b.scene.environment);
+    REQUIRE(b.scene.up == UpAxis::y);
     REQUIRE(a.scene.camera->eye == b.scene.camera->eye);
     REQUIRE(a.scene.camera->target == b.scene.camera->target);
     REQUIRE(a.scene.camera->up == b.scene.camera->up);

@@ -172,3 +172,16 @@ def test_faces_can_be_turned(tmp_path):
     assert len(hemi.read_scene(path, two_sided=["*"])) == 2
     with pytest.raises(ValueError, match="orient"):
         hemi.read_scene(path, orient="inside")
+
+
+def test_a_zone_of_an_energyplus_model(tmp_path):
+    corners = [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)]
+    vertices = [{f"vertex_{axis}_coordinate": value for axis, value in zip("xyz", corner)} for corner in corners]
+    path = tmp_path / "model.epJSON"
+    path.write_text(json.dumps({
+        "GlobalGeometryRules": {"Rules": {"vertex_entry_direction": "Clockwise", "coordinate_system": "World"}},
+        "Zone": {"Attic": {}, "Cellar": {}},
+        "Floor:Detailed": {"Ground": {"zone_name": "Cellar", "vertices": vertices}}}))
+    assert hemi.read_scene(path, zone="cellar").groups == ["Ground"]
+    with pytest.raises(hemi.InvalidArgument, match="2 zones; one must be chosen"):
+        hemi.read_scene(path)

@@ -245,6 +245,40 @@ TEST_CASE("Imprint: of faces over each other in one plane the smaller is on top,
         CHECK(cut->findings[0].what == Imprint::What::duplicate);
         CHECK(cut->findings[0].face == 0);
     }
+    SECTION("the same face ten thousand times, from other corners on") {
+        std::vector<Surface> surfaces(10'000, plate(0.0, 0.0, 2.0, 1.0, 0.0));
+        for (std::size_t k = 0; k < surfaces.size(); ++k) {
+            std::rotate(surfaces[k].vertices.begin(), surfaces[k].vertices.begin() + k % 4,
+                        surfaces[k].vertices.end());
+        }
+        const auto cut = imprint(scene_of(surfaces));
+        REQUIRE(cut);
+        CHECK(cut->face_of == std::vector<std::uint32_t>{9'999});
+        CHECK(cut->parts.patch_of == std::vector<std::uint32_t>{9'999});
+        CHECK(cut->covered == Approx(2.0 * 9'999));
+        REQUIRE(cut->findings.size() == 9'999);
+        CHECK(cut->findings[17].what == Imprint::What::duplicate);
+        CHECK(cut->findings[17].other == 18);
+    }
+    SECTION("twice, and back to back: the back stays") {
+        std::vector<Surface> surfaces(3, plate(0.0, 0.0, 1.0, 1.0, 0.0));
+        std::swap(surfaces[2].vertices[1], surfaces[2].vertices[3]);
+        const auto cut = imprint(scene_of(surfaces));
+        REQUIRE(cut);
+        CHECK(cut->face_of == std::vector<std::uint32_t>{1});
+        CHECK(cut->scene.surfaces[0].two_sided);
+        CHECK(cut->parts.patch_of == std::vector<std::uint32_t>{1, 2});
+        CHECK(cut->covered == Approx(1.0));
+    }
+    SECTION("triangles of the same corners, and others of three of them") {
+        const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+        const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
+            return face({corners[a], corners[b], corners[c]});
+        };
+        const auto cut = imprint(scene_of({triangle(0, 1, 2), triangle(0, 2, 3), triangle(2, 0, 1)}));
+        REQUIRE(cut);
+        CHECK(cut->face_of == std::vector<std::uint32_t>{1, 2});
+    }
     SECTION("back to back: one two-sided face") {
         std::vector<Surface> surfaces{plate(0.0, 0.0, 1.0, 1.0, 0.0), plate(0.0, 0.0, 1.0, 1.0, 0.0)};
         std::swap(surfaces[1].vertices[1], surfaces[1].vertices[3]);

@@ -117,4 +117,85 @@ TEST_CASE("orientation: a grid stays where it is on a face that is turned", "[sc
     CHECK(*surface.patches == Grid{1, 4});
 }
 
+TEST_CASE("make_bodies_one_sided: a room that holds all keeps its inside, what is in it its outside",
+          "[scene]") {
+    Scene scene;
+    scene.groups = {"all"};
+    add_cube(scene, Vec3(0, 0, 0), 5.0);
+    add_cube(scene, Vec3(1, 1, 0), 1.0); // on the floor
+    turn_round(scene.surfaces[2]);
+    turn_round(scene.surfaces[8]);
+    scene.surfaces.emplace_back().vertices = {Vec3(2, 2, 4.9), Vec3(2, 3, 4.9), Vec3(3, 3, 4.9),
+                                              Vec3(3, 2, 4.9)};
+    for (Surface& surface : scene.surfaces) {
+        surface.two_sided = true;
+    }
+    Scene kept = scene;
+    const OneSidedBodies found = make_bodies_one_sided(scene, {true});
+    CHECK(found.inwards == 1);
+    CHECK(found.outwards == 1);
+    CHECK(found.faces == 12);
+    CHECK(six_volumes(scene, 0) == Approx(-6.0 * 125.0));
+    CHECK(six_volumes(scene, 6) == Approx(6.0));
+    for (std::size_t s = 0; s < 12; ++s) {
+        CHECK_FALSE(scene.surfaces[s].two_sided);
+    }
+    CHECK(scene.surfaces[12].two_sided); // a lamp without thickness
+    CHECK(make_bodies_one_sided(kept, {false}).faces == 0);
+    CHECK(kept.surfaces[0].two_sided);
+}
+
+TEST_CASE("make_bodies_one_sided: bodies of which both sides may meet something stay", "[scene]") {
+    const auto faces_of = [](Scene scene) {
+        scene.groups = {"all"};
+        for (Surface& surface : scene.surfaces) {
+            surface.two_sided = true;
+        }
+        return make_bodies_one_sided(scene, {true}).faces;
+    };
+    Scene room;
+    add_cube(room, Vec3(0, 0, 0), 5.0);
+    CHECK(faces_of(room) == 6); // alone: a room
+    Scene two = room;
+    add_cube(two, Vec3(9, 0, 0), 5.0);
+    CHECK(faces_of(two) == 0); // rooms, or blocks
+    Scene nested = room;
+    add_cube(nested, Vec3(1, 1, 1), 3.0);
+    add_cube(nested, Vec3(2, 2, 2), 1.0);
+    CHECK(faces_of(nested) == 12); // the one in the middle has something on both sides
+    Scene open = room;
+    open.surfaces.pop_back();
+    CHECK(faces_of(open) == 0);
+    Scene ground = room;
+    ground.surfaces.emplace_back().vertices = {Vec3(-9, -9, 0), Vec3(9, -9, 0), Vec3(9, 9, 0),
+                                               Vec3(-9, 9, 0)};
+    CHECK(faces_of(ground) == 0);
+    Scene pierced = room;
+    add_cube(pierced, Vec3(1, 1, 1), 2.0);
+    pierced.surfaces.emplace_back().vertices = {Vec3(2, 2, 2), Vec3(4, 2, 2), Vec3(4, 2.5, 2),
+                                                Vec3(2, 2.5, 2)};
+    CHECK(faces_of(pierced) == 6);
+    // An angle bracket, alone: both of its sides see themselves.
+    Scene bracket;
+    const std::array<Vec3, 6> outline{Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(2, 1, 0),
+                                      Vec3(1, 1, 0), Vec3(1, 2, 0), Vec3(0, 2, 0)};
+    const Vec3 up(0, 0, 1);
+    for (std::size_t k = 0; k < 6; ++k) {
+        const Vec3& a = outline[k];
+        const Vec3& b = outline[(k + 1) % 6];
+        bracket.surfaces.emplace_back().vertices = {a, b, b + up, a + up};
+    }
+    for (const Vec3& shift : {Vec3(0.0), up}) {
+        for (const auto& triangle :
+             {std::array{0, 1, 2}, std::array{0, 2, 3}, std::array{0, 3, 4}, std::array{0, 4, 5}}) {
+            Surface& surface = bracket.surfaces.emplace_back();
+            surface.vertex_count = 3;
+            for (std::size_t k = 0; k < 3; ++k) {
+                surface.vertices[k] = outline[static_cast<std::size_t>(triangle[k])] + shift;
+            }
+        }
+    }
+    CHECK(faces_of(bracket) == 0);
+}
+
 } // namespace hemi

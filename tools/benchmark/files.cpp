@@ -187,6 +187,79 @@ std::string msh_of(const Waves& waves) {
     return text + "$EndElements\n";
 }
 
+/// Version 4.1, nodes and triangles in a block each.
+std::string msh4_of(const Waves& waves) {
+    const std::uint32_t nodes = waves.vertices();
+    const std::uint32_t triangles = waves.triangles();
+    std::string text =
+        fmt::format("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 {0} 1 {0}\n2 1 0 {0}\n", nodes);
+    for (std::uint32_t v = 0; v < nodes; ++v) {
+        text += fmt::format("{}\n", v + 1);
+    }
+    for (std::uint32_t v = 0; v < nodes; ++v) {
+        const auto [x, y, z] = waves.vertex(v);
+        text += fmt::format("{} {} {}\n", x, y, z);
+    }
+    text += fmt::format("$EndNodes\n$Elements\n1 {0} 1 {0}\n2 1 2 {0}\n", triangles);
+    for (std::uint32_t t = 0; t < triangles; ++t) {
+        const auto [a, b, c] = waves.triangle(t);
+        text += fmt::format("{} {} {} {}\n", t + 1, a + 1, b + 1, c + 1);
+    }
+    return text + "$EndElements\n";
+}
+
+std::string inp_of(const Waves& waves) {
+    std::string text = "*NODE\n";
+    for (std::uint32_t v = 0; v < waves.vertices(); ++v) {
+        const auto [x, y, z] = waves.vertex(v);
+        text += fmt::format("{}, {}, {}, {}\n", v + 1, x, y, z);
+    }
+    text += "*ELEMENT, TYPE=S3, ELSET=waves\n";
+    for (std::uint32_t t = 0; t < waves.triangles(); ++t) {
+        const auto [a, b, c] = waves.triangle(t);
+        text += fmt::format("{}, {}, {}, {}\n", t + 1, a + 1, b + 1, c + 1);
+    }
+    return text;
+}
+
+std::string bdf_of(const Waves& waves) {
+    std::string text = "BEGIN BULK\n";
+    for (std::uint32_t v = 0; v < waves.vertices(); ++v) {
+        const auto [x, y, z] = waves.vertex(v);
+        text += fmt::format("GRID    {:>8}{:>8}{:>8.1f}{:>8.1f}{:>8.3f}\n", v + 1, "", x, y, z);
+    }
+    for (std::uint32_t t = 0; t < waves.triangles(); ++t) {
+        const auto [a, b, c] = waves.triangle(t);
+        text += fmt::format("CTRIA3  {:>8}{:>8}{:>8}{:>8}{:>8}\n", t + 1, 1, a + 1, b + 1, c + 1);
+    }
+    return text + "ENDDATA\n";
+}
+
+std::string vtu_of(const Waves& waves) {
+    std::string text = fmt::format("<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece "
+                                   "NumberOfPoints=\"{}\" NumberOfCells=\"{}\"><Points><DataArray "
+                                   "type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">\n",
+                                   waves.vertices(), waves.triangles());
+    for (std::uint32_t v = 0; v < waves.vertices(); ++v) {
+        const auto [x, y, z] = waves.vertex(v);
+        text += fmt::format("{} {} {}\n", x, y, z);
+    }
+    text += "</DataArray></Points><Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">\n";
+    for (std::uint32_t t = 0; t < waves.triangles(); ++t) {
+        const auto [a, b, c] = waves.triangle(t);
+        text += fmt::format("{} {} {}\n", a, b, c);
+    }
+    text += "</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">\n";
+    for (std::uint32_t t = 0; t < waves.triangles(); ++t) {
+        text += fmt::format("{}\n", 3 * (t + 1));
+    }
+    text += "</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">\n";
+    for (std::uint32_t t = 0; t < waves.triangles(); ++t) {
+        text += "5\n";
+    }
+    return text + "</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>\n";
+}
+
 std::string ply_of(const Waves& waves) {
     std::string bytes =
         fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\n"
@@ -218,9 +291,15 @@ std::string stl_of(const Waves& waves) {
 
 void measure_readers(Report& report, const TemporaryFolder& folder, unsigned rounds) {
     const Waves waves(708);
-    const std::pair<const char*, std::string (*)(const Waves&)> formats[] = {
-        {".obj", obj_of}, {".ply", ply_of}, {".stl", stl_of}, {".msh", msh_of}};
-    for (const auto& [extension, make] : formats) {
+    struct Format {
+        const char* extension;
+        const char* version; ///< of formats that have several
+        std::string (*make)(const Waves&);
+    };
+    const Format formats[] = {{".obj", "", obj_of},     {".ply", "", ply_of},      {".stl", "", stl_of},
+                              {".msh", " 2.2", msh_of}, {".msh", " 4.1", msh4_of}, {".inp", "", inp_of},
+                              {".bdf", "", bdf_of},     {".vtu", "", vtu_of}};
+    for (const auto& [extension, version, make] : formats) {
         const fs::path path = folder / ("waves" + std::string(extension));
         io::OutputFile file(path);
         file.write(make(waves));
@@ -229,7 +308,7 @@ void measure_readers(Report& report, const TemporaryFolder& folder, unsigned rou
             Diagnostics unused;
             return seconds_of([&] { (void)io::read_scene(path, {}, unused); });
         }};
-        report.finding({fmt::format("reading {}, {} triangles", extension, waves.triangles()),
+        report.finding({fmt::format("reading {}{}, {} triangles", extension, version, waves.triangles()),
                         median(time_interleaved(subject, rounds)[0]), "s", Bound::at_most, 5.0});
     }
 }

@@ -80,7 +80,9 @@ struct PictureMesh {
 
 /// A camera that sees the whole scene, for scenes that have none: inside looking across for closed rooms is
 /// the scene's business; this one frames the bounds from a corner.
-[[nodiscard]] Camera default_camera(const Bounds& bounds);
+/// @param bounds  of all surfaces, scene units
+/// @param up      Scene::up
+[[nodiscard]] Camera default_camera(const Bounds& bounds, UpAxis up = UpAxis::z);
 
 /// Pixels, rows from the top, 3 values a pixel.
 struct Picture {

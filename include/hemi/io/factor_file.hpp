@@ -48,14 +48,16 @@ void write_view3d(const std::filesystem::path& path, const FormFactors& file, Vi
                   std::span<const double> emissivity = {});
 
 /// EnergyPlus' ZoneProperty:UserViewFactors:BySurfaceName (.idf): a triple from, to, F for every pair of
-/// groups, which are the surfaces. The zone has the name of the file; 9 significant digits.
-/// @param path         of the file; its stem is the name of the zone
+/// groups, which are the surfaces; 9 significant digits.
+/// @param path         of the file
 /// @param file         factors, areas and groups are written
 /// @param diagnostics  warned of rows that do not sum to 1, which EnergyPlus changes
+/// @param zone         the zone's name; empty: the stem of the file's
 /// @throws InvalidArgument for unknown rows, areas or groups that do not fit, names that EnergyPlus has not
 ///   (with `,` `;` `!`, a line end or outer blanks, of more than 100 characters, equal but for their case);
 ///   IoError
-void write_energyplus(const std::filesystem::path& path, const FormFactors& file, Diagnostics& diagnostics);
+void write_energyplus(const std::filesystem::path& path, const FormFactors& file, Diagnostics& diagnostics,
+                      const std::string& zone = {});
 
 /// The two kinds of Elmer's ViewFactors.dat.
 enum class ElmerFormat { text, binary };
@@ -104,6 +106,7 @@ enum class FactorContent {
 /// What write_factors() knows beside the form factors.
 struct FactorContext {
     std::span<const double> emissivity = {}; ///< of every patch; empty where it is not known
+    std::string zone = {}; ///< EnergyPlus' name of what the surfaces close in; empty: the file's name
 };
 
 /// A format of files that hold form factors without the patches' geometry.

@@ -22,11 +22,16 @@ struct SceneReaderOptions {
     std::vector<std::string> one_sided_groups{};    ///< groups of which only the front counts; "*": all
     std::vector<std::string> flipped_groups{};      ///< groups whose faces are turned round; "*": all
     Orientation orientation = Orientation::as_read; ///< before flipped_groups
+    /// glTF: closed bodies of double-sided faces are taken as one-sided where one of their sides meets
+    /// nothing, see make_bodies_one_sided(); not those with faces of two_sided_groups.
+    bool close_bodies = true;
+    std::string zone{};     ///< .epJSON: the zone that is read; empty: the only one
     bool adiabatic = false; ///< allow reflectances of 1 in .json, where heat is solved for
 };
 
 /// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3 (View3D),
-/// .msh (Gmsh), .ply, .stl. Files that the scene names must be in its folder or below it, unless allowed.
+/// .epJSON (a zone of EnergyPlus), .msh (Gmsh), .inp (Abaqus), .bdf and .nas (Nastran), .vtk, .vtp and .vtu
+/// (VTK), .ply, .stl. Files that the scene names must be in its folder or below it, unless allowed.
 /// @throws ParseError or InputError with file, place, value and what would be right; InvalidArgument for
 ///         options that name groups the scene does not have, or call one both two-sided and one-sided.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
@@ -73,6 +78,13 @@ struct SceneReaderOptions {
 /// lines and volumes are left out, and curved elements taken as plane between their corners, with warnings.
 [[nodiscard]] Scene read_msh_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
                                    Diagnostics& diagnostics);
+
+/// EnergyPlus' .epJSON: the surfaces of a zone and the windows in them, each a group of its name, fronts
+/// towards the inside; windows lie over the walls that they are in, see imprint(). The scene has the zone's
+/// name. Reflectance 0.5, exitance 0.
+/// @throws InvalidArgument where several zones are there and none is named, or one that is not there
+[[nodiscard]] Scene read_epjson_scene(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                      Diagnostics& diagnostics);
 
 /// PLY, ASCII or binary: every face a surface, in the file's order, all of the group "default"; reflectance
 /// 0.5, exitance 0. Positions and faces are used, nothing else.

@@ -14,7 +14,9 @@ namespace hemi {
 
 /// A camera inside the scene, where it is a room: at the place that sees farthest. Nothing where no place
 /// that is tried is closed in all round.
-[[nodiscard]] std::optional<Camera> interior_camera(const PatchMesh& mesh);
+/// @param mesh  all surfaces
+/// @param up    Scene::up
+[[nodiscard]] std::optional<Camera> interior_camera(const PatchMesh& mesh, UpAxis up = UpAxis::z);
 
 /// The scene's own camera, else one inside a room, else one that frames the bounds.
 [[nodiscard]] Camera scene_camera(const Scene& scene, const PatchMesh& mesh);

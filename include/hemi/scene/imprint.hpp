@@ -47,7 +47,8 @@ struct Imprint {
 /// smallest of them, or of equal ones but the one that is listed last; a side of a two-sided surface that
 /// lies on another one. Two one-sided faces of one material and group, alike subdivided, back to back in one
 /// place become one that is two-sided. Faces that do not touch others are as they were. Gaps up to 1e-7 of
-/// the scene's diagonal are none. Time: about N log N for N faces. Memory: about 300 bytes a face.
+/// the scene's diagonal are none. Time: about N log N for N faces,
+/// also where many of them are the same. Memory: about 300 bytes a face.
 /// @param scene        as read
 /// @param subdivision  as for PatchMesh, without parts
 /// @return nothing where there is nothing to cut: the scene is what it should be

@@ -35,6 +35,22 @@ struct OrientedFaces {
 /// towards the middle of the gaps. Two-sided faces stay as they are.
 OrientedFaces orient(Scene& scene, Orientation orientation);
 
+/// What make_bodies_one_sided() did.
+struct OneSidedBodies {
+    std::size_t inwards = 0;  ///< bodies of which the inside is left
+    std::size_t outwards = 0; ///< bodies of which the outside is left
+    std::size_t faces = 0;    ///< of both
+};
+
+/// Makes two-sided faces one-sided where they are a watertight body (connected by edges, two faces at each)
+/// of which one side meets nothing: a body that has all other faces inside it, or is convex and all there is,
+/// keeps its inside; one within another such body, with nothing in it, keeps its outside. All others stay as
+/// they are. Of very many faces in and around a body some are looked at; where bodies are so many and so
+/// large that it would take minutes, nothing is done.
+/// @param scene   its faces may be turned
+/// @param groups  for every group whether its faces are meant; bodies with others stay as they are
+OneSidedBodies make_bodies_one_sided(Scene& scene, const std::vector<bool>& groups);
+
 /// The one-sided faces, in ascending order, that are turned against most of their watertight body's others
 /// (two faces at every edge). Where a face is turned the wrong way, each of its edges runs the same way in
 /// both faces.

@@ -123,6 +123,25 @@ struct Sky {
     bool operator==(const Sky&) const = default; ///< member by member
 };
 
+/// The axis that points upwards in a scene. Coordinates are the file's, whatever it is: only cameras that are
+/// chosen for a scene depend on it.
+enum class UpAxis { y, z };
+
+/// The words of UpAxis.
+template <>
+struct Names<UpAxis> {
+    /// In the order in which they are listed.
+    static constexpr NamedValue<UpAxis> table[] = {{UpAxis::y, "y"}, {UpAxis::z, "z"}};
+};
+
+/// Turns a direction (right, ahead, up) of a scene whose z axis points upwards into that of a scene of
+/// another such axis; a quarter turn about x.
+/// @param direction  of any length
+/// @param up         of the other scene
+[[nodiscard]] inline Vec3 turned_upright(const Vec3& direction, UpAxis up) {
+    return up == UpAxis::z ? direction : Vec3(direction.x, direction.z, -direction.y);
+}
+
 /// A scene as its file tells it: plain data, in the file's order and units.
 struct Scene {
     std::string name;                           ///< Its own, or the file's.
@@ -134,6 +153,7 @@ struct Scene {
     Enclosure enclosure = Enclosure::automatic; ///< What the file says about it.
     std::vector<double> environment; ///< Exitance of the environment (pi times its radiance), per channel.
     std::optional<Camera> camera;    ///< None: see default_camera().
+    UpAxis up = UpAxis::z;           ///< for cameras that are chosen for the scene
     std::optional<double> unit;      ///< Metres in a scene unit; none: 1.
     /// What it says of heat. Reflectances of 1 are allowed where there is some: such surfaces are adiabatic.
     std::optional<Thermal> thermal;

@@ -77,6 +77,7 @@ struct PictureOptions {
     bool legend = true;
     std::vector<std::string> of_quantities; ///< options given that only they have
     std::optional<CameraOption> camera;
+    std::optional<UpAxis> up; ///< none: the scene's
 };
 
 struct SolveArguments {

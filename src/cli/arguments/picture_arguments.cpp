@@ -22,6 +22,9 @@ std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture) {
     added.push_back(options.value(
         "--camera", "EYE:TARGET[:UP][:FOV]", "camera, such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
         [&picture](const std::string& text) { picture.camera = parse_camera("--camera", text); }));
+    added.push_back(options.choice<UpAxis>(
+        "--up", "y|z", "axis that points upwards in the picture (glTF: y; OBJ: by its faces; others: z)",
+        [&picture](UpAxis up) { picture.up = up; }));
     options.flag("--orthographic", picture.orthographic, "parallel rays, at the scale of the target's depth");
     options.flag("--outlines", picture.outlines, "draw outlines of patches");
     options.flag("--backs", picture.backs, "show the backs of one-sided surfaces, striped");

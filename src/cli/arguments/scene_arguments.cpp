@@ -33,6 +33,9 @@ void add_scene_options(CLI::App& app, SceneOptions& scene) {
                  "open files outside the scene's folder that the scene names");
     options.flag("--no-imprint", scene.imprint, "leave faces as they are where others touch or cover them",
                  false);
+    options.value("--zone", "NAME",
+                  "the zone of an .epJSON file that is the scene; needed where it has several",
+                  [&scene](const std::string& text) { scene.reader.zone = text; });
     options.groups("--two-sided", scene.reader.two_sided_groups,
                    "faces of GROUP radiate on both sides (not for .json); * for all; repeatable");
     options.groups("--one-sided-group", scene.reader.one_sided_groups,

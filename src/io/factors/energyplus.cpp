@@ -73,9 +73,10 @@ void warn_of_open_rows(const GroupFactors& groups, const std::vector<std::uint32
 
 } // namespace
 
-void write_energyplus(const std::filesystem::path& path, const FormFactors& file, Diagnostics& diagnostics) {
+void write_energyplus(const std::filesystem::path& path, const FormFactors& file, Diagnostics& diagnostics,
+                      const std::string& zone_name) {
     require_all_known(file.matrix, "an EnergyPlus file");
-    const std::string zone = to_utf8(path.stem().string());
+    const std::string zone = zone_name.empty() ? to_utf8(path.stem().string()) : zone_name;
     check_name(zone, "zone");
     check_groups(file.groups);
     const GroupFactors groups =

@@ -66,8 +66,8 @@ constexpr FactorFormat formats[] = {
     {".idf", FactorContent::all, "areas and group names",
      "factors of single patches (groups' are there), areas, row balance (environment, blocked), settings and "
      "the geometry's hash",
-     [](const Path& path, const FormFactors& file, const FactorContext&, Diagnostics& diagnostics) {
-         write_energyplus(path, file, diagnostics);
+     [](const Path& path, const FormFactors& file, const FactorContext& context, Diagnostics& diagnostics) {
+         write_energyplus(path, file, diagnostics, context.zone);
      }},
 };
 

@@ -20,7 +20,8 @@ struct Reader {
 };
 constexpr Reader readers[] = {{".obj", read_obj_mesh}, {".msh", read_msh_mesh}, {".ply", read_ply_mesh},
                               {".stl", read_stl_mesh}, {".inp", read_inp_mesh}, {".vtk", read_vtk_mesh},
-                              {".vtp", read_vtk_mesh}, {".vtu", read_vtk_mesh}};
+                              {".vtp", read_vtk_mesh}, {".vtu", read_vtk_mesh}, {".bdf", read_bdf_mesh},
+                              {".nas", read_bdf_mesh}};
 
 const Reader* reader_of(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);

@@ -55,6 +55,9 @@ struct FaceMesh {
 /// Abaqus input: groups are surfaces, else sets of elements, no material.
 [[nodiscard]] FaceMesh read_inp_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
                                      Diagnostics& diagnostics);
+/// Nastran bulk data: groups are properties, "PID n", no material.
+[[nodiscard]] FaceMesh read_bdf_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
+                                     Diagnostics& diagnostics);
 /// VTK, legacy and XML, polygons and unstructured grids: groups are values of a cell array, no material.
 [[nodiscard]] FaceMesh read_vtk_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
                                      Diagnostics& diagnostics);

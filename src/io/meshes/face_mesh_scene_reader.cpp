@@ -3,6 +3,7 @@
 #include "io/meshes/face_mesh.hpp"
 #include "io/scenes/obj_materials.hpp"
 #include "io/scenes/sides.hpp"
+#include "io/scenes/up_axis.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -54,7 +55,9 @@ Scene read_obj_scene(const std::filesystem::path& path, const SceneReaderOptions
     FaceMesh mesh = read_obj_mesh(path, options, diagnostics);
     const auto found =
         find_obj_materials(mesh, {}, SceneFolder(path, options.allow_outside), options.strict, diagnostics);
-    return make_scene(std::move(mesh), found, options, diagnostics);
+    Scene scene = make_scene(std::move(mesh), found, options, diagnostics);
+    scene.up = up_by_faces(scene);
+    return scene;
 }
 
 Scene read_mesh_scene(const std::filesystem::path& path, const SceneReaderOptions& options,

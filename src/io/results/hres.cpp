@@ -97,6 +97,9 @@ Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional
     if (!result.solution.direct.empty()) {
         head["direct"] = true;
     }
+    if (scene.up != UpAxis::z) {
+        head["up"] = to_word(scene.up);
+    }
     if (scene.camera) {
         const Camera& camera = *scene.camera;
         head["camera"] = {{"eye", point(camera.eye)},
@@ -222,6 +225,14 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     scene.groups = head.member("groups").texts();
     scene.enclosure = static_cast<Enclosure>(head.member("enclosure").integer(2));
     scene.environment = head.member("environment").numbers();
+    if (head.has("up")) {
+        const JsonNode up = head.member("up");
+        const std::optional<UpAxis> axis = from_word<UpAxis>(up.any_text());
+        if (!axis) {
+            up.expect("y or z");
+        }
+        scene.up = *axis;
+    }
     if (head.has("camera")) {
         scene.camera = read_camera(head.member("camera"));
     }

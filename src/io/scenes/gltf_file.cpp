@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstring>
 
 namespace hemi::io {
@@ -21,7 +22,8 @@ constexpr std::string_view glb_magic = "glTF";
 
 /// Whatever these say is read, or has no part in diffuse reflection.
 constexpr std::array known_extensions{"KHR_materials_emissive_strength", "KHR_materials_unlit",
-                                      "KHR_texture_transform", "KHR_lights_punctual"};
+                                      "KHR_texture_transform", "KHR_lights_punctual",
+                                      "KHR_mesh_quantization"};
 
 template <class T>
 T read_as(const char* data) {
@@ -30,28 +32,47 @@ T read_as(const char* data) {
     return value;
 }
 
-std::uint32_t size_of(GltfAccessor::Component component) {
+using Component = GltfAccessor::Component;
+
+std::uint32_t size_of(Component component) {
     switch (component) {
-    case GltfAccessor::Component::u8:
+    case Component::i8:
+    case Component::u8:
         return 1;
-    case GltfAccessor::Component::u16:
+    case Component::i16:
+    case Component::u16:
         return 2;
-    case GltfAccessor::Component::u32:
-    case GltfAccessor::Component::f32:
+    case Component::u32:
+    case Component::f32:
         break;
     }
     return 4;
 }
 
-GltfAccessor::Component component_of(const JsonNode& node) {
+Component component_of(const JsonNode& node) {
     const std::uint64_t type = node.integer(1'000'000);
-    for (const auto known : {GltfAccessor::Component::u8, GltfAccessor::Component::u16,
-                             GltfAccessor::Component::u32, GltfAccessor::Component::f32}) {
+    for (const auto known :
+         {Component::i8, Component::u8, Component::i16, Component::u16, Component::u32, Component::f32}) {
         if (type == static_cast<std::uint64_t>(known)) {
             return known;
         }
     }
-    node.fail(fmt::format("{}; supported are 5121, 5123, 5125 (unsigned) and 5126 (float)", type));
+    node.fail(fmt::format("{}; must be 5120 to 5123, 5125 (integers) or 5126 (float)", type));
+}
+
+std::uint32_t unsigned_at(const char* data, Component component) {
+    switch (component) {
+    case Component::i8:
+    case Component::u8:
+        return read_as<std::uint8_t>(data);
+    case Component::i16:
+    case Component::u16:
+        return read_as<std::uint16_t>(data);
+    case Component::u32:
+    case Component::f32:
+        break;
+    }
+    return read_as<std::uint32_t>(data);
 }
 
 std::uint32_t components_of(const JsonNode& node) {
@@ -91,22 +112,50 @@ std::string decode_percent(const JsonNode& node, std::string_view uri) {
 
 } // namespace
 
+bool is_unsigned(GltfAccessor::Component component) noexcept {
+    return component == Component::u8 || component == Component::u16 || component == Component::u32;
+}
+
+const char* GltfAccessor::element(std::size_t i) const {
+    const auto index = [&](std::size_t k) {
+        return unsigned_at(sparse_.indices.data + k * sparse_.indices.stride, sparse_.index_component);
+    };
+    std::size_t first = 0;
+    for (std::size_t end = sparse_.count; first < end;) {
+        const std::size_t middle = first + (end - first) / 2;
+        (index(middle) < i ? first : end) = index(middle) < i ? middle + 1 : middle;
+    }
+    if (first < sparse_.count && index(first) == i) {
+        return sparse_.values.data + first * sparse_.values.stride;
+    }
+    static constexpr std::array<char, 16> zero{};
+    return elements_.data == nullptr ? zero.data() : elements_.data + i * elements_.stride;
+}
+
 std::uint32_t GltfAccessor::integer(std::size_t i) const {
-    const char* const element = data_ + i * stride_;
+    return unsigned_at(element(i), component_);
+}
+
+double GltfAccessor::number(std::size_t i, std::uint32_t c) const {
+    const char* const data = element(i) + std::size_t{c} * size_of(component_);
+    const auto share = [this](double value, double most) {
+        return normalized_ ? std::max(value / most, -1.0) : value;
+    };
     switch (component_) {
+    case Component::i8:
+        return share(read_as<std::int8_t>(data), 127.0);
     case Component::u8:
-        return read_as<std::uint8_t>(element);
+        return share(read_as<std::uint8_t>(data), 255.0);
+    case Component::i16:
+        return share(read_as<std::int16_t>(data), 32767.0);
     case Component::u16:
-        return read_as<std::uint16_t>(element);
+        return share(read_as<std::uint16_t>(data), 65535.0);
     case Component::u32:
+        return read_as<std::uint32_t>(data);
     case Component::f32:
         break;
     }
-    return read_as<std::uint32_t>(element);
-}
-
-float GltfAccessor::number(std::size_t i, std::uint32_t c) const {
-    return read_as<float>(data_ + i * stride_ + c * sizeof(float));
+    return read_as<float>(data);
 }
 
 GltfFile::GltfFile(const fs::path& path, bool allow_outside)
@@ -234,25 +283,27 @@ std::string GltfFile::read_buffer(const JsonNode& uri, const fs::path& folder) c
     }
 }
 
-GltfAccessor GltfFile::accessor(const JsonNode& reference) const {
-    static const Json none = Json::array();
-    const JsonNode accessors = root_.has("accessors") ? root_.member("accessors") : JsonNode(none, file_);
-    const JsonNode accessor = accessors.element(index(reference, accessors.size(), "accessors"));
-    if (accessor.has("sparse")) {
-        accessor.member("sparse").fail("sparse accessors are not supported; export without them");
+bool GltfFile::uses(std::string_view extension) const {
+    for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+        if (root_.has(key)) {
+            const std::vector<std::string> names = root_.member(key).texts();
+            if (std::find(names.begin(), names.end(), extension) != names.end()) {
+                return true;
+            }
+        }
     }
-    const JsonNode type = accessor.member("componentType");
-    const auto component = component_of(type);
-    const JsonNode shape = accessor.member("type");
-    const std::uint32_t components = components_of(shape);
-    const std::uint64_t count = accessor.member("count").integer(most);
-    const std::uint64_t offset = integer_or(accessor, "byteOffset", most, 0);
-    if (count == 0) {
-        accessor.fail("count 0; must be at least 1");
-    }
+    return false;
+}
 
+/// @param owner            that names a bufferView, and may name a byteOffset in it
+/// @param element          bytes
+/// @param can_have_stride  whether the bufferView may tell how far elements are apart
+GltfAccessor::Elements GltfFile::elements(const JsonNode& owner, std::uint64_t count, std::uint64_t element,
+                                          bool can_have_stride) const {
+    static const Json none = Json::array();
+    const std::uint64_t offset = integer_or(owner, "byteOffset", most, 0);
     const JsonNode views = root_.has("bufferViews") ? root_.member("bufferViews") : JsonNode(none, file_);
-    const JsonNode view_reference = accessor.member("bufferView");
+    const JsonNode view_reference = owner.member("bufferView");
     const JsonNode view = views.element(index(view_reference, views.size(), "bufferViews"));
     const JsonNode buffer_reference = view.member("buffer");
     const std::string& buffer = buffers_[index(buffer_reference, buffers_.size(), "buffers")];
@@ -262,19 +313,77 @@ GltfAccessor GltfFile::accessor(const JsonNode& reference) const {
         view.fail(fmt::format("bytes {} to {}; its buffer has {}", view_offset, view_offset + view_length,
                               buffer.size()));
     }
-    const std::uint64_t element = std::uint64_t{size_of(component)} * components;
-    const std::uint64_t stride = integer_or(view, "byteStride", 252, element);
+    const std::uint64_t stride = can_have_stride ? integer_or(view, "byteStride", 252, element) : element;
     if (stride < element) {
         view.fail(fmt::format("byteStride {}; must be at least {}, the size of an element", stride, element));
     }
     // Written so that no product overflows, whatever the count.
     if (offset + element > view_length || (count - 1) > (view_length - offset - element) / stride) {
-        accessor.fail(
-            fmt::format("{} elements of {} bytes from byte {} on, every {} bytes; its bufferView has "
-                        "{} bytes",
-                        count, element, offset, stride, view_length));
+        owner.fail(fmt::format("{} elements of {} bytes from byte {} on, every {} bytes; its bufferView has "
+                               "{} bytes",
+                               count, element, offset, stride, view_length));
     }
-    return {buffer.data() + view_offset + offset, count, stride, components, component};
+    return {buffer.data() + view_offset + offset, stride};
+}
+
+/// @param accessor  index of the accessor, which has `count` elements of `element` bytes
+GltfAccessor::Sparse GltfFile::sparse(const JsonNode& node, std::uint64_t accessor, std::uint64_t count,
+                                      std::uint64_t element) const {
+    node.check_object();
+    GltfAccessor::Sparse result;
+    const JsonNode number = node.member("count");
+    result.count = number.integer(count);
+    if (result.count == 0) {
+        number.fail("0; must be at least 1");
+    }
+    const JsonNode indices = node.member("indices");
+    const JsonNode type = indices.member("componentType");
+    result.index_component = component_of(type);
+    if (!is_unsigned(result.index_component)) {
+        type.fail("must be unsigned (5121, 5123 or 5125)");
+    }
+    result.indices = elements(indices, result.count, size_of(result.index_component), false);
+    result.values = elements(node.member("values"), result.count, element, false);
+    if (!ascending_.contains(accessor)) {
+        std::uint64_t least = 0;
+        for (std::size_t k = 0; k < result.count; ++k) {
+            const std::uint32_t index =
+                unsigned_at(result.indices.data + k * result.indices.stride, result.index_component);
+            if (index < least || index >= count) {
+                indices.fail(fmt::format("index {} is {}; must ascend, and be below {}", k, index, count));
+            }
+            least = std::uint64_t{index} + 1;
+        }
+        ascending_.insert(accessor);
+    }
+    return result;
+}
+
+GltfAccessor GltfFile::accessor(const JsonNode& reference) const {
+    static const Json none = Json::array();
+    const JsonNode accessors = root_.has("accessors") ? root_.member("accessors") : JsonNode(none, file_);
+    const std::size_t number = index(reference, accessors.size(), "accessors");
+    const JsonNode accessor = accessors.element(number);
+    const JsonNode type = accessor.member("componentType");
+    const auto component = component_of(type);
+    const JsonNode shape = accessor.member("type");
+    const std::uint32_t components = components_of(shape);
+    const std::uint64_t count = accessor.member("count").integer(most);
+    const bool normalized = accessor.has("normalized") && accessor.member("normalized").boolean();
+    if (count == 0) {
+        accessor.fail("count 0; must be at least 1");
+    }
+    const std::uint64_t element = std::uint64_t{size_of(component)} * components;
+    const bool is_sparse = accessor.has("sparse");
+    GltfAccessor::Elements data;
+    if (!is_sparse || accessor.has("bufferView")) {
+        data = elements(accessor, count, element, true);
+    }
+    GltfAccessor::Sparse changes;
+    if (is_sparse) {
+        changes = sparse(accessor.member("sparse"), number, count, element);
+    }
+    return {data, count, components, component, normalized, changes};
 }
 
 std::size_t GltfFile::index(const JsonNode& reference, std::size_t size, std::string_view of) {

@@ -121,8 +121,10 @@ public:
         : file_(path.string()), gltf_(path, options.allow_outside), options_(options),
           diagnostics_(diagnostics), nodes_(gltf_.root(), "nodes"), meshes_(gltf_.root(), "meshes"),
           materials_(gltf_.root(), "materials"), cameras_(gltf_.root(), "cameras"),
-          mender_(options, "triangles"), material_indices_(materials_.size() + 1, none) {
+          mender_(options, "triangles"), material_indices_(materials_.size() + 1, none),
+          quantized_(gltf_.uses("KHR_mesh_quantization")) {
         scene_.name = to_utf8(path.stem().string());
+        scene_.up = UpAxis::y;
     }
 
     Scene read() {
@@ -133,7 +135,12 @@ public:
             throw InputError(fmt::format("{}: no triangles; a scene needs at least one", file_));
         }
         tell_left_out();
-        set_sides(scene_, options_, file_, diagnostics_);
+        std::vector<bool> groups;
+        if (options_.close_bodies) {
+            groups.assign(scene_.groups.size(), true);
+        }
+        set_sides(scene_, options_, file_, diagnostics_, std::move(groups));
+        tell_double_sided();
         return std::move(scene_);
     }
 
@@ -153,7 +160,7 @@ private:
 
     void tell_unused() {
         static const std::set<std::string> used{"KHR_materials_emissive_strength", "KHR_materials_unlit",
-                                                "KHR_texture_transform"};
+                                                "KHR_texture_transform", "KHR_mesh_quantization"};
         std::vector<std::string> unused;
         const Elements extensions(gltf_.root(), "extensionsUsed");
         for (std::size_t k = 0; k < extensions.size(); ++k) {
@@ -282,8 +289,11 @@ private:
         const JsonNode attributes = primitive.member("attributes");
         const JsonNode position = attributes.member("POSITION");
         const GltfAccessor points = gltf_.accessor(position);
-        if (points.components() != 3 || points.component() != GltfAccessor::Component::f32) {
-            position.fail("must be an accessor of VEC3 of floats (5126)");
+        const bool is_float = points.component() == GltfAccessor::Component::f32;
+        const bool is_short = !is_float && points.component() != GltfAccessor::Component::u32;
+        if (points.components() != 3 || !(is_float || (is_short && quantized_))) {
+            position.fail("must be an accessor of VEC3 of floats (5126); of 8 or 16 bits with the extension "
+                          "KHR_mesh_quantization");
         }
         const bool indexed = primitive.has("indices");
         const std::size_t corners =
@@ -326,7 +336,7 @@ private:
     /// Reads them to indices_. Every one is below `positions`.
     std::size_t read_indices(const JsonNode& reference, std::size_t positions) {
         const GltfAccessor accessor = gltf_.accessor(reference);
-        if (accessor.components() != 1 || accessor.component() == GltfAccessor::Component::f32) {
+        if (accessor.components() != 1 || !is_unsigned(accessor.component())) {
             reference.fail("must be an accessor of SCALAR of unsigned integers (5121, 5123 or 5125)");
         }
         if (accessor.count() / 3 > most_faces) {
@@ -351,7 +361,6 @@ private:
             primitive.fail(fmt::format("triangle {} (placed by nodes[{}]): {}", triangle, node, *defect));
         }
         if (!mender_.pieces().empty()) {
-            double_sided_ += surface.two_sided ? 1 : 0;
             scene_.surfaces.push_back(surface);
         }
     }
@@ -460,17 +469,24 @@ private:
         scene_.camera = Camera{eye, eye - glm::normalize(back), glm::normalize(up), fov};
     }
 
+    void tell_double_sided() {
+        const auto count =
+            static_cast<std::size_t>(std::count_if(scene_.surfaces.begin(), scene_.surfaces.end(),
+                                                   [](const Surface& surface) { return surface.two_sided; }));
+        if (options_.close_bodies && 2 * count > scene_.surfaces.size() &&
+            options_.one_sided_groups.empty() && options_.two_sided_groups.empty()) {
+            warn(fmt::format(
+                "{} of {} triangles are double-sided, as exporters mark them by default: their backs count "
+                "as surfaces of their own (--one-sided-group makes groups one-sided)",
+                count, scene_.surfaces.size()));
+        }
+    }
+
     void tell_left_out() {
         if (without_faces_ > 0) {
             warn(fmt::format("{} primitives of points or lines left out", without_faces_));
         }
         mender_.tell(file_, diagnostics_);
-        if (2 * double_sided_ > scene_.surfaces.size() && options_.one_sided_groups.empty()) {
-            warn(fmt::format(
-                "{} of {} triangles are double-sided, as exporters mark them by default: their backs count "
-                "as surfaces of their own (--one-sided-group makes groups one-sided)",
-                double_sided_, scene_.surfaces.size()));
-        }
         if (has_morph_targets_) {
             warn("morph targets are not used");
         }
@@ -504,8 +520,8 @@ private:
     std::set<std::string> limited_;
     std::size_t counted_ = 0; ///< primitives and triangles, as often as nodes place them
     std::size_t without_faces_ = 0;
+    bool quantized_; ///< positions may be integers
     bool has_morph_targets_ = false;
-    std::size_t double_sided_ = 0; ///< triangles
     bool textures_ = false;
     bool transparent_ = false;
 };

@@ -28,9 +28,11 @@ public:
         if (names_.size() == 1) {
             result_.channels = scene.channels;
             result_.enclosure = scene.enclosure;
+            result_.up = scene.up;
         }
         take_channels(path, scene);
         result_.enclosure = result_.enclosure == scene.enclosure ? scene.enclosure : Enclosure::automatic;
+        result_.up = result_.up == scene.up ? scene.up : UpAxis::z;
         result_.camera = result_.camera ? result_.camera : scene.camera;
         const auto first_material = static_cast<std::uint32_t>(result_.materials.size());
         const auto first_group = static_cast<std::uint32_t>(result_.groups.size());
@@ -39,6 +41,7 @@ public:
         }
         for (const std::string& group : scene.groups) {
             result_.groups.push_back(scene.groups.size() == 1 ? name : name + "/" + group);
+            exported_.push_back(extension_of(path) == ".gltf" || extension_of(path) == ".glb");
         }
         for (Surface& surface : scene.surfaces) {
             surface.material += first_material;
@@ -46,6 +49,9 @@ public:
             result_.surfaces.push_back(surface);
         }
     }
+
+    /// For every group, whether it is of a file whose sides may be an exporter's habit.
+    [[nodiscard]] const std::vector<bool>& exported() const { return exported_; }
 
     [[nodiscard]] Scene finish() {
         result_.name = fmt::format("{}", fmt::join(names_, " + "));
@@ -79,6 +85,7 @@ private:
 
     Scene result_;
     std::vector<std::string> names_;
+    std::vector<bool> exported_;
 };
 
 } // namespace
@@ -93,6 +100,7 @@ Scene read_scenes(std::span<const std::filesystem::path> paths, const SceneReade
     as_read.two_sided_groups.clear();
     as_read.one_sided_groups.clear();
     as_read.flipped_groups.clear();
+    as_read.close_bodies = false;
     as_read.orientation = Orientation::as_read;
     JoinedScenes joined;
     for (const std::filesystem::path& path : paths) {
@@ -104,7 +112,7 @@ Scene read_scenes(std::span<const std::filesystem::path> paths, const SceneReade
         joined.add(path, read_scene(path, as_read, diagnostics));
     }
     Scene scene = joined.finish();
-    set_sides(scene, options, scene.name, diagnostics);
+    set_sides(scene, options, scene.name, diagnostics, joined.exported());
     validate(scene);
     return scene;
 }

@@ -33,7 +33,7 @@ std::vector<bool> named_groups(const Scene& scene, const std::vector<std::string
 } // namespace
 
 void set_sides(Scene& scene, const SceneReaderOptions& options, const std::string& file,
-               Diagnostics& diagnostics) {
+               Diagnostics& diagnostics, std::vector<bool> exported) {
     const auto one_sided = named_groups(scene, options.one_sided_groups, "make one-sided", file);
     const auto two_sided = named_groups(scene, options.two_sided_groups, "make two-sided", file);
     const auto flipped = named_groups(scene, options.flipped_groups, "turn round", file);
@@ -45,6 +45,19 @@ void set_sides(Scene& scene, const SceneReaderOptions& options, const std::strin
     }
     for (Surface& surface : scene.surfaces) {
         surface.two_sided = two_sided[surface.group] || (surface.two_sided && !one_sided[surface.group]);
+    }
+    if (!exported.empty()) {
+        for (std::size_t g = 0; g < exported.size(); ++g) {
+            exported[g] = exported[g] && !two_sided[g];
+        }
+        const OneSidedBodies closed = make_bodies_one_sided(scene, exported);
+        if (closed.faces > 0) {
+            diagnostics.warn(fmt::format(
+                "{}: {} double-sided faces taken as one-sided: they close in {} bodies, of which one side "
+                "meets "
+                "nothing (the inside is left of {}, the outside of {}); --two-sided GROUP keeps both",
+                file, closed.faces, closed.inwards + closed.outwards, closed.inwards, closed.outwards));
+        }
     }
     const OrientedFaces oriented = orient(scene, options.orientation);
     if (options.orientation != Orientation::as_read) {

@@ -239,6 +239,7 @@ def read_scene(
     one_sided: Sequence[str] = (),
     flip: Sequence[str] = (),
     orient: Literal["as-read", "in", "out"] = "as-read",
+    zone: str = "",
     strict: bool = False,
     planarity: float = 1e-5,
     allow_outside: bool = False,
