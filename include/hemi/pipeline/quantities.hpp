@@ -16,7 +16,8 @@ namespace hemi {
 /// What is known of every patch of a solution, to be shown in false colours.
 enum class Quantity {
     radiosity,        ///< W/m²
-    irradiance,       ///< W/m²
+    irradiance,       ///< W/m², or lx
+    direct,           ///< irradiance that comes straight from sun and sky
     exitance,         ///< W/m²
     reflectance,      ///< share
     emissivity,       ///< share: 1 - reflectance
@@ -35,6 +36,7 @@ struct Names<Quantity> {
     /// Every value with its word.
     static constexpr NamedValue<Quantity> table[] = {{Quantity::radiosity, "radiosity"},
                                                      {Quantity::irradiance, "irradiance"},
+                                                     {Quantity::direct, "direct"},
                                                      {Quantity::exitance, "exitance"},
                                                      {Quantity::reflectance, "reflectance"},
                                                      {Quantity::emissivity, "emissivity"},
