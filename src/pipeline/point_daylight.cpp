@@ -57,7 +57,7 @@ PointDaylight::Environment PointDaylight::split(double environment, double block
     const double free = free_above + free_below;
     const double scale = free > 0.0 ? environment / free : 0.0;
     const double elevation = std::clamp(available.elevation - above.elevation, 0.0, free_above);
-    return {{scale * free_above, scale * elevation}, environment - scale * free_above};
+    return {{scale * free_above, scale * elevation}, free > 0.0 ? scale * free_below : environment};
 }
 
 PointDaylight::Environment PointDaylight::seen_by(const Vec3& at, const Vec3& normal,

@@ -10,8 +10,9 @@
 
 namespace hemi {
 
-/// (I - rho F) B = E' = E + rho (e B_env + D) in the layout of the solvers. Every channel's sources are scaled by a
-/// power of two to about 1, which changes no bit and keeps squares of sources of any magnitude finite.
+/// (I - rho F) B = E' = E + rho (e B_env + D) in the layout of the solvers. Every channel's sources are
+/// scaled by a power of two to about 1, which changes no bit and keeps squares of sources of any magnitude
+/// finite.
 class RadiositySystem {
 public:
     explicit RadiositySystem(const RadiosityProblem& problem);

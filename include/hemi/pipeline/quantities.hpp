@@ -63,6 +63,7 @@ void check_channel(const std::vector<std::string>& channels, const std::string& 
 /// "luminance" (0.2126 red + 0.7152 green + 0.0722 blue, IEC 61966-2-1; of channels with these names), or, by
 /// "mean", the mean. Patches under other geometry, and such whose row was not computed, have none. The range
 /// of radiosities is that of surfaces without exitance, where there are such and any with one is brighter.
+/// @param quantity  which one
 /// @param scene     gives channels and materials
 /// @param mesh      N patches
 /// @param solution  of the mesh, with its exitance

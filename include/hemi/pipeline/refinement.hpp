@@ -68,8 +68,8 @@ struct CoarseMesh {
 };
 
 /// A coarse mesh to begin with: some hundreds of patches of about one size, whatever sizes the scene wants;
-/// surfaces that shine have 4 x 4 at least where they are few, since a few shadow rays to each patch must make
-/// their shadows.
+/// surfaces that shine have 4 x 4 at least where they are few, since a few shadow rays to each patch must
+/// make their shadows.
 /// @param scene          as read
 /// @param with_imprint   cut where faces touch, see imprint()
 [[nodiscard]] CoarseMesh coarse_mesh(const Scene& scene, bool with_imprint = false);

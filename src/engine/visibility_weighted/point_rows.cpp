@@ -81,7 +81,7 @@ public:
                 sample = neighbours_.stand_in(sampled.samples, j);
             }
             Entry entry{j, unoccluded, sample.known() ? sample.share() : assumed};
-            if (rays_ && !(known && sample.is_clear())) {
+            if (rays_) {
                 const double texels = known ? sample.weight() : 0.0;
                 doubts.push_back({entries.size(), texels, variance(entry, texels)});
             }
