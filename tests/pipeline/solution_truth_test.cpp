@@ -241,7 +241,7 @@ TEST_CASE("solution error: a spherical cavity is lit evenly, whatever part of it
     const double reflectance = 0.6;
     std::array<std::vector<double>, 2> relative;
     std::array<double, 2> printed{};
-    for (const std::size_t k : {0, 1}) {
+    for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
         const Solved found = solved(cavity(k == 0 ? 10 : 20, reflectance), Preset::fast);
         double source = 0.0;
         double area = 0.0;
