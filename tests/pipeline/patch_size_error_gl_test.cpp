@@ -1,4 +1,5 @@
 #include "support/device.hpp"
+#include "support/group_irradiance.hpp"
 #include "support/scenes.hpp"
 
 #include "hemi/core/buried.hpp"
@@ -139,20 +140,6 @@ Truth truth_of(const Solved& coarse, const Solved& fine, std::uint32_t times) {
     return {std::sqrt(field / reflected / left_out), std::sqrt(vertices / reflected)};
 }
 
-/// Mean irradiance of every group, buried patches left out.
-std::vector<double> group_irradiance(const Solved& solved) {
-    std::vector<double> light(solved.mesh.groups().size(), 0.0);
-    std::vector<double> area(light.size(), 0.0);
-    for (std::uint32_t i = 0; i < solved.mesh.size(); ++i) {
-        light[solved.mesh.group(i)] += solved.mesh.areas()[i] * solved.solution.irradiance[i];
-        area[solved.mesh.group(i)] += solved.mesh.areas()[i];
-    }
-    for (std::size_t g = 0; g < light.size(); ++g) {
-        light[g] /= area[g];
-    }
-    return light;
-}
-
 } // namespace
 
 TEST_CASE("patch size: the error of lit rooms is that against a grid three times as fine",
@@ -202,8 +189,8 @@ TEST_CASE("patch size: the error of lit rooms is that against a grid three times
         CHECK(of_gathered->vertices.rms > 0.5 * less);
         CHECK(of_gathered->vertices.rms < 2.0 * less);
         REQUIRE(error->groups.size() == coarse.mesh.groups().size());
-        const std::vector<double> is = group_irradiance(coarse);
-        const std::vector<double> should = group_irradiance(fine);
+        const std::vector<double> is = group_irradiance(coarse.mesh, coarse.solution);
+        const std::vector<double> should = group_irradiance(fine.mesh, fine.solution);
         for (std::size_t g = 0; g < is.size(); ++g) {
             const double true_error = std::abs(is[g] / should[g] - 1.0);
             const double printed = std::hypot(error->groups[g].patch_size, error->groups[g].factors);

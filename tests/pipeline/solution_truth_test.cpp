@@ -1,5 +1,6 @@
 // Printed errors of solutions against exact ones that come from no mesh of hemi's: integral equations, closed
 // forms, traced paths.
+#include "support/group_irradiance.hpp"
 #include "support/scenes.hpp"
 
 #include "hemi/display/vertex_colours.hpp"
@@ -43,20 +44,6 @@ Solved solved(const Scene& scene, Preset preset, Gather gather = Gather::off) {
     solution.patch_size_error = estimate_patch_size_error(scene, mesh, factors, solution, settings);
     const SolutionError error = solution_error(solution).value();
     return {std::move(mesh), std::move(solution), error};
-}
-
-/// Mean irradiance of every group.
-std::vector<double> group_irradiance(const Solved& solved) {
-    std::vector<double> light(solved.mesh.groups().size(), 0.0);
-    std::vector<double> area(light.size(), 0.0);
-    for (std::uint32_t i = 0; i < solved.mesh.size(); ++i) {
-        light[solved.mesh.group(i)] += solved.mesh.areas()[i] * solved.solution.irradiance[i];
-        area[solved.mesh.group(i)] += solved.mesh.areas()[i];
-    }
-    for (std::size_t g = 0; g < light.size(); ++g) {
-        light[g] /= area[g];
-    }
-    return light;
 }
 
 /// Nodes and weights of Gauss and Legendre on [0, 1].
@@ -224,8 +211,8 @@ TEST_CASE("solution error: two plates against their integral equation", "[pipeli
                     check_printed(found.error.field.rms, truth.field);
                     check_printed(found.error.vertices.rms, truth.vertices);
                     for (std::size_t g = 0; g < 2; ++g) {
-                        const double off =
-                            std::abs(group_irradiance(found)[g] / exact.mean_irradiance() - 1.0);
+                        const double off = std::abs(
+                            group_irradiance(found.mesh, found.solution)[g] / exact.mean_irradiance() - 1.0);
                         INFO("group " << g << ": printed " << found.error.groups[g] << ", true " << off);
                         CHECK(off < 2.0 * found.error.groups[g]);
                     }
@@ -250,7 +237,7 @@ TEST_CASE("solution error: a spherical cavity is lit evenly, whatever part of it
             area += found.mesh.areas()[i];
         }
         const double exact = source / area / (1.0 - reflectance);
-        for (const double light : group_irradiance(found)) {
+        for (const double light : group_irradiance(found.mesh, found.solution)) {
             relative[k].push_back(light / exact - 1.0);
         }
         printed[k] = found.error.field.rms;
@@ -282,7 +269,7 @@ TEST_CASE("solution error: means of groups against traced paths", "[pipeline][sl
             const Scene cut = imprint(finer).value().scene;
             for (const Preset preset : {Preset::fast, Preset::standard}) {
                 const Solved found = solved(cut, preset);
-                const std::vector<double> means = group_irradiance(found);
+                const std::vector<double> means = group_irradiance(found.mesh, found.solution);
                 double worst_printed = 0.0;
                 double worst = 0.0;
                 for (std::size_t g = 0; g < means.size(); ++g) {
