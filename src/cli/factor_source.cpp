@@ -47,6 +47,26 @@ bool has_rows(const SolveArguments& arguments) {
     return arguments.factors && std::filesystem::is_regular_file(*arguments.factors, ignored);
 }
 
+FormFactors rows_to_refine(const SolveArguments& arguments, const Scene& scene, const PatchMesh& mesh,
+                           FactorSettings& settings) {
+    const std::filesystem::path& path = *arguments.factors;
+    FormFactors factors = read_form_factors(path, scene, mesh);
+    const Provenance& made = factors.provenance;
+    check_setting(arguments.common, path, "--seed", settings.seed.value_or(0), made.seed);
+    check_setting(arguments.common, path, "--preset", preset_word(settings.preset), preset_word(made.preset));
+    if (made.method != Method::hemicube || !made.preset) {
+        throw InvalidArgument(fmt::format("{}: rows by method {}; patches are cut with hemicubes only",
+                                          path.string(), to_word(made.method)));
+    }
+    settings.preset = *made.preset;
+    settings.seed = made.seed;
+    if (!factors.matrix.all_known()) {
+        throw InputError(fmt::format("{}: rows are missing; to cut patches further those of all are needed",
+                                     path.string()));
+    }
+    return factors;
+}
+
 void store_rows(const SolveArguments& arguments, FormFactors& raw, const Terminal& terminal) {
     if (arguments.factors) {
         estimate_error(raw);

@@ -23,6 +23,12 @@ namespace hemi::cli {
 [[nodiscard]] FormFactors find_rows(const SolveArguments& arguments, const LoadedScene& loaded,
                                     std::span<const std::uint32_t> patches, Observer& observer,
                                     const Terminal& terminal, RowCheckpoint* checkpoint);
+/// Raw form factors of the `--factors` file, from which patches are to be cut further.
+/// @param mesh      that they are of, see mesh_of_rows()
+/// @param settings  become those of the rows where the command line does not say them
+/// @throws InputError if rows are missing; InvalidArgument as find_rows(), or if they are of no hemicubes
+[[nodiscard]] FormFactors rows_to_refine(const SolveArguments& arguments, const Scene& scene,
+                                         const PatchMesh& mesh, FactorSettings& settings);
 /// Writes raw form factors to the `--factors` file, if there is to be one.
 void store_rows(const SolveArguments& arguments, FormFactors& raw, const Terminal& terminal);
 

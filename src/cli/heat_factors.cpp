@@ -329,6 +329,9 @@ LoadedScene load_thermal_scene(std::string_view command, SceneOptions options, c
     }
     options.imprint = options.imprint && (!input.factors || is_own(*input.factors));
     LoadedScene loaded = load_scene(options, terminal);
+    if (input.factors && is_own(*input.factors)) {
+        adopt_mesh_of_rows(loaded, options, *input.factors);
+    }
     Scene& scene = loaded.scene;
     if (!scene.thermal) {
         scene.thermal.emplace();

@@ -3,6 +3,8 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/core/stopwatch.hpp"
+#include "hemi/core/text.hpp"
+#include "hemi/io/factor_file.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/io/vtp_file.hpp"
@@ -13,6 +15,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 namespace hemi::cli {
@@ -124,22 +127,21 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
             std::move(as_read), std::move(group_of), watch.seconds()};
 }
 
-void LoadedScene::adopt(PatchMesh other) {
+void LoadedScene::adopt(PatchMesh other, const CoarseMesh& begin, bool parts) {
+    if (has_whole_faces() && !parts) {
+        SceneAsRead before = as_read ? std::move(*as_read) : SceneAsRead{scene, mesh, {}, {}, {}, 0.0};
+        before.parts = parts_of_faces(other, begin, before.mesh);
+        before.left = io::places_left(before.mesh, other, before.parts);
+        as_read = std::move(before);
+    } else {
+        as_read.reset();
+    }
     mesh = std::move(other);
-    as_read.reset();
     adopt_mesh(scene, subdivision, mesh);
     group_of.clear();
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         group_of.push_back(mesh.group(i));
     }
-}
-
-void LoadedScene::adopt_parts(PatchMesh other, const CoarseMesh& begin) {
-    SceneAsRead before = as_read ? std::move(*as_read) : SceneAsRead{scene, mesh, {}, {}, {}, 0.0};
-    before.parts = parts_of_faces(other, begin, before.mesh);
-    before.left = io::places_left(before.mesh, other, before.parts);
-    adopt(std::move(other));
-    as_read = std::move(before);
 }
 
 bool LoadedScene::has_whole_faces() const {
@@ -181,6 +183,45 @@ void LoadedScene::write_patches(const std::filesystem::path& path, const FormFac
     }
     const std::vector<io::CellArray> arrays{{"environment", means(environment, 1), {}}};
     io::write_patch_table(path, patches(), arrays, as_read ? as_read->left : io::PatchPlaces());
+}
+
+CoarseMesh coarse_begin(const LoadedScene& loaded, const SceneOptions& options) {
+    return options.subdivision != Subdivision{} ? loaded.as_begin()
+                                                : coarse_mesh(loaded.uncut(), options.imprint);
+}
+
+CutMesh mesh_of_rows(const LoadedScene& loaded, const SceneOptions& options,
+                     const std::filesystem::path& path) {
+    const io::RowsGeometry rows = io::read_hff_geometry(path);
+    if (rows.geometry_hash == loaded.mesh.geometry_hash()) {
+        return {loaded.as_begin(), loaded.mesh};
+    }
+    for (const bool own : {false, true}) {
+        CoarseMesh begin = own ? loaded.as_begin() : coarse_begin(loaded, options);
+        try {
+            PatchMesh mesh = rows.cuts.any() ? begin.mesh.cut(rows.cuts) : begin.mesh;
+            if (mesh.size() == rows.patches && mesh.geometry_hash() == rows.geometry_hash) {
+                return {std::move(begin), std::move(mesh)};
+            }
+        } catch (const InvalidArgument&) { // they are no cuts of this
+        }
+    }
+    throw InputError(fmt::format(
+        "{}: these form factors belong to another geometry ({}; this scene has {}); remove the file or name "
+        "another one",
+        path.string(), plural(rows.patches, "patch", "patches"), count_text(loaded.mesh.size())));
+}
+
+void adopt_mesh_of_rows(LoadedScene& loaded, const SceneOptions& options, const std::filesystem::path& path,
+                        bool parts) {
+    std::error_code ignored; // a name that no file can have
+    if (!std::filesystem::is_regular_file(path, ignored)) {
+        return;
+    }
+    CutMesh cut = mesh_of_rows(loaded, options, path);
+    if (cut.mesh.geometry_hash() != loaded.mesh.geometry_hash()) {
+        loaded.adopt(std::move(cut.mesh), cut.begin, parts);
+    }
 }
 
 void refuse_chosen_settings(const CommonOptions& common, const RowOptions& rows) {

@@ -38,11 +38,13 @@ struct LoadedScene {
     std::vector<std::uint32_t> group_of; ///< group of every patch of the mesh
     double seconds = 0.0;
 
-    /// Takes another mesh of the scene, whose patches are what results are about.
-    void adopt(PatchMesh other);
-    /// Takes another mesh of the scene. Results stay about the patches as they are, which are whole faces.
+    /// Takes a mesh of the scene whose patches were cut further. Results stay about the scene's own patches
+    /// where these are whole faces.
     /// @param begin  what the mesh was cut from
-    void adopt_parts(PatchMesh other, const CoarseMesh& begin);
+    /// @param parts  results are about the patches of the mesh in any case
+    void adopt(PatchMesh other, const CoarseMesh& begin, bool parts);
+    /// The mesh as it is, to be cut further.
+    [[nodiscard]] CoarseMesh as_begin() const { return {mesh, patches(), parts()}; }
     /// Whether every patch that results are about is one side of a face.
     [[nodiscard]] bool has_whole_faces() const;
 
@@ -76,6 +78,24 @@ struct LoadedScene {
 /// `--enclosure` and `--environment` replace the scene's own.
 /// @throws InputError for the file; InvalidArgument for options that do not fit it.
 [[nodiscard]] LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal);
+
+/// A mesh that patches were cut into from another.
+struct CutMesh {
+    CoarseMesh begin;
+    PatchMesh mesh;
+};
+/// What refinement begins with: patches of the size that the command line asks for, or a coarse mesh.
+[[nodiscard]] CoarseMesh coarse_begin(const LoadedScene& loaded, const SceneOptions& options);
+/// The mesh that the rows of a `.hff` are of: the scene's own, one that a refinement begins with, or one that
+/// was cut from either.
+/// @throws InputError for the file, and if its rows are of another geometry
+[[nodiscard]] CutMesh mesh_of_rows(const LoadedScene& loaded, const SceneOptions& options,
+                                   const std::filesystem::path& path);
+/// Cuts the scene as the rows of a file are, where a refinement stored them.
+/// @param path   does nothing if it is no file yet
+/// @param parts  see LoadedScene::adopt
+void adopt_mesh_of_rows(LoadedScene& loaded, const SceneOptions& options, const std::filesystem::path& path,
+                        bool parts = false);
 
 /// Refuses settings on the command line that --error-target chooses.
 /// @throws InvalidArgument

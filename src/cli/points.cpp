@@ -256,6 +256,9 @@ Lit light_of_scene(const PointsArguments& arguments, Observer& observer, const T
     LoadedScene loaded = heat ? load_thermal_scene("points", options, {arguments.factors, std::nullopt},
                                                    arguments.heat, true, terminal)
                               : load_scene(options, terminal);
+    if (!heat && arguments.factors) {
+        adopt_mesh_of_rows(loaded, options, *arguments.factors);
+    }
     if (arguments.daylight) {
         leave_sky(arguments, loaded.scene);
     }

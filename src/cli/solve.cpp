@@ -37,7 +37,7 @@ Outputs check_outputs(const SolveArguments& arguments) {
             outputs.add(option, *path, {extension}, allow_standard_output);
         }
     };
-    if (arguments.factors && !has_rows(arguments)) { // else it is an input
+    if (arguments.factors && (arguments.refines() || !has_rows(arguments))) { // else it is an input
         add("--factors", arguments.factors, ".hff", false);
     }
     add("--result", arguments.result, ".hres", false);
@@ -49,13 +49,13 @@ Outputs check_outputs(const SolveArguments& arguments) {
 
 void check_input(const SolveArguments& arguments) {
     refuse_chosen_settings(arguments.common, arguments.rows);
-    if (arguments.refines() && arguments.factors) {
-        throw InvalidArgument(
-            "--factors holds rows of the patches that the scene is cut into; it cannot be used "
-            "where patches are cut further: leave it out, or --error-target and --refine");
+    if (arguments.parts && !arguments.refines() && !has_rows(arguments)) {
+        throw InvalidArgument("--parts needs --error-target or --refine, by which patches are cut, or the "
+                              "--factors of such patches");
     }
-    if (arguments.parts && !arguments.refines()) {
-        throw InvalidArgument("--parts needs --error-target or --refine, by which patches are cut");
+    if (arguments.rows.resume && arguments.rows.error_target && !arguments.refines()) {
+        throw InvalidArgument("--resume excludes --error-target of factors, by which several settings are "
+                              "tried; leave one out");
     }
     if (arguments.picture.quantity && is_error(*arguments.picture.quantity) &&
         !arguments.rows.factors.estimate_error) {
@@ -65,7 +65,7 @@ void check_input(const SolveArguments& arguments) {
     if (arguments.budget > 0.0 && !arguments.refines()) {
         throw InvalidArgument("--budget needs --error-target or --refine, by which patches are cut");
     }
-    if (arguments.rows.error_target && has_rows(arguments)) {
+    if (arguments.rows.error_target && !arguments.refines() && has_rows(arguments)) {
         throw InvalidArgument(fmt::format("--error-target chooses settings, but the rows of {} are there "
                                           "already; leave one out",
                                           arguments.factors->string()));
@@ -129,7 +129,8 @@ Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loade
 /// Solves on patches that are cut until the result is good enough; the scene gets their mesh.
 /// @param missed  becomes a sentence where it is not
 Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& loaded, Observer& observer,
-                              Seconds& seconds, Report& report, std::string& missed) {
+                              const Terminal& terminal, Seconds& seconds, Report& report,
+                              std::string& missed) {
     const Stopwatch watch;
     RefinementGoal goal;
     goal.error = arguments.rows.error_target;
@@ -137,16 +138,26 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
     goal.patches = arguments.refine;
     goal.seconds = arguments.budget;
     goal.gather = arguments.picture.flat && !arguments.result ? Gather::off : arguments.gather;
-    const bool own_size = arguments.scene.subdivision != Subdivision{}; // asked for on the command line
-    const CoarseMesh begin = own_size ? CoarseMesh{loaded.mesh, loaded.patches(), loaded.parts()}
-                                      : coarse_mesh(loaded.uncut(), arguments.scene.imprint);
-    Refinement found = solve_refined(loaded.scene, begin.mesh, arguments.rows.factors, arguments.solver, goal,
-                                     arguments.with_irradiance(), observer);
-    if (loaded.has_whole_faces() && !arguments.parts) {
-        loaded.adopt_parts(std::move(found.mesh), begin);
-    } else {
-        loaded.adopt(std::move(found.mesh));
-    }
+    FactorSettings settings = arguments.rows.factors;
+    CutMesh start = has_rows(arguments) ? mesh_of_rows(loaded, arguments.scene, *arguments.factors)
+                                        : CutMesh{coarse_begin(loaded, arguments.scene), loaded.mesh};
+    Refinement found =
+        with_checkpoint(arguments.factors, arguments.rows.resume, terminal, [&](RowCheckpoint* checkpoint) {
+            RefinementRows rows;
+            if (has_rows(arguments)) {
+                rows.begin = rows_to_refine(arguments, loaded.scene, start.mesh, settings);
+            }
+            rows.checkpoint = checkpoint;
+            rows.store = [&](const PatchMesh& mesh, FormFactors& raw) {
+                LoadedScene finer = loaded;
+                finer.adopt(mesh, start.begin, arguments.parts);
+                raw.parts = finer.parts();
+                store_rows(arguments, raw, terminal);
+            };
+            return solve_refined(loaded.scene, start.begin.mesh, settings, arguments.solver, goal,
+                                 arguments.with_irradiance(), observer, std::move(rows));
+        });
+    loaded.adopt(std::move(found.mesh), start.begin, arguments.parts);
     found.factors.parts = loaded.parts();
     seconds["solve"] = found.solution.seconds;
     seconds["refine"] = watch.seconds() - found.solution.seconds;
@@ -249,6 +260,9 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     Seconds seconds(
         {"load", "factors", "repair", "solve", "gather", "estimate", "search", "refine", "render"});
     LoadedScene loaded = load_scene(arguments.scene, terminal);
+    if (arguments.factors && !arguments.refines()) {
+        adopt_mesh_of_rows(loaded, arguments.scene, *arguments.factors, arguments.parts);
+    }
     seconds["load"] = loaded.seconds;
     check_direct(arguments, loaded.scene);
     if (arguments.picture.output) { // tested before the work
@@ -263,7 +277,8 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     Report refinement;
     std::string missed;
     auto [factors, solution] =
-        arguments.refines() ? solve_on_finer_patches(arguments, loaded, observer, seconds, refinement, missed)
+        arguments.refines()
+            ? solve_on_finer_patches(arguments, loaded, observer, terminal, seconds, refinement, missed)
         : arguments.rows.error_target ? solve_to_target(arguments, loaded, observer, terminal, seconds)
                                       : solve(arguments, loaded, observer, terminal, seconds);
     const double max_row_error = arguments.rows.max_row_error;

@@ -104,6 +104,7 @@ FormFactors merge_parts(FormFactors factors) {
     factors.touching.clear();
     factors.reference = FormFactorMatrix(0);
     factors.parts = {};
+    factors.cuts = {};
     return factors;
 }
 

@@ -21,4 +21,9 @@ void RowCheckpoint::discard() noexcept {
     file_->remove();
 }
 
+void RowCheckpoint::start_over() noexcept {
+    file_->start_over();
+    reused_ = 0;
+}
+
 } // namespace hemi

@@ -193,16 +193,14 @@ class Refiner {
 public:
     Refiner(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,
             const SolverSettings& solver, const RefinementGoal& goal, bool with_irradiance,
-            Observer& observer)
+            Observer& observer, RefinementRows rows)
         : scene_(scene), settings_(settings), solver_(solver), goal_(goal), with_irradiance_(with_irradiance),
-          observer_(observer), result_{coarse, {}, {}, {}, {}, {}} {
+          observer_(observer), rows_(std::move(rows)), result_{coarse, {}, {}, {}, {}, {}} {
         settings_.estimate_error = false; // of the rows, until the mesh is the last one
     }
 
     Refinement run() {
-        Refinement::Step step{result_.mesh.size(), result_.mesh.size(), not_known};
-        result_.raw = compute_raw_form_factors(scene_, result_.mesh, all_patches(result_.mesh.size()),
-                                               settings_, observer_);
+        Refinement::Step step = begin();
         solve();
         for (;;) {
             Errors errors = estimate(false);
@@ -246,6 +244,38 @@ private:
             return error <= *goal_.error;
         }
         return result_.mesh.size() >= goal_.patches;
+    }
+
+    Refinement::Step begin() {
+        if (!rows_.begin) {
+            result_.raw = compute(result_.mesh, all_patches(result_.mesh.size()));
+            keep();
+            return {result_.mesh.size(), result_.mesh.size(), not_known};
+        }
+        result_.raw = *std::exchange(rows_.begin, std::nullopt);
+        if (result_.raw.cuts.any()) {
+            result_.mesh = result_.mesh.cut(result_.raw.cuts);
+        }
+        if (result_.raw.geometry_hash != result_.mesh.geometry_hash() || !result_.raw.matrix.all_known()) {
+            throw InvalidArgument("refinement: rows to begin with must be those of all patches of the "
+                                  "coarse mesh, or of one that was cut from it");
+        }
+        return {result_.mesh.size(), 0, not_known};
+    }
+
+    [[nodiscard]] FormFactors compute(const PatchMesh& mesh, std::span<const std::uint32_t> patches) {
+        return compute_raw_form_factors(scene_, mesh, patches, settings_, observer_, rows_.checkpoint);
+    }
+
+    /// Stores the rows of a step, which are complete.
+    void keep() {
+        result_.raw.cuts = result_.mesh.cuts();
+        if (rows_.checkpoint != nullptr) {
+            rows_.checkpoint->start_over();
+        }
+        if (rows_.store) {
+            rows_.store(result_.mesh, result_.raw);
+        }
     }
 
     /// Whether limits allow another step; says why not.
@@ -313,10 +343,13 @@ private:
 
     /// Errors of the form factors and gathered vertices for the mesh as it is now.
     Errors finish() {
-        add_reference_rows(result_.raw, result_.mesh, settings_, observer_);
+        if (result_.raw.reference.entries() == 0) { // else they were stored
+            add_reference_rows(result_.raw, result_.mesh, settings_, observer_);
+            estimate_error(result_.raw);
+            keep();
+        }
         result_.factors.reference = result_.raw.reference;
         estimate_error(result_.factors);
-        result_.raw.error = result_.factors.error;
         result_.solution =
             solve_radiosity(scene_, result_.mesh, result_.factors, solver_, observer_, with_irradiance_);
         gather_at_vertices(scene_, result_.mesh, settings_, goal_.gather, result_.solution, observer_);
@@ -427,7 +460,7 @@ private:
                             memory_text(static_cast<std::uint64_t>(bytes)));
             return {};
         }
-        FormFactors rows = compute_raw_form_factors(scene_, finer.mesh, fresh, settings_, observer_);
+        FormFactors rows = compute(finer.mesh, fresh);
         const bool both = rows.matrix.entries() > 0 && result_.raw.matrix.entries() > 0;
         if (both && rows.matrix.has_visibility() != result_.raw.matrix.has_visibility()) {
             result_.stopped = "memory is short for unoccluded factors of more patches";
@@ -440,6 +473,7 @@ private:
         rows.work.seconds += result_.raw.work.seconds;
         result_.raw = std::move(rows);
         result_.mesh = std::move(finer.mesh);
+        keep();
         return {result_.mesh.size(), fresh.size(), not_known};
     }
 
@@ -449,6 +483,7 @@ private:
     RefinementGoal goal_;
     bool with_irradiance_;
     Observer& observer_;
+    RefinementRows rows_;
     Stopwatch watch_;
     Refinement result_;
 };
@@ -511,7 +546,7 @@ PatchParts parts_of_faces(const PatchMesh& mesh, const CoarseMesh& begin, const 
 
 Refinement solve_refined(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,
                          const SolverSettings& solver, const RefinementGoal& goal, bool with_irradiance,
-                         Observer& observer) {
+                         Observer& observer, RefinementRows rows) {
     if (goal.error_of == ErrorOf::factors || (!goal.error && goal.patches == 0)) {
         throw InvalidArgument("refinement: the goal must be an error that depends on the patches' size, or a "
                               "number of patches",
@@ -520,7 +555,8 @@ Refinement solve_refined(const Scene& scene, const PatchMesh& coarse, const Fact
     if (settings.method != Method::hemicube) {
         throw InvalidArgument("refinement: patches are split with hemicubes only", {"method"});
     }
-    Refinement result = Refiner(scene, coarse, settings, solver, goal, with_irradiance, observer).run();
+    Refinement result =
+        Refiner(scene, coarse, settings, solver, goal, with_irradiance, observer, std::move(rows)).run();
     if (!result.solution.error) { // of form factors that are none
         result.solution.patch_size_error.reset();
     }

@@ -104,7 +104,8 @@ Grid grid_of(Grid cells, const GridPart& part) {
 constexpr std::uint32_t max_grid = 65535;
 
 /// The parts that a part is cut into.
-std::vector<GridPart> cut(bool triangle, Grid cells, const GridPart& part, bool across_u, bool across_v) {
+std::vector<GridPart> cut_part(bool triangle, Grid cells, const GridPart& part, bool across_u,
+                               bool across_v) {
     const Grid grid = grid_of(cells, part);
     const GridPart finer{part.level_u + (across_u ? 1 : 0), part.level_v + (across_v ? 1 : 0), 0};
     if ((across_u && grid.u > max_grid / 2) || (across_v && grid.v > max_grid / 2)) {
@@ -304,6 +305,11 @@ PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
         grids_.push_back(choose_grid(surface, scene, subdivision));
     }
     parts_ = subdivision.parts;
+    check_parts();
+    measure();
+}
+
+void PatchMesh::check_parts() const {
     if (!parts_.empty() && parts_.size() != surfaces_.size()) {
         throw InvalidArgument(
             fmt::format("parts of {} surfaces; the scene has {}", parts_.size(), surfaces_.size()));
@@ -319,7 +325,28 @@ PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
                                               groups_[surfaces_[s].group]));
         }
     }
-    measure();
+}
+
+PatchMesh PatchMesh::cut(const PatchCuts& cuts) const {
+    if (cuts.grids.size() != surfaces_.size()) {
+        throw InvalidArgument(
+            fmt::format("cuts of {} surfaces; the mesh has {}", cuts.grids.size(), surfaces_.size()));
+    }
+    for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
+        const Grid grid = cuts.grids[s];
+        if (grid.u == 0 || grid.v == 0 || (surfaces_[s].vertex_count == 3 && grid.u != grid.v)) {
+            throw InvalidArgument(fmt::format("surface {} cannot be cut into {} x {}", s, grid.u, grid.v));
+        }
+    }
+    PatchMesh mesh;
+    mesh.surfaces_ = surfaces_;
+    mesh.groups_ = groups_;
+    mesh.bounds_ = bounds_;
+    mesh.grids_ = cuts.grids;
+    mesh.parts_ = cuts.parts;
+    mesh.check_parts();
+    mesh.measure();
+    return mesh;
 }
 
 void PatchMesh::measure() {
@@ -402,7 +429,7 @@ SplitMesh PatchMesh::split(std::span<const std::uint32_t> patches, Cut how) cons
             const bool four = triangle || how == Cut::in_four;
             const auto [u, v] = lengths(part_corners(s, old[local]));
             for (const GridPart& part :
-                 cut(triangle, grids_[s], old[local], four || u > 0.51 * v, four || v > 0.51 * u)) {
+                 cut_part(triangle, grids_[s], old[local], four || u > 0.51 * v, four || v > 0.51 * u)) {
                 parts.emplace_back(part, local);
             }
         }

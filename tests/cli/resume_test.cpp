@@ -126,13 +126,39 @@ TEST_CASE("Resume: finished rows are not computed again, and others are", "[cli]
     }
 }
 
+TEST_CASE("Resume: a refinement that was killed goes on to what an undisturbed one comes to", "[cli][slow]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(4));
+    const auto refine = [&](const std::string& file) {
+        return Words{"solve",    scene,  "--device",  "cpu", "--jobs", "2",
+                     "--refine", "3000", "--factors", file,  "-q",     "--resume"};
+    };
+    const auto start = Clock::now();
+    REQUIRE(run_hemi(refine(directory.path("whole.hff"))).status == 0);
+    const std::chrono::duration<double> seconds = Clock::now() - start;
+    std::mt19937 random(11);
+    int killed = 0;
+    for (int round = 0; round < 6; ++round) {
+        killed += kill_at_random(refine(directory.path("a.hff")), seconds, random) ? 1 : 0;
+        if (round % 2 == 1) {
+            const Outcome run = run_hemi(refine(directory.path("a.hff")));
+            INFO(run.err);
+            REQUIRE(run.status == 0);
+            CHECK((directory.read("a.hff") == directory.read("whole.hff")));
+            CHECK(directory.names() == Words{"a.hff", "cube.json", "whole.hff"});
+            std::filesystem::remove(directory.path("a.hff"));
+        }
+    }
+    CHECK(killed > 0);
+}
+
 TEST_CASE("Resume: asks for the file that it goes on with", "[cli]") {
     const Directory directory;
     const std::string scene = directory.write("cube.json", cube(2));
     CHECK(run_hemi({"factors", scene, "--resume"}).status == 2);
     CHECK(run_hemi({"factors", scene, "--resume", "-o", "-"}).status == 2);
     CHECK(run_hemi({"solve", scene, "--resume"}).status == 2);
-    CHECK(
-        run_hemi({"solve", scene, "--resume", "--factors", directory.path("a.hff"), "--error-target", "0.1"})
-            .status == 2);
+    CHECK(run_hemi({"solve", scene, "--resume", "--factors", directory.path("a.hff"), "--error-target", "0.1",
+                    "--error-target-of", "factors"})
+              .status == 2);
 }

@@ -549,8 +549,64 @@ TEST_CASE("solve --error-target: patches are cut until the estimate meets it", "
     CHECK(missed.err_has("is not met"));
     CHECK(directory.has("r.csv"));
     for (const Words& wrong :
-         {Words{"--error-target", "1%", "--factors", directory.path("f.hff")}, Words{"--budget", "1s"},
+         {Words{"--budget", "1s"}, Words{"--resume", "--error-target", "1%"},
           Words{"--error-target-of", "field"}, Words{"--refine", "0"}, Words{"--error-target", "%"}}) {
         CHECK(solve(wrong).status == 2);
     }
+}
+
+TEST_CASE("solve --refine: rows of cut patches are stored, lit again, and cut further", "[cli]") {
+    const Directory directory;
+    Json cube_scene = coloured(2);
+    const std::string scene = directory.write("cube.json", cube_scene);
+    const std::string rows = directory.path("a.hff");
+    const auto solve = [&](Words more) {
+        Words words{"solve", scene, "--device", "cpu", "--json", "--factors", rows};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome run = run_hemi(words);
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        return run.json();
+    };
+    const Json first = solve({"--refine", "300"});
+    const Json again = solve({});
+    CHECK(again["patches"] == first["patches"]);
+    CHECK(again["radiosity"] == first["radiosity"]);
+    CHECK(again["error_estimate"] == first["error_estimate"]);
+    // Other light by the same rows, and other commands.
+    cube_scene["materials"]["white"]["reflectance"] = {0.1, 0.1, 0.1};
+    directory.write("cube.json", cube_scene);
+    CHECK(solve({})["radiosity"] != first["radiosity"]);
+    CHECK(run_hemi({"check", rows, "-q"}).status == 0);
+    directory.write("points.csv", "x,y,z\n0.5,0.5,0.5\n");
+    CHECK(run_hemi({"points", scene, "--points", directory.path("points.csv"), "--factors", rows, "-q", "-o",
+                    directory.path("p.csv")})
+              .status == 0);
+    cube_scene["materials"]["white"]["reflectance"] = {0.7, 0.5, 0.2};
+    directory.write("cube.json", cube_scene);
+    const Json more = solve({"--refine", "500"});
+    CHECK(more["patches"] >= 500);
+    CHECK(more["refinement"]["steps"][0]["patches"] == first["patches"]);
+    CHECK(more["refinement"]["steps"][0]["rows"] == 0);
+    CHECK(solve({})["patches"] == more["patches"]);
+    // Rows of the scene's own patches do as well.
+    std::filesystem::remove(rows);
+    REQUIRE(solve({})["patches"] == 24);
+    const Json own = solve({"--refine", "100"});
+    CHECK(own["refinement"]["steps"][0]["patches"] == 24);
+    CHECK(own["refinement"]["steps"][0]["rows"] == 0);
+    // Rows by other settings, of another scene.
+    const auto refused = [&](const Words& words) {
+        const Outcome run = run_hemi(words);
+        INFO(run.err);
+        CHECK((run.status == 2 || run.status == 3));
+        return run.err;
+    };
+    CHECK(refused({"solve", scene, "--factors", rows, "--refine", "200", "--seed", "5"}).find("--seed 5") !=
+          std::string::npos);
+    Json fewer = cube(2);
+    fewer["surfaces"].erase(0);
+    const std::string other = directory.write("other.json", fewer);
+    CHECK(refused({"solve", other, "--factors", rows, "--refine", "200"}).find("another geometry") !=
+          std::string::npos);
 }

@@ -58,6 +58,7 @@ void require_equal(const FormFactors& a, const FormFactors& b) {
     REQUIRE(a.group_of == b.group_of);
     REQUIRE(a.touching == b.touching);
     REQUIRE(a.parts == b.parts);
+    REQUIRE(a.cuts == b.cuts);
     REQUIRE(a.geometry_hash == b.geometry_hash);
     REQUIRE(a.provenance.preset == b.provenance.preset);
     REQUIRE(a.provenance.exchange_rule == b.provenance.exchange_rule);
@@ -133,6 +134,32 @@ TEST_CASE("HFF: which patches rows are parts of is kept, and must fit", "[io]") 
         file.parts = bad;
         REQUIRE_THROWS_AS(io::write_hff(folder / "b.hff", file), InvalidArgument);
     }
+}
+
+TEST_CASE("HFF: how patches of a refined mesh are cut is kept, and must fit", "[io]") {
+    const Folder folder;
+    FormFactors file = sample(5);
+    for (const PatchCuts& cuts :
+         {PatchCuts{{{2, 1}, {1, 3}}, {}},
+          PatchCuts{{{1, 1}, {1, 1}}, {{{1, 0, 0}, {1, 1, 1}, {1, 1, 3}, {0, 1, 7}}, {}}}}) {
+        file.cuts = cuts;
+        io::write_hff(folder / "a.hff", file);
+        require_equal(file, io::read_hff(folder / "a.hff"));
+        const io::RowsGeometry geometry = io::read_hff_geometry(folder / "a.hff");
+        CHECK(geometry.patches == 5);
+        CHECK(geometry.geometry_hash == file.geometry_hash);
+        CHECK(geometry.cuts == cuts);
+    }
+    const std::string bytes = io::read_file(folder / "a.hff");
+    const auto refusal = [&](int chunk, std::size_t offset, std::uint32_t value) {
+        const auto path = folder.write("bad.hff", with_payload(bytes, chunk, offset, raw(value)));
+        (void)message_of<InputError>([&] { (void)io::read_hff_geometry(path); });
+        return message_of<InputError>([&] { (void)io::read_hff(path); });
+    };
+    require_parts(refusal(4, 8, 6), {"chunk GRID: more cells than the 5 patches"});
+    require_parts(refusal(5, 0, 6), {"chunk CUTS: more parts than the 5 patches"});
+    file.cuts.parts.pop_back();
+    REQUIRE_THROWS_AS(io::write_hff(folder / "b.hff", file), InvalidArgument);
 }
 
 TEST_CASE("HFF: equal content gives equal bytes", "[io]") {

@@ -244,3 +244,37 @@ TEST_CASE("refinement: sizes of patches side by side differ by a factor of two a
     }
     CHECK(largest == Approx(2.0));
 }
+
+TEST_CASE("refinement: goes on from stored rows to the bits of an undisturbed one", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(3, 1);
+    const PatchMesh coarse(scene);
+    RefinementGoal goal;
+    goal.patches = 150;
+    std::vector<FormFactors> kept;
+    RefinementRows rows;
+    rows.store = [&kept](const PatchMesh& mesh, FormFactors& raw) {
+        REQUIRE(raw.geometry_hash == mesh.geometry_hash());
+        REQUIRE(raw.cuts == mesh.cuts());
+        kept.push_back(raw);
+    };
+    const FactorSettings settings = settings_of(Preset::fast);
+    const Refinement whole = solve_refined(scene, coarse, settings, {}, goal, false, no_observer(), rows);
+    REQUIRE(kept.size() == whole.steps.size() + 1); // with the sample of better rows in the end
+    REQUIRE(whole.steps.size() > 2);
+    for (const std::size_t step : {std::size_t{0}, std::size_t{1}, kept.size() - 1}) {
+        RefinementRows from;
+        from.begin = kept[step];
+        const Refinement again = solve_refined(scene, coarse, settings, {}, goal, false, no_observer(), from);
+        CHECK(again.mesh.geometry_hash() == whole.mesh.geometry_hash());
+        CHECK(again.steps.front().rows == 0);
+        CHECK(again.solution.radiosity == whole.solution.radiosity);
+        CHECK(again.raw.reference.entries() == whole.raw.reference.entries());
+    }
+    // They are whole: a later solution of that mesh needs nothing else.
+    CHECK(coarse.cut(kept.back().cuts).geometry_hash() == whole.mesh.geometry_hash());
+    RefinementRows wrong;
+    wrong.begin = kept[1];
+    wrong.begin->cuts = {};
+    CHECK_THROWS_AS(solve_refined(scene, coarse, settings, {}, goal, false, no_observer(), wrong),
+                    InvalidArgument);
+}

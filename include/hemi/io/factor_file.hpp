@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/diagnostics.hpp"
+#include "hemi/core/patch_cuts.hpp"
 #include "hemi/matrix/form_factors.hpp"
 
 #include <cstdint>
@@ -22,6 +23,16 @@ void write_hff(const std::filesystem::path& path, const FormFactors& file);
 /// @throws InputError for anything that is not a sound `.hff`: every length, offset, index and checksum is
 /// tested.
 [[nodiscard]] FormFactors read_hff(const std::filesystem::path& path);
+
+/// Which patches the rows of a `.hff` are of.
+struct RowsGeometry {
+    std::uint32_t patches = 0;       ///< number of rows
+    std::uint64_t geometry_hash = 0; ///< PatchMesh::geometry_hash
+    PatchCuts cuts;                  ///< as FormFactors::cuts
+};
+/// Reads the beginning of a `.hff`, without any row.
+/// @throws InputError
+[[nodiscard]] RowsGeometry read_hff_geometry(const std::filesystem::path& path);
 
 /// Matrix Market, `coordinate real general`, 1-based, entry (i, j) = F(i, j); 9 significant digits.
 void write_mtx(const std::filesystem::path& path, const FormFactorMatrix& factors);

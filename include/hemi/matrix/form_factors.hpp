@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/enclosure.hpp"
+#include "hemi/core/patch_cuts.hpp"
 #include "hemi/core/patch_parts.hpp"
 #include "hemi/matrix/error_estimate.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
@@ -38,6 +39,8 @@ struct FormFactors {
     std::vector<std::uint32_t> touching;
     /// Where rows are those of parts: which patches these are parts of. See merge_parts().
     PatchParts parts;
+    /// How the patches of rows that a refinement came to were cut, see solve_refined(); else nothing.
+    PatchCuts cuts;
     std::uint64_t geometry_hash = 0;            ///< PatchMesh::geometry_hash of what the rows belong to
     Enclosure enclosure = Enclosure::automatic; ///< as the scene said
     Provenance provenance;                      ///< what made the rows

@@ -35,6 +35,8 @@ public:
     [[nodiscard]] std::uint64_t reused() const noexcept { return reused_; }
     /// The output is complete: removes the file.
     void discard() noexcept;
+    /// The same where rows of another mesh come next, which are to be kept as well.
+    void start_over() noexcept;
 
 private:
     template <class Row>

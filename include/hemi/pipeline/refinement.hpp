@@ -2,6 +2,7 @@
 
 #include "hemi/core/names.hpp"
 #include "hemi/core/patch_parts.hpp"
+#include "hemi/pipeline/checkpoint.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/settings.hpp"
@@ -11,6 +12,7 @@
 #include "hemi/solver/solver.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,6 +62,16 @@ struct Refinement {
     std::string stopped;     ///< why the error is not met, a sentence; empty: it is, or none was asked for
 };
 
+/// Rows that a refinement begins with, and that outlast it.
+struct RefinementRows {
+    /// Raw rows of all patches of the coarse mesh or, by FormFactors::cuts, of one that was cut from it.
+    std::optional<FormFactors> begin{};
+    RowCheckpoint* checkpoint = nullptr; ///< keeps rows of a step that is not complete
+    /// Is given the rows of every step when they are complete, to be stored; with FormFactors::cuts, by which
+    /// a later refinement goes on from them.
+    std::function<void(const PatchMesh&, FormFactors&)> store{};
+};
+
 /// A mesh to begin with.
 struct CoarseMesh {
     PatchMesh mesh;    ///< the patches
@@ -94,8 +106,9 @@ struct CoarseMesh {
 /// @param goal             when it ends
 /// @param with_irradiance  see solve_radiosity()
 /// @param observer         gets progress and may cancel
-/// @throws InvalidArgument if nothing in the scene reflects, if the goal is factors or nothing at all, or if
-/// the
+/// @param rows             to begin with, and what becomes of those that are computed
+/// @throws InvalidArgument if rows to begin with are not those of all patches; if nothing in the scene
+/// reflects, if the goal is factors or nothing at all, or if the
 ///   method is no hemicube; as compute_form_factors and solve_radiosity
 /// Source: M. F. Cohen, D. P. Greenberg, D. S. Immel, P. J. Brock, "An Efficient Radiosity Approach for
 /// Realistic Image Synthesis", IEEE CG&A 6, 1986; D. Lischinski, B. Smits, D. P. Greenberg, "Bounds and Error
@@ -103,6 +116,6 @@ struct CoarseMesh {
 [[nodiscard]] Refinement solve_refined(const Scene& scene, const PatchMesh& coarse,
                                        const FactorSettings& settings, const SolverSettings& solver,
                                        const RefinementGoal& goal, bool with_irradiance = false,
-                                       Observer& observer = no_observer());
+                                       Observer& observer = no_observer(), RefinementRows rows = {});
 
 } // namespace hemi

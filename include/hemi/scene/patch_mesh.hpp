@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/geometry.hpp"
+#include "hemi/core/patch_cuts.hpp"
 #include "hemi/scene/scene.hpp"
 
 #include <cstdint>
@@ -10,23 +11,11 @@
 
 namespace hemi {
 
-/// A patch of a surface whose patches differ in size: a cell of the grid that is 2^level_u x 2^level_v times
-/// as fine as the surface's own.
-struct GridPart {
-    std::uint32_t level_u = 0; ///< halvings along u
-    std::uint32_t level_v = 0; ///< halvings along v; of a triangle as many
-    std::uint32_t cell = 0;    ///< of that grid, numbered as the patches of a surface with this grid
-
-    bool operator==(const GridPart&) const = default; ///< member by member
-};
-
 /// How surfaces are cut into patches, over the scene's own wishes.
 struct Subdivision {
     std::optional<double> patch_size;              ///< Longest patch edge, scene units.
     std::optional<std::uint32_t> patches_per_face; ///< About so many: k x k with the smallest k² >= N.
-    /// Of every surface the patches that its grid is cut into, which fill it once; empty of a surface whose
-    /// patches are the cells of its grid; nothing at all where all surfaces are such.
-    std::vector<std::vector<GridPart>> parts{};
+    std::vector<std::vector<GridPart>> parts{};    ///< As PatchCuts::parts.
 
     bool operator==(const Subdivision&) const = default; ///< member by member
 };
@@ -101,6 +90,12 @@ public:
     }
     /// Those of all surfaces, as Subdivision has them.
     [[nodiscard]] const std::vector<std::vector<GridPart>>& parts() const noexcept { return parts_; }
+    /// How all surfaces are cut.
+    [[nodiscard]] PatchCuts cuts() const { return {grids_, parts_}; }
+    /// The same surfaces cut otherwise.
+    /// @throws InvalidArgument if the cuts are of another number of surfaces, a grid has no cell, parts do
+    /// not fill their surfaces, or for 2^31 patches or more
+    [[nodiscard]] PatchMesh cut(const PatchCuts& cuts) const;
     /// Corners of a part of surface `s`, counter-clockwise about the front.
     [[nodiscard]] PatchCorners part_corners(std::uint32_t s, const GridPart& part) const;
     /// First patch of surface `s`; `s` may equal the number of surfaces (then: size()).
@@ -131,6 +126,7 @@ public:
 
 private:
     PatchMesh() = default;
+    void check_parts() const;
     void measure();
     [[nodiscard]] PatchCorners local_corners(std::uint32_t s, std::uint32_t local) const;
 

@@ -3,6 +3,7 @@
 #include "hemi/core/enclosure.hpp"
 #include "hemi/core/geometry.hpp"
 #include "hemi/core/names.hpp"
+#include "hemi/core/patch_cuts.hpp"
 
 #include <array>
 #include <cstdint>
@@ -30,14 +31,6 @@ struct Material {
 /// @param table   not empty
 /// @param kelvin  temperature
 [[nodiscard]] double emissivity_at(std::span<const std::array<double, 2>> table, double kelvin);
-
-/// Number of patches along the two directions of a surface.
-struct Grid {
-    std::uint32_t u = 1; ///< along vertex 0 -> vertex 1
-    std::uint32_t v = 1; ///< along vertex 0 -> vertex 3 (quadrilateral); equal to u for a triangle
-
-    bool operator==(const Grid&) const = default; ///< member by member
-};
 
 /// What is known of the heat of some surfaces: one of temperature, heat flux and power.
 struct HeatCondition {

@@ -210,7 +210,8 @@ void add_resume(CLI::App& app, RowOptions& rows, CLI::Option* output) {
               fmt::format("with {}: resume from the rows that an interrupted run left in FILE.rows",
                           output->get_name()));
     auto* resume = app.get_option("--resume")->needs(output);
-    if (auto* target = app.get_option_no_throw("--error-target")) {
+    if (auto* target = app.get_option_no_throw("--error-target");
+        target != nullptr && rows.error_of == ErrorOf::factors) {
         resume->excludes(target);
     }
 }
@@ -266,7 +267,8 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     auto* picture = output.path("-o,--output", "PICTURE", a.picture.output,
                                 "picture: .png or .hdr; - for .png on stdout");
     auto* factors = output.path("--factors", "FILE.hff", a.factors,
-                                "use these form factors if the file exists, else write them there");
+                                "use these form factors if the file exists, else write them there; patches "
+                                "that are cut go on from it, and it gets their rows");
     add_resume(app, a.rows, factors);
     output.path("--result", "FILE.hres", a.result, "the whole solution, for `hemi render` and `hemi view`");
     output.path("--radiosity", "FILE.csv", a.radiosity,

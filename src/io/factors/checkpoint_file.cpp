@@ -12,11 +12,11 @@
 #include <cstring>
 #include <fcntl.h>
 #include <optional>
-#include <set>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 namespace hemi::io {
 
@@ -41,29 +41,37 @@ CheckpointKey read_key(ChunkReader& reader) {
     return key;
 }
 
-/// Puts the next block into `rows` if it is sound, all its rows are known, and it is the first of its place.
-/// @return its first row and the end of its rows
-std::optional<std::pair<std::uint32_t, std::uint32_t>> next_block(ChunkReader& reader, FormFactorMatrix& rows,
-                                                                  std::set<std::uint32_t>& seen) {
+/// Puts the next block into `rows` if it is sound and none of its known rows was there before.
+/// @return these rows, ascending
+std::vector<std::uint32_t> next_block(ChunkReader& reader, FormFactorMatrix& rows, std::vector<bool>& seen) {
+    std::vector<std::uint32_t> known;
     try {
         Payload payload = reader.chunk("ROWS");
         RowBlock block = take_row_block(payload);
-        const std::uint32_t first = block.first_row;
-        const std::uint32_t count = block.rows();
-        const bool whole = std::find(block.known.begin(), block.known.end(), 0) == block.known.end();
-        rows.set_block(std::move(block));
-        if (whole && seen.insert(first).second) {
-            return std::pair(first, first + count);
+        for (std::uint32_t r = 0; r < block.rows(); ++r) {
+            if (block.known[r] != 0) {
+                known.push_back(block.first_row + r);
+            }
         }
+        rows.set_block(std::move(block));
     } catch (const InputError&) {
+        return {};
     } catch (const InvalidArgument&) {
+        return {};
     }
-    return {}; // cut short, or damaged: from here on nothing is certain
+    if (std::any_of(known.begin(), known.end(), [&seen](std::uint32_t row) { return seen[row]; })) {
+        return {};
+    }
+    for (const std::uint32_t row : known) {
+        seen[row] = true;
+    }
+    return known;
 }
 
-/// Sets the block back to unknown rows.
-void forget(FormFactorMatrix& rows, std::uint32_t first, std::uint32_t end) {
-    const std::size_t count = end - first;
+/// Sets the block that a row is in back to unknown rows.
+void forget(FormFactorMatrix& rows, std::uint32_t row) {
+    const std::uint32_t first = row - row % FormFactorMatrix::block_rows;
+    const std::size_t count = std::min(FormFactorMatrix::block_rows, rows.size() - first);
     RowBlock unknown;
     unknown.first_row = first;
     unknown.begin.assign(count + 1, 0);
@@ -134,19 +142,18 @@ void CheckpointFile::start(const CheckpointKey& key, std::uint32_t size,
             }
         }
         FormFactorMatrix rows(size);
-        std::set<std::uint32_t> seen;
+        std::vector<bool> seen(size, false);
         for (;;) {
             sound = reader->position();
-            const auto block = next_block(*reader, rows, seen);
-            if (!block) {
+            const std::vector<std::uint32_t> known = next_block(*reader, rows, seen);
+            if (known.empty()) { // cut short, or damaged: from here on nothing is certain
                 break;
             }
-            const auto [first, end] = *block;
-            for (std::uint32_t patch = first; patch < end; ++patch) {
+            for (const std::uint32_t patch : known) {
                 each(patch, rows.row(patch));
             }
-            rows_ += end - first;
-            forget(rows, first, end);
+            rows_ += known.size();
+            forget(rows, known[0]);
         }
     }
     if (sound == 0) {
@@ -182,7 +189,7 @@ void CheckpointFile::append(const RowBlock& block) {
     // The disk begins now, while rows are computed, and not when the output is made safe, which would wait
     // for all of this too. What is on the disk need not stay in memory.
     ::posix_fadvise(descriptor_, 0, 0, POSIX_FADV_DONTNEED);
-    rows_ += block.rows();
+    rows_ += static_cast<std::uint64_t>(std::count(block.known.begin(), block.known.end(), 1));
 }
 
 void CheckpointFile::remove() noexcept {
@@ -192,6 +199,12 @@ void CheckpointFile::remove() noexcept {
     }
     rows_ = 0;
     usable_ = false;
+}
+
+void CheckpointFile::start_over() noexcept {
+    const bool usable = usable_;
+    remove();
+    usable_ = usable;
 }
 
 void CheckpointFile::write(const void* data, std::size_t bytes) {

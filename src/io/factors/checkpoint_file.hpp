@@ -40,7 +40,7 @@ public:
     void start(const CheckpointKey& key, std::uint32_t size,
                const std::function<void(std::uint32_t, const RowView&)>& each);
 
-    /// @param block  all of whose rows are known
+    /// @param block  of which rows are known that were not kept before
     /// @throws IoError, for example when the disk is full; the checkpoint is then gone, and keeps nothing
     /// more.
     void append(const RowBlock& block);
@@ -50,6 +50,8 @@ public:
 
     /// The output is complete: removes the checkpoint.
     void remove() noexcept;
+    /// The same, and another one may be started, unless none could be.
+    void start_over() noexcept;
 
 private:
     void write(const void* data, std::size_t bytes);

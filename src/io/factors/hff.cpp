@@ -3,6 +3,7 @@
 #include "io/factors/row_block_chunk.hpp"
 #include "io/formats/chunk_file.hpp"
 #include "io/formats/json_node.hpp"
+#include "io/formats/patch_cuts_chunk.hpp"
 #include "io/formats/text_scan.hpp"
 
 #include <fmt/format.h>
@@ -55,6 +56,10 @@ Json header(const FormFactors& file) {
     if (file.parts.any()) {
         head["patches"] = file.parts.patches();
     }
+    if (file.cuts.any()) {
+        head["cut_surfaces"] = file.cuts.grids.size();
+        head["cut_into_parts"] = !file.cuts.parts.empty();
+    }
     if (file.error) {
         const FactorErrorEstimate& error = *file.error;
         head["error"] = {{"sampled", error.sampled},
@@ -85,6 +90,10 @@ void check(const FormFactors& file) {
         throw InvalidArgument(fmt::format("{} parts of {} patches for {} rows; must be one for each, and "
                                           "every patch must have a group",
                                           parts.patch_of.size(), parts.patches(), size));
+    }
+    if (!file.cuts.parts.empty() && file.cuts.parts.size() != file.cuts.grids.size()) {
+        throw InvalidArgument(fmt::format("grids of {} surfaces, and parts of {}", file.cuts.grids.size(),
+                                          file.cuts.parts.size()));
     }
     const bool has_reference = !known_blocks(file.reference).empty();
     if ((has_reference && file.reference.size() != size) || (file.error && file.error->rows.size() != size)) {
@@ -139,6 +148,8 @@ FactorErrorEstimate read_error(const JsonNode& node) {
 struct Layout {
     std::vector<std::uint32_t> reference_blocks; ///< their first rows
     std::optional<std::uint32_t> patches;        ///< that rows are parts of
+    std::uint64_t cut_surfaces = 0;              ///< of a refined mesh
+    bool cut_into_parts = false;                 ///< whether patches of these differ in size
 };
 
 /// Everything but the rows. The matrix is made only after the file proved long enough for that many.
@@ -178,6 +189,10 @@ Layout read_header(ChunkReader& reader, FormFactors& file) {
     if (head.has("patches")) {
         layout.patches = integer32(head.member("patches"));
     }
+    if (head.has("cut_surfaces")) {
+        layout.cut_surfaces = integer32(head.member("cut_surfaces"));
+        layout.cut_into_parts = head.member("cut_into_parts").boolean();
+    }
     std::vector<std::uint32_t>& reference_blocks = layout.reference_blocks;
     const JsonNode blocks = head.member("reference_blocks");
     for (std::size_t k = 0; k < blocks.size(); ++k) {
@@ -214,7 +229,7 @@ void read_groups(ChunkReader& reader, FormFactors& file) {
 }
 
 /// @param patches  that rows are parts of
-void read_parts(ChunkReader& reader, std::uint32_t patches, FormFactors& file) {
+void read_whose_parts(ChunkReader& reader, std::uint32_t patches, FormFactors& file) {
     Payload parts = reader.chunk("PART");
     const auto take = [&](std::size_t count, std::size_t below, const char* what) {
         std::vector<std::uint32_t> indices = parts.take_array<std::uint32_t>(count);
@@ -230,6 +245,23 @@ void read_parts(ChunkReader& reader, std::uint32_t patches, FormFactors& file) {
     parts.expect_end();
 }
 
+/// How the patches of a refined mesh are cut; whether it fits a scene is seen with the scene.
+void read_cuts(ChunkReader& reader, const Layout& layout, FormFactors& file) {
+    Payload grids = reader.chunk("GRID");
+    file.cuts.grids = grids.take_array<Grid>(layout.cut_surfaces);
+    grids.expect_end();
+    std::uint64_t cells = 0; // what a mesh of them needs must not exceed what the file shows
+    for (const Grid& grid : file.cuts.grids) {
+        cells += std::min(std::uint64_t{grid.u} * grid.v, std::uint64_t{file.matrix.size()} + 1);
+    }
+    if (cells > file.matrix.size()) {
+        grids.fail(fmt::format("more cells than the {} patches", file.matrix.size()));
+    }
+    if (layout.cut_into_parts) {
+        file.cuts.parts = read_parts(reader.chunk("CUTS"), layout.cut_surfaces, file.matrix.size());
+    }
+}
+
 void read_touching(ChunkReader& reader, FormFactors& file) {
     Payload touching = reader.chunk("CONT");
     const auto count = touching.take<std::uint32_t>();
@@ -241,6 +273,20 @@ void read_touching(ChunkReader& reader, FormFactors& file) {
                                       file.touching[k], file.matrix.size()));
         }
     }
+}
+
+/// All that comes before the rows.
+Layout read_beginning(ChunkReader& reader, FormFactors& file) {
+    const Layout layout = read_header(reader, file);
+    read_groups(reader, file);
+    read_touching(reader, file);
+    if (layout.patches) {
+        read_whose_parts(reader, *layout.patches, file);
+    }
+    if (layout.cut_surfaces > 0) {
+        read_cuts(reader, layout, file);
+    }
+    return layout;
 }
 
 void read_block(ChunkReader& reader, std::string_view tag, FormFactorMatrix& factors,
@@ -281,6 +327,12 @@ void write_hff(const std::filesystem::path& path, const FormFactors& file) {
     if (file.parts.any()) {
         writer.chunk("PART", {bytes_of(file.parts.patch_of), bytes_of(file.parts.group_of)});
     }
+    if (file.cuts.any()) {
+        writer.chunk("GRID", {bytes_of(file.cuts.grids)});
+    }
+    if (!file.cuts.parts.empty()) {
+        writer.chunk("CUTS", {bytes_of(stored_parts(file.cuts.parts))});
+    }
     for (const RowBlock& block : file.matrix.blocks()) {
         write_row_block(writer.sink(), "ROWS", block);
     }
@@ -297,12 +349,7 @@ void write_hff(const std::filesystem::path& path, const FormFactors& file) {
 FormFactors read_hff(const std::filesystem::path& path) {
     ChunkReader reader(path, hff_format);
     FormFactors file;
-    const Layout layout = read_header(reader, file);
-    read_groups(reader, file);
-    read_touching(reader, file);
-    if (layout.patches) {
-        read_parts(reader, *layout.patches, file);
-    }
+    const Layout layout = read_beginning(reader, file);
     for (std::uint32_t row = 0; row < file.matrix.size();) {
         read_block(reader, "ROWS", file.matrix, row);
         row += std::min(FormFactorMatrix::block_rows, file.matrix.size() - row);
@@ -315,6 +362,13 @@ FormFactors read_hff(const std::filesystem::path& path) {
     }
     reader.finish();
     return file;
+}
+
+RowsGeometry read_hff_geometry(const std::filesystem::path& path) {
+    ChunkReader reader(path, hff_format);
+    FormFactors file;
+    (void)read_beginning(reader, file);
+    return {file.matrix.size(), file.geometry_hash, std::move(file.cuts)};
 }
 
 } // namespace hemi::io

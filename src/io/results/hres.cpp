@@ -2,6 +2,7 @@
 #include "hemi/io/result_file.hpp"
 #include "io/formats/chunk_file.hpp"
 #include "io/formats/json_node.hpp"
+#include "io/formats/patch_cuts_chunk.hpp"
 
 #include <fmt/format.h>
 
@@ -294,43 +295,6 @@ Surface scene_surface(const StoredSurface& stored) {
     return surface;
 }
 
-/// Numbers of parts of all surfaces, and then the parts: three numbers each.
-std::vector<std::uint32_t> stored_parts(const PatchMesh& mesh) {
-    std::vector<std::uint32_t> numbers;
-    for (const auto& parts : mesh.parts()) {
-        numbers.push_back(static_cast<std::uint32_t>(parts.size()));
-    }
-    for (const auto& parts : mesh.parts()) {
-        for (const GridPart& part : parts) {
-            numbers.insert(numbers.end(), {part.level_u, part.level_v, part.cell});
-        }
-    }
-    return numbers;
-}
-
-void read_parts(Payload payload, const Sizes& sizes, Subdivision& subdivision) {
-    std::uint64_t all = 0;
-    const std::vector<std::uint32_t> counts = payload.take_array<std::uint32_t>(sizes.surfaces);
-    for (const std::uint32_t count : counts) {
-        all += count;
-        if (all > sizes.patches) {
-            payload.fail(fmt::format("more parts than the {} patches of the solution", sizes.patches));
-        }
-    }
-    const std::vector<std::uint32_t> numbers = payload.take_array<std::uint32_t>(3 * all);
-    for (const std::uint32_t count : counts) {
-        subdivision.parts.emplace_back(count);
-    }
-    std::size_t next = 0;
-    for (auto& parts : subdivision.parts) {
-        for (GridPart& part : parts) {
-            part = {numbers[next], numbers[next + 1], numbers[next + 2]};
-            next += 3;
-        }
-    }
-    payload.expect_end();
-}
-
 /// @param count    of the surfaces
 /// @param patches  that they have together
 std::vector<Surface> read_surfaces(Payload payload, std::uint64_t count, std::uint64_t all_patches,
@@ -431,7 +395,7 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     ChunkWriter writer(path, hres_format);
     writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh, as_read)))});
     if (!mesh.parts().empty()) {
-        writer.chunk("PART", {bytes_of(stored_parts(mesh))});
+        writer.chunk("PART", {bytes_of(stored_parts(mesh.parts()))});
     }
     writer.chunk("SURF", {bytes_of(stored_surfaces(mesh))});
     if (as_read) {
@@ -466,7 +430,7 @@ ResultFile read_hres(const std::filesystem::path& path) {
     const Sizes sizes = read_header(JsonNode(document, reader.file()), result);
     check_patch_size(result, [&reader](const std::string& what) { reader.fail(what); });
     if (sizes.parts) {
-        read_parts(reader.chunk("PART"), sizes, result.subdivision);
+        result.subdivision.parts = read_parts(reader.chunk("PART"), sizes.surfaces, sizes.patches);
     }
     result.scene.surfaces =
         read_surfaces(reader.chunk("SURF"), sizes.surfaces, sizes.patches, result.subdivision);
