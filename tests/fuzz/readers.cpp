@@ -84,6 +84,8 @@ void seed_hff(const fs::path& folder) {
     file.reference = small_matrix(true);
     file.error = FactorErrorEstimate{2, 1e-5, 1e-3, 1e-4, 1e-2, {0.1, 0.2}};
     io::write_hff(folder / "judged.hff", file);
+    file.cuts = {{{1, 1}}, {{{1, 0, 0}, {1, 0, 1}}}};
+    io::write_hff(folder / "cut.hff", file);
 }
 
 void seed_hres(const fs::path& folder) {
