@@ -29,8 +29,8 @@ namespace {
 /// Options that say how to begin: a command line that draws what the window shows has its own.
 const std::vector<std::string>& window_options() {
     static const std::vector<std::string> names{
-        "--size",  "--camera",   "--flat",    "--exposure", "--tone-mapping", "--orthographic",
-        "--backs", "--outlines", "--samples", "--script",   "--controls",     "--up"};
+        "--size",     "--camera",  "--flat",   "--exposure", "--tone-mapping", "--orthographic", "--backs",
+        "--outlines", "--samples", "--script", "--controls", "--up",           "--show"};
     return names;
 }
 
@@ -89,6 +89,9 @@ private:
         viewer::ViewerInput input;
         input.file = path;
         input.show = channels_to_show(scene->channels, options.show);
+        if (!options.show.empty()) {
+            input.show_option = " --show " + viewer::quoted(fmt::format("{}", fmt::join(options.show, ",")));
+        }
         input.camera = choose_camera(*scene, *mesh, options);
         input.picture = picture_settings(options);
         input.automatic_exposure = !options.exposure;
@@ -135,9 +138,6 @@ private:
             describe(path, scene, std::make_shared<const PatchMesh>(*scene, result.subdivision),
                      std::move(result.solution));
         input.command = "hemi render " + viewer::quoted(path.string());
-        if (!arguments_.picture.show.empty()) {
-            input.command += fmt::format(" --show {}", fmt::join(arguments_.picture.show, ","));
-        }
         return input;
     }
 
@@ -151,9 +151,7 @@ ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
     check_display();
     const std::filesystem::path& path = arguments.scene.path;
     if (extension_of(path) == ".hres") {
-        std::vector<std::string> allowed = window_options();
-        allowed.emplace_back("--show");
-        refuse_all_but(arguments.common, allowed, path);
+        refuse_all_but(arguments.common, window_options(), path);
     }
     const ViewSource source(arguments, terminal);
     viewer::ViewerSettings settings;

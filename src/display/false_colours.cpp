@@ -1,5 +1,6 @@
 #include "hemi/display/false_colours.hpp"
 
+#include "display/false_colour_scale.hpp"
 #include "display/legend.hpp"
 #include "display/painted.hpp"
 #include "hemi/core/error.hpp"
@@ -32,7 +33,8 @@ std::optional<std::array<double, 2>> extent_of(const std::vector<double>& values
     return low <= high ? std::optional(std::array{low, high}) : std::nullopt;
 }
 
-/// From the lowest value to the highest, or as was asked for; about a single value, where there is no other.
+} // namespace
+
 ColourScale scale_of(const FalseColours& shown) {
     constexpr double decades = 1e-3; // what a logarithmic scale spans
     const auto extent = extent_of(shown.values);
@@ -74,7 +76,19 @@ ColourScale scale_of(const FalseColours& shown) {
     return scale;
 }
 
-} // namespace
+std::string legend_title(const FalseColours& shown, const char* grey) {
+    const bool has_none =
+        std::any_of(shown.values.begin(), shown.values.end(), [](double value) { return std::isnan(value); });
+    return shown.title + (shown.unit.empty() ? "" : "  [" + shown.unit + "]") +
+           (has_none ? fmt::format("; grey: {}", grey) : "");
+}
+
+std::array<bool, 2> values_beyond(const FalseColours& shown, const ColourScale& scale) {
+    const auto extent = extent_of(shown.values);
+    constexpr double rounding = 1e-9;
+    const double slack = rounding * (scale.high - scale.low);
+    return {extent && (*extent)[0] < scale.low - slack, extent && (*extent)[1] > scale.high + slack};
+}
 
 Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, const Camera& camera,
                            const PictureSettings& settings, const std::string& device) {
@@ -91,17 +105,8 @@ Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, con
     Picture picture = draw_picture(
         painted(make_picture_mesh(mesh, 1, dark, {}, {0, 0, 0}), value_colours(shown.values, scale, mesh)),
         camera, plain, device);
-    std::string title = shown.title + (shown.unit.empty() ? "" : "  [" + shown.unit + "]");
-    const bool has_none =
-        std::any_of(shown.values.begin(), shown.values.end(), [](double value) { return std::isnan(value); });
-    title += has_none ? "; grey: not known" : "";
     if (shown.legend) {
-        const auto extent = extent_of(shown.values);
-        constexpr double rounding = 1e-9;
-        const double slack = rounding * (scale.high - scale.low);
-        draw_legend(
-            picture, scale, title,
-            {extent && (*extent)[0] < scale.low - slack, extent && (*extent)[1] > scale.high + slack});
+        draw_legend(picture, scale, legend_title(shown, "not known"), values_beyond(shown, scale));
     }
     return picture;
 }

@@ -97,6 +97,38 @@ std::optional<std::array<double, 2>> range_of_lit(const std::vector<double>& rad
 
 } // namespace
 
+const char* title_of(Quantity quantity) {
+    switch (quantity) {
+    case Quantity::radiosity:
+        return "Radiosity";
+    case Quantity::irradiance:
+        return "Irradiance";
+    case Quantity::direct:
+        return "Direct irradiance";
+    case Quantity::exitance:
+        return "Exitance";
+    case Quantity::reflectance:
+        return "Reflectance";
+    case Quantity::emissivity:
+        return "Emissivity";
+    case Quantity::environment:
+        return "Share of the environment";
+    case Quantity::blocked:
+        return "Share of backs";
+    case Quantity::row_error:
+        return "Row sum less 1";
+    case Quantity::error:
+        return "Estimated error of the radiosity";
+    case Quantity::error_factors:
+        return "Error by form factors";
+    case Quantity::error_patch_size:
+        return "Error by patch size";
+    case Quantity::area:
+        return "Area";
+    }
+    return "";
+}
+
 bool needs_all_rows(Quantity quantity) {
     return quantity == Quantity::irradiance || quantity == Quantity::environment ||
            quantity == Quantity::blocked || quantity == Quantity::row_error;
@@ -120,10 +152,11 @@ FalseColours patch_quantity(Quantity quantity, const Scene& scene, const PatchMe
     }
     const std::string of = scene.channels.size() == 1 ? "" : ", " + channel;
     const std::string flux = flux_density_unit(scene);
+    const std::string title = title_of(quantity);
     FalseColours shown;
-    const auto shares = [&](const char* title, const std::vector<double>& share) {
+    const auto shares = [&](const std::vector<double>& share) {
         if (share.size() != mesh.size()) {
-            missing(title, "is not stored with this solution");
+            missing(title.c_str(), "is not stored with this solution");
         }
         shown = {share, title, ""};
         for (std::uint32_t i = 0; i < mesh.size(); ++i) {
@@ -134,59 +167,58 @@ FalseColours patch_quantity(Quantity quantity, const Scene& scene, const PatchMe
     };
     switch (quantity) {
     case Quantity::radiosity:
-        shown = {one_value(solution.radiosity, weights), "Radiosity" + of, flux};
+        shown = {one_value(solution.radiosity, weights), title + of, flux};
         break;
     case Quantity::irradiance:
         if (solution.irradiance.size() != values) {
             missing("irradiance", "is not known; `solve --result` stores it");
         }
-        shown = {one_value(solution.irradiance, weights), "Irradiance" + of, irradiance_unit(scene)};
+        shown = {one_value(solution.irradiance, weights), title + of, irradiance_unit(scene)};
         break;
     case Quantity::direct:
         if (solution.direct.size() != values) {
             missing("direct irradiance", "there is neither sun nor sky");
         }
-        shown = {one_value(solution.direct, weights), "Direct irradiance" + of, irradiance_unit(scene)};
+        shown = {one_value(solution.direct, weights), title + of, irradiance_unit(scene)};
         break;
     case Quantity::exitance:
-        shown = {one_value(solution.exitance, weights), "Exitance" + of, flux};
+        shown = {one_value(solution.exitance, weights), title + of, flux};
         break;
     case Quantity::reflectance:
     case Quantity::emissivity:
-        shown = {one_value(patch_values(mesh, scene.materials, &Material::reflectance), weights),
-                 (quantity == Quantity::reflectance ? "Reflectance" : "Emissivity") + of, ""};
+        shown = {one_value(patch_values(mesh, scene.materials, &Material::reflectance), weights), title + of,
+                 ""};
         for (double& value : shown.values) {
             value = quantity == Quantity::emissivity ? 1.0 - value : value;
         }
         break;
     case Quantity::environment:
-        shares("Share of the environment", solution.environment_share);
+        shares(solution.environment_share);
         break;
     case Quantity::blocked:
-        shares("Share of backs", solution.back_face_share);
+        shares(solution.back_face_share);
         break;
     case Quantity::row_error:
-        shares("Row sum less 1", solution.row_sum);
+        shares(solution.row_sum);
         for (std::uint32_t i = 0; i < mesh.size(); ++i) {
             shown.values[i] += solution.environment_share[i] + solution.back_face_share[i] - 1.0;
         }
         break;
     case Quantity::error:
-        shown = {one_error(radiosity_errors(solution), weights), "Estimated error of the radiosity" + of,
-                 flux};
+        shown = {one_error(radiosity_errors(solution), weights), title + of, flux};
         break;
     case Quantity::error_factors:
         shown = {one_error(solution.error ? solution.error->patches : std::vector<double>(), weights),
-                 "Error by form factors" + of, flux};
+                 title + of, flux};
         break;
     case Quantity::error_patch_size:
         shown = {
             one_error(solution.patch_size_error ? solution.patch_size_error->patches : std::vector<double>(),
                       weights),
-            "Error by patch size" + of, flux};
+            title + of, flux};
         break;
     case Quantity::area:
-        shown = {{mesh.areas().begin(), mesh.areas().end()}, "Area", "units²"};
+        shown = {{mesh.areas().begin(), mesh.areas().end()}, title, "units²"};
         break;
     }
     if (shown.values.size() != mesh.size()) {

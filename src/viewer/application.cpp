@@ -69,9 +69,9 @@ void Application::exchange(ViewerInput input) {
     inset_.reset();
     document_.reset(); // whose threads end first
     document_ = std::make_unique<Document>(std::move(input), factor_cache_, Window::wake);
-    const auto channels = document_->input().channels();
-    if (choices_.look.channel && *choices_.look.channel >= channels) {
-        choices_.look.channel.reset();
+    const std::vector<std::string> channels = channel_choices(document_->input().scene->channels);
+    if (std::find(channels.begin(), channels.end(), choices_.look.channel) == channels.end()) {
+        choices_.look.channel = Look().channel;
     }
     saved_result_.clear();
     shown_look_.reset();
@@ -310,8 +310,8 @@ std::array<std::uint32_t, 2> Application::view_size() const {
 void Application::settle() {
     const ViewerInput& input = document_->input();
     navigator_.set_view(view_size());
-    if (why_not(choices_.look.quantity, input, choices_.picked) != nullptr) {
-        choices_.look.quantity = Quantity::picture;
+    if (why_not(choices_.look.shown, input, choices_.picked) != nullptr) {
+        choices_.look.shown = {};
     }
     document_->set_materials(choices_.materials);
     const bool other_patch = shown_pick_ != choices_.picked;
@@ -322,8 +322,8 @@ void Application::settle() {
     if (!other_patch && !other_look && !other_order && !other_hemicube) {
         return;
     }
-    const Quantity quantity = choices_.look.quantity;
-    const bool of_patch = quantity == Quantity::row || quantity == Quantity::column;
+    const View shown = choices_.look.shown.view;
+    const bool of_patch = shown == View::row || shown == View::column;
     if (other_look || (other_patch && of_patch)) {
         view_.show(*document_, choices_.look, choices_.picked);
         picture_changed_ = true;
@@ -333,7 +333,7 @@ void Application::settle() {
         picked_ = PickedPatch{*choices_.picked, {}};
         if (input.factors != nullptr) {
             picked_->partners =
-                largest_partners(input, document_->light(), *choices_.picked, quantity == Quantity::column,
+                largest_partners(input, document_->light(), *choices_.picked, shown == View::column,
                                  choices_.partners_by_light, partner_count);
         }
     }
@@ -381,7 +381,7 @@ void Application::describe_panels() {
     const PatchMesh& mesh = *document_->input().mesh;
     gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
     if (view[0] < size[0]) {
-        side_panel({*document_, picked_, navigator_.camera(), note_, status_}, size, choices_);
+        side_panel({*document_, picked_, navigator_.camera(), view_.field(), note_, status_}, size, choices_);
     }
     if (view[0] > 0 && view[1] > 0) {
         if (choices_.pointed_at) {
@@ -537,8 +537,9 @@ void Application::save_result(const std::filesystem::path& path) {
 }
 
 std::string Application::command_line() const {
-    if (choices_.look.quantity != Quantity::picture) {
-        throw InvalidArgument("a command line draws nothing but the light: choose that first (V)");
+    const Look& look = choices_.look;
+    if (look.shown.view != View::picture && look.shown.view != View::quantity) {
+        throw InvalidArgument("a command line draws the light or a quantity: choose one first (V)");
     }
     std::string command = document_->input().command;
     if (!saved_result_.empty()) {
@@ -551,8 +552,9 @@ std::string Application::command_line() const {
         picture_settings(choices_.look, document_->input().picture,
                          document_->exposure() * std::exp2(choices_.look.stops), view_size());
     picture.samples = choices_.samples;
+    command += look.shown.view == View::quantity ? quantity_options(look) : document_->input().show_option;
     return command + " -o " + quoted(document_->input().file.stem().string() + ".png") +
-           picture_options(picture, navigator_.camera());
+           picture_options(picture, navigator_.camera(), look.shown.view == View::picture);
 }
 
 } // namespace hemi::viewer

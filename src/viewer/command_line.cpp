@@ -6,13 +6,23 @@
 
 namespace hemi::viewer {
 
-std::string picture_options(const PictureSettings& settings, const Camera& camera) {
+std::string quantity_options(const Look& look) {
+    std::string text = fmt::format(" --show {} --channel {} --map {}", to_word(look.shown.quantity),
+                                   quoted(look.channel), to_word(look.map));
+    text += look.range ? fmt::format(" --range {},{}", (*look.range)[0], (*look.range)[1]) : "";
+    text += look.logarithmic ? " --log" : "";
+    return text;
+}
+
+std::string picture_options(const PictureSettings& settings, const Camera& camera, bool lit) {
     const auto point = [](const Vec3& p) { return fmt::format("{},{},{}", p.x, p.y, p.z); };
     std::string text = fmt::format(" --size {}x{} --camera {}:{}:{}:{}", settings.width, settings.height,
                                    point(camera.eye), point(camera.target), point(camera.up), camera.fov);
-    text += fmt::format(" --exposure {} --tone-mapping {}", settings.exposure,
-                        settings.tone_mapping == ToneMapping::filmic ? "filmic" : "linear");
-    text += settings.shading == Shading::flat ? " --flat" : "";
+    if (lit) {
+        text += fmt::format(" --exposure {} --tone-mapping {}", settings.exposure,
+                            settings.tone_mapping == ToneMapping::filmic ? "filmic" : "linear");
+        text += settings.shading == Shading::flat ? " --flat" : "";
+    }
     text += camera.orthographic ? " --orthographic" : "";
     text += settings.outlines ? " --outlines" : "";
     text += settings.backs ? " --backs" : "";

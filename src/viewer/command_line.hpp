@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/display/picture.hpp"
+#include "viewer/look.hpp"
 
 #include <string>
 
@@ -8,7 +9,10 @@ namespace hemi::viewer {
 
 /// The options of `hemi render` for a picture and a camera, each with a blank before it. The numbers read
 /// back to the same bits.
-[[nodiscard]] std::string picture_options(const PictureSettings& settings, const Camera& camera);
+/// @param lit  whether light is drawn, and not false colours
+[[nodiscard]] std::string picture_options(const PictureSettings& settings, const Camera& camera, bool lit);
+/// Those for a quantity and its colours.
+[[nodiscard]] std::string quantity_options(const Look& look);
 
 /// A word as a shell takes it: in quotes where it needs them.
 [[nodiscard]] std::string quoted(const std::string& word);

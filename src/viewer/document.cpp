@@ -259,21 +259,27 @@ const char* Document::unsavable_reason() const {
     return solved_ ? nullptr : "the light is not solved yet";
 }
 
+Lit Document::lit(bool irradiance) const {
+    Lit lit{*input_.scene, input_.solution};
+    lit.scene.materials = materials_;
+    lit.solution.radiosity = light_.radiosity;
+    lit.solution.exitance = light_.exitance;
+    lit.solution.vertex_radiosity = light_.vertices;
+    if (irradiance && input_.factors != nullptr) {
+        lit.solution.irradiance =
+            hemi::irradiance({&input_.factors->matrix, input_.channels(), light_.reflectance, light_.exitance,
+                              lit.scene.environment, input_.mesh->areas(), lit.solution.direct},
+                             light_.radiosity);
+    }
+    return lit;
+}
+
 void Document::save_result(const std::filesystem::path& path) {
     if (const char* reason = unsavable_reason()) {
         throw InvalidArgument(fmt::format("saving the result: {}", reason));
     }
-    Scene scene = *input_.scene;
-    scene.materials = materials_;
-    Solution solution = input_.solution;
+    auto [scene, solution] = lit(true);
     const Solution& found = solved_->solution;
-    solution.radiosity = light_.radiosity;
-    solution.exitance = light_.exitance;
-    solution.vertex_radiosity = light_.vertices;
-    solution.irradiance =
-        irradiance({&input_.factors->matrix, input_.channels(), light_.reflectance, light_.exitance,
-                    scene.environment, input_.mesh->areas(), solution.direct},
-                   light_.radiosity);
     solution.method = found.method;
     solution.sweeps = found.sweeps;
     solution.residual = found.residual;

@@ -36,6 +36,9 @@ public:
     [[nodiscard]] const PictureMesh& light_mesh() const { return light_mesh_; }
     /// Where stops count from.
     [[nodiscard]] double exposure() const { return exposure_; }
+    /// The scene with its materials and its light as they stand.
+    /// @param irradiance  with that, which takes a product with all form factors
+    [[nodiscard]] Lit lit(bool irradiance) const;
     /// Median of the rows' largest factors, see usual_largest_factor().
     [[nodiscard]] double usual_factor() const { return usual_factor_; }
     /// Whether there is no light yet but that of the lamps by themselves.

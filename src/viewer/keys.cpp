@@ -1,6 +1,7 @@
 #include "viewer/keys.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace hemi::viewer {
 
@@ -9,25 +10,37 @@ namespace {
 /// One press of E, stops.
 constexpr double exposure_step = 1.0 / 3.0;
 
-void next_quantity(bool back, const ViewerInput& input, Choices& choices) {
-    const auto names = quantity_names();
-    const auto now = std::find_if(names.begin(), names.end(), [&choices](const QuantityName& name) {
-        return name.quantity == choices.look.quantity;
+void next_shown(bool back, const ViewerInput& input, Choices& choices) {
+    const auto names = shown_names();
+    const auto now = std::find_if(names.begin(), names.end(), [&choices](const ShownName& name) {
+        return name.shown == choices.look.shown;
     });
     const std::size_t step = back ? names.size() - 1 : 1;
     std::size_t next = static_cast<std::size_t>(now - names.begin());
     do {
         next = (next + step) % names.size();
-    } while (why_not(names[next].quantity, input, choices.picked) != nullptr);
-    choices.look.quantity = names[next].quantity;
+    } while (why_not(names[next].shown, input, choices.picked) != nullptr);
+    choices.look.shown = names[next].shown;
 }
 
 void next_heat_map(const ViewerInput& input, Choices& choices) {
-    Quantity& quantity = choices.look.quantity;
-    const Quantity next = quantity == Quantity::row
-                              ? Quantity::column
-                              : (quantity == Quantity::column ? Quantity::picture : Quantity::row);
-    quantity = why_not(next, input, choices.picked) == nullptr ? next : Quantity::picture;
+    const View now = choices.look.shown.view;
+    const Shown next{now == View::row ? View::column : (now == View::column ? View::picture : View::row)};
+    choices.look.shown = why_not(next, input, choices.picked) == nullptr ? next : Shown{};
+}
+
+/// The scale of what is shown, whether it is of quantities or of factors.
+bool& logarithmic_of(Look& look) {
+    const bool of_factors = look.shown.view == View::row || look.shown.view == View::column;
+    return of_factors ? look.logarithmic_factors : look.logarithmic;
+}
+
+void next_map(bool back, ColourMap& map) {
+    const auto& table = Names<ColourMap>::table;
+    const auto now = std::find_if(std::begin(table), std::end(table),
+                                  [map](const auto& known) { return known.value == map; });
+    const std::size_t step = back ? std::size(table) - 1 : 1;
+    map = table[(static_cast<std::size_t>(now - std::begin(table)) + step) % std::size(table)].value;
 }
 
 } // namespace
@@ -50,6 +63,7 @@ std::vector<GuideLine> guide(Controls controls) {
                                {"H", "heat map of the picked patch: row of F, column, none"},
                                {"C", "hemicube of the picked patch"},
                                {"L", "linear or logarithmic scale"},
+                               {"M, shift + M", "next colour map, previous one"},
                                {"S", "Gouraud or flat"},
                                {"W", "patch outlines"},
                                {"B", "back faces: striped, or seen through"},
@@ -100,12 +114,12 @@ bool apply_look_key(const KeyEvent& event, const ViewerInput& input, Choices& ch
     } else if (event.key == 'B') {
         look.backs = !look.backs;
     } else if (event.key == 'L') {
-        bool& logarithmic = look.quantity == Quantity::row || look.quantity == Quantity::column
-                                ? look.logarithmic_factors
-                                : look.logarithmic;
+        bool& logarithmic = logarithmic_of(look);
         logarithmic = !logarithmic;
+    } else if (event.key == 'M') {
+        next_map(event.shift, look.map);
     } else if (event.key == 'V') {
-        next_quantity(event.shift, input, choices);
+        next_shown(event.shift, input, choices);
     } else if (event.key == 'H') {
         next_heat_map(input, choices);
     } else {

@@ -1,7 +1,7 @@
 #include "viewer/look.hpp"
 
+#include "display/false_colour_scale.hpp"
 #include "display/painted.hpp"
-#include "hemi/scene/light_unit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,175 +11,146 @@ namespace hemi::viewer {
 
 namespace {
 
-constexpr std::array<QuantityName, 12> names{
-    {{Quantity::picture, "picture", "Light"},
-     {Quantity::outlines, "outlines", "Patch wireframe"},
-     {Quantity::items, "items", "Item ids"},
-     {Quantity::radiosity, "radiosity", "Radiosity, false colour"},
-     {Quantity::reflectance, "reflectance", "Reflectance"},
-     {Quantity::exitance, "exitance", "Exitance"},
-     {Quantity::row_error, "row-error", "Form factors: row-sum error"},
-     {Quantity::estimated_error, "error", "Radiosity: estimated error"},
-     {Quantity::factor_error, "error-factors", "Estimated error: form factors"},
-     {Quantity::patch_size_error, "error-patch-size", "Estimated error: patch size"},
-     {Quantity::row, "row", "Picked patch: row of F"},
-     {Quantity::column, "column", "Picked patch: column of F"}}};
+/// The window's own before and after the quantities.
+std::vector<ShownName> all_names() {
+    std::vector<ShownName> names{{{View::picture}, "picture", "Light"},
+                                 {{View::outlines}, "outlines", "Patch wireframe"},
+                                 {{View::items}, "items", "Item ids"}};
+    for (const NamedValue<Quantity>& known : Names<Quantity>::table) {
+        names.push_back({{View::quantity, known.value}, known.word, title_of(known.value)});
+    }
+    names.push_back({{View::row}, "row", "Picked patch: row of F"});
+    names.push_back({{View::column}, "column", "Picked patch: column of F"});
+    return names;
+}
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-/// Logarithmic scales span so much.
-constexpr double radiosity_range = 1e-3;
+/// Logarithmic scales of factors span so much.
 constexpr double factor_range = 1e-4;
 
-/// One channel of N·channels, or the mean over them.
-std::vector<double> one_channel(std::span<const double> values, std::uint32_t channels,
-                                std::optional<std::uint32_t> channel) {
-    std::vector<double> result(values.size() / channels);
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        const auto of_patch = values.subspan(i * channels, channels);
-        if (channel) {
-            result[i] = of_patch[*channel];
-            continue;
-        }
-        for (const double value : of_patch) {
-            result[i] += value / channels;
-        }
-    }
-    return result;
-}
-
-double largest(std::span<const double> values) {
-    double result = 0.0;
-    for (const double value : values) {
-        result = value > result ? value : result;
-    }
-    return result;
-}
-
-ColourScale scale_to(double high, bool logarithmic, double range) {
-    const double top = high > 0.0 ? round_up(high) : 1.0;
-    return {logarithmic ? top * range : 0.0, top, logarithmic};
-}
-
-/// Lamps and the spots of light beside them outshine all else: the scale ends where nearly all surfaces
-/// without exitance do.
-double most_reflected(const std::vector<double>& radiosity, const std::vector<double>& exitance) {
-    std::vector<double> reflected;
-    for (std::size_t i = 0; i < radiosity.size(); ++i) {
-        if (!(exitance[i] > 0.0)) {
-            reflected.push_back(radiosity[i]);
+/// Any look can be shown: a logarithmic scale begins above 0, or is none.
+ColourScale shown_scale(FalseColours& shown) {
+    if (shown.logarithmic) {
+        constexpr double decades = 1e-3;
+        const auto highest = [&shown] {
+            double high = 0.0;
+            for (const double value : shown.values) {
+                high = value > high ? value : high;
+            }
+            return shown.range ? (*shown.range)[1] : high;
+        }();
+        shown.logarithmic = highest > 0.0;
+        if (shown.range && !((*shown.range)[0] > 0.0)) {
+            (*shown.range)[0] = decades * highest;
         }
     }
-    if (reflected.empty()) {
-        return largest(radiosity);
-    }
-    const std::size_t place = (reflected.size() - 1) * 98 / 100;
-    std::nth_element(reflected.begin(), reflected.begin() + static_cast<std::ptrdiff_t>(place),
-                     reflected.end());
-    return reflected[place] > 0.0 ? reflected[place] : largest(reflected);
-}
-
-std::string channel_text(const ViewerInput& input, const Look& look) {
-    if (input.channels() == 1) {
-        return "";
-    }
-    return look.channel ? ", " + input.scene->channels[*look.channel] : ", mean of channels";
-}
-
-/// Estimated errors of the patches, and what they are called.
-struct Error {
-    std::string title;
-    std::vector<double> values;
-};
-std::optional<Error> error_of(Quantity quantity, const Solution& solution) {
-    switch (quantity) {
-    case Quantity::estimated_error:
-        return Error{solution.patch_size_error ? "Estimated error" : "Error from form factors alone",
-                     radiosity_errors(solution)};
-    case Quantity::factor_error:
-        return Error{"Error from form factors", solution.error->patches};
-    case Quantity::patch_size_error:
-        return Error{"Error from patch size", solution.patch_size_error->patches};
-    default:
-        return std::nullopt;
-    }
-}
-
-Field light_field(const Look& look, const ViewerInput& input, const Light& light) {
-    const auto take = [&](const std::vector<double>& values) {
-        return one_channel(values, input.channels(), look.channel);
-    };
-    const std::string channel = channel_text(input, look);
-    const std::string unit = flux_density_unit(*input.scene);
-    if (look.quantity == Quantity::reflectance) {
-        return {"Reflectance" + channel, "", take(light.reflectance), {0.0, 1.0, false}};
-    }
-    if (look.quantity == Quantity::exitance) {
-        Field field{"Exitance" + channel, unit, take(light.exitance), {}};
-        field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
-        return field;
-    }
-    if (const std::optional<Error> error = error_of(look.quantity, input.solution)) {
-        Field field{error->title + channel, unit, take(error->values), {}};
-        field.scale = scale_to(largest(field.values), look.logarithmic, radiosity_range);
-        return field;
-    }
-    Field field{"Radiosity" + channel, unit, take(light.radiosity), {}, "not known"};
-    field.scale =
-        scale_to(most_reflected(field.values, take(light.exitance)), look.logarithmic, radiosity_range);
-    for (std::uint32_t i = 0; i < field.values.size(); ++i) {
-        field.values[i] = light.knows(i) ? field.values[i] : none;
-    }
-    return field;
-}
-
-Field row_error_field(const ViewerInput& input) {
-    Field field{"Row of F: |sum + e + b - 1|", "", {}, {1e-8, 1e-2, true}};
-    for (std::size_t i = 0; i < input.solution.row_sum.size(); ++i) {
-        field.values.push_back(std::abs(input.solution.row_sum[i] + input.solution.environment_share[i] +
-                                        input.solution.back_face_share[i] - 1.0));
-    }
-    return field;
+    return scale_of(shown);
 }
 
 } // namespace
 
-std::span<const QuantityName> quantity_names() {
+std::span<const ShownName> shown_names() {
+    static const std::vector<ShownName> names = all_names();
     return names;
 }
 
-std::optional<Quantity> quantity_by_word(std::string_view word) {
-    const auto found = std::find_if(names.begin(), names.end(),
-                                    [word](const QuantityName& name) { return name.word == word; });
-    return found == names.end() ? std::nullopt : std::optional(found->quantity);
+std::optional<Shown> shown_by_word(std::string_view word) {
+    const auto names = shown_names();
+    const auto found =
+        std::find_if(names.begin(), names.end(), [word](const ShownName& name) { return name.word == word; });
+    return found == names.end() ? std::nullopt : std::optional(found->shown);
 }
 
-const char* quantity_title(Quantity quantity) {
-    return std::find_if(names.begin(), names.end(),
-                        [quantity](const QuantityName& name) { return name.quantity == quantity; })
-        ->title;
+const ShownName& name_of(const Shown& shown) {
+    const auto names = shown_names();
+    return *std::find_if(names.begin(), names.end(),
+                         [&shown](const ShownName& name) { return name.shown == shown; });
 }
 
-const char* why_not(Quantity quantity, const ViewerInput& input, std::optional<std::uint32_t> picked) {
-    const bool of_factors = quantity == Quantity::estimated_error || quantity == Quantity::factor_error;
-    if (of_factors && !input.solution.error) {
-        return "no errors were estimated of this light";
-    }
-    if (quantity == Quantity::patch_size_error && !input.solution.patch_size_error) {
-        return "estimated by `hemi solve`: open its result";
-    }
-    if (quantity == Quantity::row_error && input.solution.row_sum.empty()) {
-        return "needs form factors";
-    }
-    if (quantity == Quantity::row || quantity == Quantity::column) {
+const char* why_not(const Shown& shown, const ViewerInput& input, std::optional<std::uint32_t> picked) {
+    const Solution& solution = input.solution;
+    if (shown.view == View::row || shown.view == View::column) {
         if (input.factors == nullptr) {
             return input.factor_settings ? "not computed"
                                          : "a stored solution has no form factors; open the scene instead";
         }
-        if (!picked) {
-            return "click a patch first";
-        }
+        return picked ? nullptr : "click a patch first";
+    }
+    if (shown.view != View::quantity) {
+        return nullptr;
+    }
+    switch (shown.quantity) {
+    case Quantity::error:
+    case Quantity::error_factors:
+        return solution.error ? nullptr : "no errors were estimated of this light";
+    case Quantity::error_patch_size:
+        return solution.patch_size_error ? nullptr : "estimated by `hemi solve`: open its result";
+    case Quantity::environment:
+    case Quantity::blocked:
+    case Quantity::row_error:
+        return solution.row_sum.empty() ? "needs form factors" : nullptr;
+    case Quantity::irradiance:
+        return input.factors == nullptr && solution.irradiance.empty() ? "needs form factors" : nullptr;
+    case Quantity::direct:
+        return solution.direct.empty() ? "there is neither sun nor sky" : nullptr;
+    case Quantity::radiosity:
+    case Quantity::exitance:
+    case Quantity::reflectance:
+    case Quantity::emissivity:
+    case Quantity::area:
+        break;
     }
     return nullptr;
+}
+
+std::vector<std::string> channel_choices(const std::vector<std::string>& channels) {
+    std::vector<std::string> choices{"mean", "sum"};
+    const auto has = [&channels](const char* name) {
+        return std::find(channels.begin(), channels.end(), name) != channels.end();
+    };
+    if (has("red") && has("green") && has("blue")) {
+        choices.emplace_back("luminance");
+    }
+    for (const std::string& channel : channels) {
+        if (std::find(choices.begin(), choices.end(), channel) == choices.end()) {
+            choices.push_back(channel);
+        }
+    }
+    return choices;
+}
+
+Field quantity_field(const Look& look, const PatchMesh& mesh, const Lit& lit, const Light& light) {
+    const Quantity quantity = look.shown.quantity;
+    Field field{patch_quantity(quantity, lit.scene, mesh, lit.solution, look.channel), {}};
+    if (quantity == Quantity::radiosity || quantity == Quantity::irradiance) {
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            field.shown.values[i] = light.knows(i) ? field.shown.values[i] : none;
+        }
+    }
+    field.shown.map = look.map;
+    field.shown.logarithmic = look.logarithmic;
+    if (look.range) {
+        field.shown.range = look.range;
+    }
+    field.scale = shown_scale(field.shown);
+    return field;
+}
+
+Field factor_field(const Look& look, const FormFactorMatrix& factors, std::uint32_t picked,
+                   double usual_factor) {
+    const bool row = look.shown.view == View::row;
+    Field field{
+        {row ? factors_from(factors, picked) : factors_to(factors, picked),
+         row ? "F(i, j), i picked: leaves i, arrives at j" : "F(j, i), i picked: leaves j, arrives at i", ""},
+        {},
+        "0"};
+    std::replace(field.shown.values.begin(), field.shown.values.end(), 0.0, none);
+    const double top = usual_factor > 0.0 ? round_up(usual_factor) : 1.0;
+    field.shown.range = {look.logarithmic_factors ? top * factor_range : 0.0, top};
+    field.shown.logarithmic = look.logarithmic_factors;
+    field.shown.map = look.map;
+    field.scale = shown_scale(field.shown);
+    return field;
 }
 
 double usual_largest_factor(const FormFactorMatrix& factors) {
@@ -221,37 +192,6 @@ std::vector<double> factors_to(const FormFactorMatrix& factors, std::uint32_t pa
     return result;
 }
 
-std::optional<Field> make_field(const Look& look, const ViewerInput& input, const Light& light,
-                                std::optional<std::uint32_t> picked, double usual_factor) {
-    switch (look.quantity) {
-    case Quantity::picture:
-    case Quantity::outlines:
-    case Quantity::items:
-        return std::nullopt;
-    case Quantity::row_error:
-        return row_error_field(input);
-    case Quantity::row:
-    case Quantity::column: {
-        const bool row = look.quantity == Quantity::row;
-        Field field{
-            row ? "F(i, j), i picked: leaves i, arrives at j" : "F(j, i), i picked: leaves j, arrives at i",
-            "",
-            row ? factors_from(input.factors->matrix, *picked) : factors_to(input.factors->matrix, *picked),
-            scale_to(usual_factor, look.logarithmic_factors, factor_range)};
-        std::replace(field.values.begin(), field.values.end(), 0.0, none);
-        return field;
-    }
-    case Quantity::radiosity:
-    case Quantity::reflectance:
-    case Quantity::exitance:
-    case Quantity::estimated_error:
-    case Quantity::factor_error:
-    case Quantity::patch_size_error:
-        break;
-    }
-    return light_field(look, input, light);
-}
-
 std::vector<std::array<float, 3>> item_colours(const PatchMesh& mesh) {
     std::vector<std::array<float, 3>> colours;
     colours.reserve(mesh.size());
@@ -286,11 +226,11 @@ PictureSettings picture_settings(const Look& look, const PictureSettings& first,
     settings.exposure = exposure;
     settings.outlines = look.outlines;
     settings.backs = look.backs;
-    if (look.quantity != Quantity::picture) {
+    if (look.shown.view != View::picture) {
         settings.shading = Shading::flat;
         settings.tone_mapping = ToneMapping::linear;
         settings.exposure = 1.0;
-        settings.outlines = look.outlines || look.quantity == Quantity::outlines;
+        settings.outlines = look.outlines || look.shown.view == View::outlines;
     }
     return settings;
 }

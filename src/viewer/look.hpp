@@ -1,7 +1,10 @@
 #pragma once
 
 #include "display/colour_scale.hpp"
+#include "hemi/display/colour_map.hpp"
+#include "hemi/display/false_colours.hpp"
 #include "hemi/display/picture.hpp"
+#include "hemi/pipeline/quantities.hpp"
 #include "viewer/viewer.hpp"
 
 #include <array>
@@ -14,38 +17,42 @@
 
 namespace hemi::viewer {
 
-/// What the window shows of every patch.
-enum class Quantity {
+/// What the window shows.
+enum class View {
     picture, ///< light, as `hemi render` draws it
     outlines,
     items,
-    radiosity,
-    reflectance,
-    exitance,
-    row_error,
-    estimated_error,
-    factor_error, ///< the part of it that the form factors bring
-    patch_size_error,
-    row,    ///< F(i, j) of the picked patch i, at j
-    column, ///< F(j, i), at j
+    quantity, ///< what is known of every patch, as `hemi render --show` draws it
+    row,      ///< F(i, j) of the picked patch i, at j
+    column,   ///< F(j, i), at j
 };
 
-struct QuantityName {
-    Quantity quantity;
-    const char* word;  ///< in scripts
-    const char* title; ///< in the panel
+/// One of the things that the window shows.
+struct Shown {
+    View view = View::picture;
+    Quantity quantity = Quantity::radiosity; ///< of View::quantity; as it is here of the others
+
+    bool operator==(const Shown&) const = default;
+};
+
+struct ShownName {
+    Shown shown;
+    std::string_view word; ///< in scripts
+    const char* title;     ///< in the panel
 };
 /// All of them, in the panel's order.
-[[nodiscard]] std::span<const QuantityName> quantity_names();
-[[nodiscard]] std::optional<Quantity> quantity_by_word(std::string_view word);
-[[nodiscard]] const char* quantity_title(Quantity quantity);
+[[nodiscard]] std::span<const ShownName> shown_names();
+[[nodiscard]] std::optional<Shown> shown_by_word(std::string_view word);
+[[nodiscard]] const ShownName& name_of(const Shown& shown);
 
 /// How the scene is shown; two equal ones give equal pictures.
 struct Look {
-    Quantity quantity = Quantity::picture;
-    std::optional<std::uint32_t> channel; ///< of false colours; none: the mean over channels
-    bool logarithmic = false;             ///< false colours of radiosity and exitance
-    bool logarithmic_factors = true;      ///< false colours of form factors
+    Shown shown;
+    std::string channel = "mean";               ///< of quantities, as patch_quantity() takes it
+    ColourMap map = ColourMap::viridis;         ///< of false colours
+    std::optional<std::array<double, 2>> range; ///< of quantities' scales; none: as values ask for
+    bool logarithmic = false;                   ///< false colours of quantities
+    bool logarithmic_factors = true;            ///< false colours of form factors
     Shading shading = Shading::gouraud;
     ToneMapping tone_mapping = ToneMapping::filmic;
     double stops = 0.0; ///< exposure over the one at the start, powers of two
@@ -66,23 +73,33 @@ struct Light {
     [[nodiscard]] bool knows(std::uint32_t patch) const { return known.empty() || known[patch] != 0; }
 };
 
-/// One value a patch, NaN where there is none, and the scale that it is shown by.
+/// One value a patch, and the scale that it is shown by.
 struct Field {
-    std::string title;
-    std::string unit;
-    std::vector<double> values;
+    FalseColours shown;
     ColourScale scale;
-    const char* grey = "0"; ///< what it means that there is none
+    const char* grey = "not known"; ///< what it means that there is none
 };
 
-/// Why a quantity cannot be shown of this input; null if it can.
-[[nodiscard]] const char* why_not(Quantity quantity, const ViewerInput& input,
+/// Why something cannot be shown of this input; null if it can.
+[[nodiscard]] const char* why_not(const Shown& shown, const ViewerInput& input,
                                   std::optional<std::uint32_t> picked);
 
-/// The field that `look` shows; nothing for what is no field: the picture, outlines, items.
-/// @param usual_factor  scales of rows and columns end there, whichever patch is picked
-[[nodiscard]] std::optional<Field> make_field(const Look& look, const ViewerInput& input, const Light& light,
-                                              std::optional<std::uint32_t> picked, double usual_factor);
+/// Channels that quantities may be of: the mean, the sum, the luminance where there is one, and each.
+[[nodiscard]] std::vector<std::string> channel_choices(const std::vector<std::string>& channels);
+
+/// The scene and its light as they stand.
+struct Lit {
+    Scene scene;
+    Solution solution;
+};
+/// A quantity of patches.
+/// @param light  says of which patches the radiosity is known
+[[nodiscard]] Field quantity_field(const Look& look, const PatchMesh& mesh, const Lit& lit,
+                                   const Light& light);
+/// A row or a column of form factors.
+/// @param usual_factor  scales end there, whichever patch is picked
+[[nodiscard]] Field factor_field(const Look& look, const FormFactorMatrix& factors, std::uint32_t picked,
+                                 double usual_factor);
 /// Median over the rows of their largest factor: few are far above it, where patches touch.
 [[nodiscard]] double usual_largest_factor(const FormFactorMatrix& factors);
 

@@ -1,5 +1,6 @@
 #include "viewer/overlays.hpp"
 
+#include "display/false_colour_scale.hpp"
 #include "viewer/keys.hpp"
 #include "viewer/widgets.hpp"
 
@@ -26,10 +27,7 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
     const ImVec2 origin{margin, static_cast<float>(view[1]) - margin - height};
     list->AddRectFilled(origin, {origin.x + width, origin.y + height}, IM_COL32(22, 24, 26, 225), 3.0F);
     const ImU32 ink = IM_COL32(235, 235, 235, 255);
-    const bool has_none =
-        std::any_of(field.values.begin(), field.values.end(), [](double v) { return std::isnan(v); });
-    const std::string title = field.title + (has_none ? fmt::format("; grey: {}", field.grey) : "") +
-                              (field.unit.empty() ? "" : "  [" + field.unit + "]");
+    const std::string title = legend_title(field.shown, field.grey);
     list->AddText({origin.x + pad, origin.y + pad - 2.0F}, ink, title.c_str());
 
     const float left = origin.x + pad + 14.0F;
@@ -59,6 +57,14 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
         const std::string words = fmt::format("{:.3g}", mark);
         const float half = 0.5F * ImGui::CalcTextSize(words.c_str()).x;
         list->AddText({x - half, bottom + 4.0F}, ink, words.c_str());
+    }
+    const std::array<bool, 2> beyond = values_beyond(field.shown, field.scale);
+    const float middle = 0.5F * (top + bottom - line_height);
+    if (beyond[0]) {
+        list->AddText({left - 12.0F, middle}, ink, "<");
+    }
+    if (beyond[1]) {
+        list->AddText({right + 5.0F, middle}, ink, ">");
     }
 }
 

@@ -42,17 +42,16 @@ bool heading(const char* name) {
     return ImGui::CollapsingHeader(name, ImGuiTreeNodeFlags_DefaultOpen);
 }
 
-void quantity_combo(const PanelContent& content, Choices& choices) {
+void shown_combo(const PanelContent& content, Choices& choices) {
     ImGui::SetNextItemWidth(-1.0F);
-    if (!ImGui::BeginCombo("##quantity", quantity_title(choices.look.quantity),
-                           ImGuiComboFlags_HeightLarge)) {
+    if (!ImGui::BeginCombo("##quantity", name_of(choices.look.shown).title, ImGuiComboFlags_HeightLargest)) {
         return;
     }
-    for (const QuantityName& name : quantity_names()) {
-        const char* problem = why_not(name.quantity, content.document.input(), choices.picked);
+    for (const ShownName& name : shown_names()) {
+        const char* problem = why_not(name.shown, content.document.input(), choices.picked);
         const ImGuiSelectableFlags flags = problem != nullptr ? ImGuiSelectableFlags_Disabled : 0;
-        if (ImGui::Selectable(name.title, name.quantity == choices.look.quantity, flags)) {
-            choices.look.quantity = name.quantity;
+        if (ImGui::Selectable(name.title, name.shown == choices.look.shown, flags)) {
+            choices.look.shown = name.shown;
         }
         if (problem != nullptr && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
             ImGui::SetTooltip("%s", problem);
@@ -65,18 +64,48 @@ void channel_choice(const ViewerInput& input, Look& look) {
     if (input.channels() == 1) {
         return;
     }
-    const std::string shown = look.channel ? input.scene->channels[*look.channel] : "mean of channels";
     ImGui::SetNextItemWidth(-1.0F);
-    if (ImGui::BeginCombo("##channel", shown.c_str())) {
-        if (ImGui::Selectable("mean of channels", !look.channel)) {
-            look.channel.reset();
-        }
-        for (std::uint32_t c = 0; c < input.channels(); ++c) {
-            if (ImGui::Selectable(input.scene->channels[c].c_str(), look.channel == c)) {
-                look.channel = c;
+    if (ImGui::BeginCombo("##channel", ("channel: " + look.channel).c_str())) {
+        for (const std::string& channel : channel_choices(input.scene->channels)) {
+            if (ImGui::Selectable(channel.c_str(), channel == look.channel)) {
+                look.channel = channel;
             }
         }
         ImGui::EndCombo();
+    }
+}
+
+void map_choice(Look& look) {
+    ImGui::SetNextItemWidth(-1.0F);
+    if (ImGui::BeginCombo("##map", ("colours: " + std::string(to_word(look.map))).c_str())) {
+        for (const NamedValue<ColourMap>& known : Names<ColourMap>::table) {
+            if (ImGui::Selectable(std::string(known.word).c_str(), known.value == look.map)) {
+                look.map = known.value;
+            }
+        }
+        ImGui::EndCombo();
+    }
+}
+
+/// @param field  what is shown now
+void range_choice(const Field& field, Look& look) {
+    bool own = look.range.has_value();
+    if (ImGui::Checkbox("range", &own)) {
+        look.range = own ? std::optional(std::array{field.scale.low, field.scale.high}) : std::nullopt;
+    }
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip("Fixes the ends of the scale; drag them. Else the scale ends where the values do.");
+    }
+    if (look.range) {
+        ImGui::SameLine();
+        ImGui::SetNextItemWidth(-1.0F);
+        std::array<double, 2> ends = *look.range;
+        const auto speed = static_cast<float>(0.005 * (ends[1] - ends[0]));
+        if (ImGui::DragScalarN("##range", ImGuiDataType_Double, ends.data(), 2, speed, nullptr, nullptr,
+                               "%.4g", ImGuiSliderFlags_NoInput) &&
+            ends[0] < ends[1]) {
+            look.range = ends;
+        }
     }
 }
 
@@ -106,32 +135,29 @@ void show_section(const PanelContent& content, Choices& choices) {
         return;
     }
     Look& look = choices.look;
-    quantity_combo(content, choices);
-    switch (look.quantity) {
-    case Quantity::picture:
+    shown_combo(content, choices);
+    switch (look.shown.view) {
+    case View::picture:
         picture_choices(look);
         break;
-    case Quantity::radiosity:
-    case Quantity::exitance:
-    case Quantity::estimated_error:
-    case Quantity::factor_error:
-    case Quantity::patch_size_error:
+    case View::quantity:
         channel_choice(content.document.input(), look);
+        map_choice(look);
         scale_choice(look.logarithmic);
+        if (content.field) {
+            range_choice(*content.field, look);
+        }
         break;
-    case Quantity::reflectance:
-        channel_choice(content.document.input(), look);
-        break;
-    case Quantity::row:
-    case Quantity::column:
+    case View::row:
+    case View::column:
+        map_choice(look);
         scale_choice(look.logarithmic_factors);
         break;
-    case Quantity::outlines:
-    case Quantity::items:
-    case Quantity::row_error:
+    case View::outlines:
+    case View::items:
         break;
     }
-    if (look.quantity != Quantity::outlines) {
+    if (look.shown.view != View::outlines) {
         ImGui::Checkbox("patch outlines", &look.outlines);
         ImGui::SameLine();
     }
@@ -186,13 +212,13 @@ void patch_lines(const PanelContent& content, std::uint32_t i) {
 }
 
 void heat_map_choice(Look& look) {
-    const auto button = [&look](const char* name, Quantity quantity) {
-        const bool active = look.quantity == quantity;
+    const auto button = [&look](const char* name, View view) {
+        const bool active = look.shown.view == view;
         if (active) {
             ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
         }
         if (ImGui::Button(name)) {
-            look.quantity = active ? Quantity::picture : quantity;
+            look.shown = {active ? View::picture : view};
         }
         if (active) {
             ImGui::PopStyleColor();
@@ -201,13 +227,13 @@ void heat_map_choice(Look& look) {
     ImGui::AlignTextToFramePadding();
     text("Heat map of F:");
     ImGui::SameLine();
-    button("row", Quantity::row);
+    button("row", View::row);
     ImGui::SameLine();
-    button("column", Quantity::column);
+    button("column", View::column);
 }
 
 void partner_list(const PanelContent& content, Choices& choices) {
-    const bool column = choices.look.quantity == Quantity::column;
+    const bool column = choices.look.shown.view == View::column;
     ImGui::AlignTextToFramePadding();
     text("Largest by");
     ImGui::SameLine();
@@ -256,7 +282,7 @@ void patch_section(const PanelContent& content, Choices& choices) {
     ImGui::Spacing();
     const ViewerInput& input = content.document.input();
     if (input.factors == nullptr) {
-        faint(fmt::format("No row of F: {}.", why_not(Quantity::row, input, choices.picked)));
+        faint(fmt::format("No row of F: {}.", why_not({View::row}, input, choices.picked)));
         return;
     }
     heat_map_choice(choices.look);

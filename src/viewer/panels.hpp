@@ -70,8 +70,9 @@ struct PanelContent {
     const Document& document;
     const std::optional<PickedPatch>& picked;
     const Camera& camera;
-    std::string note;   ///< on what was done last; empty: on the light
-    std::string status; ///< at the panel's foot
+    const std::optional<Field>& field; ///< false colours that are shown
+    std::string note;                  ///< on what was done last; empty: on the light
+    std::string status;                ///< at the panel's foot
 };
 
 /// Pixels of the window that the side panel takes, from the right; 0 where the window is too small for it.

@@ -25,12 +25,8 @@ Json point(const Vec3& p) {
 } // namespace
 
 void write_report(const std::filesystem::path& path, const Report& report) {
-    const auto names = quantity_names();
-    const auto name = std::find_if(names.begin(), names.end(), [&](const QuantityName& candidate) {
-        return candidate.quantity == report.choices.look.quantity;
-    });
     Json json{{"schema", "hemi/view/1"},
-              {"quantity", name->word},
+              {"quantity", name_of(report.choices.look.shown).word},
               {"picked", index_or_null(report.choices.picked)},
               {"pointed_at", index_or_null(report.choices.pointed_at)},
               {"partners", Json::array()},
@@ -54,11 +50,16 @@ void write_report(const std::filesystem::path& path, const Report& report) {
     }
     if (report.field) {
         json["values"] = Json::array();
-        for (const double value : report.field->values) {
+        for (const double value : report.field->shown.values) {
             json["values"].push_back(std::isnan(value) ? Json(nullptr) : Json(value));
         }
         const ColourScale& scale = report.field->scale;
-        json["scale"] = {{"low", scale.low}, {"high", scale.high}, {"logarithmic", scale.logarithmic}};
+        json["scale"] = {{"low", scale.low},
+                         {"high", scale.high},
+                         {"logarithmic", scale.logarithmic},
+                         {"map", to_word(scale.map)}};
+        json["title"] = report.field->shown.title;
+        json["unit"] = report.field->shown.unit;
     }
     const std::uint32_t channels = report.document.input().channels();
     for (std::size_t i = 0; i < report.document.light().radiosity.size(); i += channels) {

@@ -1,5 +1,7 @@
 #include "viewer/scene_view.hpp"
 
+#include "display/false_colour_scale.hpp"
+#include "display/legend.hpp"
 #include "display/painted.hpp"
 
 #include <algorithm>
@@ -11,18 +13,24 @@ namespace hemi::viewer {
 void SceneView::show(const Document& document, const Look& look, std::optional<std::uint32_t> picked) {
     const ViewerInput& input = document.input();
     const double exposure = document.exposure() * std::exp2(look.stops);
-    field_ = make_field(look, input, document.light(), picked, document.usual_factor());
+    field_.reset();
+    if (look.shown.view == View::quantity) {
+        field_ = quantity_field(look, *input.mesh, document.lit(look.shown.quantity == Quantity::irradiance),
+                                document.light());
+    } else if (look.shown.view == View::row || look.shown.view == View::column) {
+        field_ = factor_field(look, input.factors->matrix, *picked, document.usual_factor());
+    }
     colours_.clear();
     if (field_) {
-        colours_ = value_colours(field_->values, field_->scale, *input.mesh);
-    } else if (look.quantity == Quantity::items) {
+        colours_ = value_colours(field_->shown.values, field_->scale, *input.mesh);
+    } else if (look.shown.view == View::items) {
         colours_ = item_colours(*input.mesh);
-    } else if (look.quantity == Quantity::outlines) {
+    } else if (look.shown.view == View::outlines) {
         colours_ = plain_colours(*input.mesh);
     }
     settings_ = picture_settings(look, input.picture, exposure, {1, 1});
     light_ = document.light_mesh();
-    if (look.quantity == Quantity::picture) {
+    if (look.shown.view == View::picture) {
         light_ = with_unknown_grey(std::move(light_), *input.mesh, document.light(), exposure);
     }
     renderer_.upload(colours_.empty() ? light_ : painted(light_, colours_));
@@ -45,7 +53,12 @@ void SceneView::draw(const Camera& camera, SceneTarget& target, std::uint32_t sa
 }
 
 Picture SceneView::picture(const Camera& camera, std::array<std::uint32_t, 2> size, std::uint32_t samples) {
-    return renderer_.picture(camera, settings(size, samples));
+    Picture picture = renderer_.picture(camera, settings(size, samples));
+    if (field_) {
+        draw_legend(picture, field_->scale, legend_title(field_->shown, field_->grey),
+                    values_beyond(field_->shown, field_->scale));
+    }
+    return picture;
 }
 
 std::optional<std::uint32_t> SceneView::item(const Camera& camera, std::array<std::uint32_t, 2> size,

@@ -1,9 +1,11 @@
 #include "viewer/script.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/nearest_word.hpp"
 #include "viewer/look.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -211,14 +213,38 @@ SetCommand parse_set(Line& line) {
 
 ShowCommand parse_show(Line& line) {
     const std::string_view word = line.word("a quantity");
-    if (!quantity_by_word(word)) {
-        std::string all;
-        for (const QuantityName& name : quantity_names()) {
-            all += (all.empty() ? "" : ", ") + std::string(name.word);
+    if (!shown_by_word(word)) {
+        std::vector<std::string> all;
+        for (const ShownName& name : shown_names()) {
+            all.emplace_back(name.word);
         }
-        line.fail(fmt::format("quantity \"{}\"; must be one of {}", word, all));
+        line.fail(fmt::format("quantity \"{}\"; must be one of {}{}", word, fmt::join(all, ", "),
+                              did_you_mean(std::string(word), all)));
     }
     return {std::string(word)};
+}
+
+MapCommand parse_map(Line& line) {
+    const std::string_view word = line.word("a colour map");
+    const std::optional<ColourMap> map = from_word<ColourMap>(word);
+    if (!map) {
+        line.fail(
+            fmt::format("colour map \"{}\"; must be one of {}", word, fmt::join(words<ColourMap>(), ", ")));
+    }
+    return {*map};
+}
+
+RangeCommand parse_range(Line& line) {
+    if (line.rest() == "auto") {
+        (void)line.next();
+        return {};
+    }
+    const double low = line.number("the low end");
+    const double high = line.number("the high end");
+    if (!(low < high)) {
+        line.fail(fmt::format("range {} to {}; must ascend, or be auto", low, high));
+    }
+    return {std::array{low, high}};
 }
 
 ScriptCommand parse_command(std::string_view command, Line& line, std::size_t number) {
@@ -244,6 +270,13 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
     if (command == "save-result") {
         return {number, SaveResultCommand{parse_file(line, command, ".hres")}};
     }
+    if (command == "channel") {
+        const std::string_view name = line.rest();
+        if (name.empty()) {
+            line.fail("a channel is missing");
+        }
+        return {number, ChannelCommand{std::string(name)}};
+    }
     if (command == "command") {
         return {number, CommandLineCommand{parse_file(line, command, ".txt")}};
     }
@@ -262,6 +295,10 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = MoveCommand{x, line.number("y")};
     } else if (command == "show") {
         result.action = parse_show(line);
+    } else if (command == "map") {
+        result.action = parse_map(line);
+    } else if (command == "range") {
+        result.action = parse_range(line);
     } else if (command == "key") {
         result.action = parse_key(line);
     } else if (command == "resize") {
@@ -293,8 +330,9 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = CancelCommand{};
     } else if (command != "quit") {
         line.fail(fmt::format(
-            "command \"{}\"; must be drag, click, move, scroll, key, show, set, fov, resize, minimise, "
-            "restore, screenshot, windowshot, report, command, save-result, save-camera, drop, reload, "
+            "command \"{}\"; must be drag, click, move, scroll, key, show, channel, map, range, set, "
+            "fov, resize, minimise, restore, screenshot, windowshot, report, command, save-result, "
+            "save-camera, drop, reload, "
             "changed, live, preview, rows, wait, cancel or quit",
             command));
     }

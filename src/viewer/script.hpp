@@ -1,10 +1,12 @@
 #pragma once
 
+#include "hemi/display/colour_map.hpp"
 #include "viewer/events.hpp"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -36,7 +38,18 @@ struct MoveCommand {
     double y;
 };
 struct ShowCommand {
-    std::string quantity;
+    std::string word;
+};
+/// Of quantities.
+struct ChannelCommand {
+    std::string channel;
+};
+struct MapCommand {
+    ColourMap map;
+};
+/// Of quantities; none: as their values ask for.
+struct RangeCommand {
+    std::optional<std::array<double, 2>> range;
 };
 /// A material's values, one or one a channel.
 struct SetCommand {
@@ -99,11 +112,11 @@ struct QuitCommand {};
 
 struct ScriptCommand {
     std::size_t line;
-    std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand, SetCommand,
-                 ResizeCommand, ScreenshotCommand, WindowshotCommand, ReportCommand, LiveCommand, WaitCommand,
-                 PreviewCommand, RowsCommand, CancelCommand, DropCommand, ReloadCommand, ChangedCommand,
-                 SaveResultCommand, SaveCameraCommand, CommandLineCommand, FovCommand, MinimiseCommand,
-                 QuitCommand>
+    std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand,
+                 ChannelCommand, MapCommand, RangeCommand, SetCommand, ResizeCommand, ScreenshotCommand,
+                 WindowshotCommand, ReportCommand, LiveCommand, WaitCommand, PreviewCommand, RowsCommand,
+                 CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
+                 SaveCameraCommand, CommandLineCommand, FovCommand, MinimiseCommand, QuitCommand>
         action;
 };
 

@@ -45,12 +45,25 @@ public:
         }
     }
     void perform(const ShowCommand& show) {
-        const Quantity quantity = quantity_by_word(show.quantity).value_or(Quantity::picture);
+        const Shown shown = shown_by_word(show.word).value_or(Shown{});
         Choices& choices = application_.choices();
-        if (const char* problem = why_not(quantity, application_.document().input(), choices.picked)) {
-            throw InvalidArgument(fmt::format("show {}: {}", show.quantity, problem));
+        if (const char* problem = why_not(shown, application_.document().input(), choices.picked)) {
+            throw InvalidArgument(fmt::format("show {}: {}", show.word, problem));
         }
-        choices.look.quantity = quantity;
+        choices.look.shown = shown;
+        application_.settle();
+    }
+    void perform(const ChannelCommand& command) {
+        check_channel(application_.document().input().scene->channels, command.channel);
+        application_.choices().look.channel = command.channel;
+        application_.settle();
+    }
+    void perform(const MapCommand& command) {
+        application_.choices().look.map = command.map;
+        application_.settle();
+    }
+    void perform(const RangeCommand& command) {
+        application_.choices().look.range = command.range;
         application_.settle();
     }
     void perform(const SetCommand& set) {

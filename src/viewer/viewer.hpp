@@ -43,6 +43,7 @@ struct ViewerInput {
     /// Command line that draws this file without a window, up to the picture's own options:
     /// "hemi render room.hres".
     std::string command;
+    std::string show_option;                    ///< " --show 1,2,3", where channels of the light were chosen
     std::array<std::uint32_t, 3> show{0, 0, 0}; ///< channels shown as red, green, blue
     Camera camera;                              ///< where R goes back to
     PictureSettings picture;                    ///< width and height are the window's first size

@@ -145,8 +145,9 @@ TEST_CASE("error target: what cannot be met is status 5, what contradicts it is 
     CHECK(run_hemi({"factors", scene, "--error-target", "1e-3", "--row", "1"}).status == 2);
     CHECK(run_hemi({"check", scene, "--error-target", "1e-3"}).status == 2);
     REQUIRE(run_hemi(quick({"factors", scene, "-o", directory.path("a.hff")})).status == 0);
-    CHECK(run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "--error-target", "1e-3"}).status ==
-          2);
+    CHECK(run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "--error-target", "1e-3",
+                    "--error-target-of", "factors"})
+              .status == 2);
 }
 
 TEST_CASE("trade: table, drawing, JSON and advice", "[cli][slow]") {

@@ -48,6 +48,8 @@ const std::map<std::string, std::string> at_home{{"glad/", "gl"},
 /// Private headers of the library that the window draws and shows with. The command line and the
 /// module of Python use none: they prove that the public ones suffice.
 const std::set<std::string> for_the_viewer{"display/colour_scale.hpp",
+                                           "display/false_colour_scale.hpp",
+                                           "display/legend.hpp",
                                            "display/orbit_camera.hpp",
                                            "display/painted.hpp",
                                            "display/picture_mesh.hpp",

@@ -137,3 +137,42 @@ TEST_CASE("Viewer: screenshots have the size and the samples that are asked for"
     CHECK(place.view("screenshot 0x77 a.png\n", small) == 3);
     CHECK(place.view("screenshot 10x77\n", small) == 3);
 }
+
+TEST_CASE("Viewer: quantities have the pixels that hemi render draws of them", "[viewer][gl]") {
+    const Workplace place;
+    std::string script = "save-result room.hres\n";
+    const std::vector<std::string> quantities{"radiosity",   "irradiance", "exitance",
+                                              "reflectance", "emissivity", "environment",
+                                              "row-error",   "error",      "area"};
+    for (const std::string& quantity : quantities) {
+        script += "show " + quantity + "\nscreenshot " + quantity + ".png\ncommand " + quantity + ".txt\n";
+    }
+    script += "show irradiance\nchannel sum\nmap turbo\nrange 0.1 2\nkey L\nscreenshot own.png\n"
+              "command own.txt\nreport own.json\n";
+    REQUIRE(place.view(script, small) == 0);
+    std::vector<std::string> all = quantities;
+    all.emplace_back("own");
+    std::vector<std::string> seen;
+    for (const std::string& name : all) {
+        INFO(name);
+        const std::string window = place.read(name + ".png");
+        const std::string command = place.read(name + ".txt");
+        INFO(command);
+        CHECK(command.starts_with("hemi render room"));
+        place.write("draw.sh", command);
+        REQUIRE(run_in_shell(place, "draw.sh") == 0);
+        const bool same = place.read("room.png") == window;
+        CHECK(same);
+        CHECK(std::find(seen.begin(), seen.end(), window) == seen.end());
+        seen.push_back(window);
+    }
+    CHECK(place.json("own.json")["scale"] ==
+          nlohmann::json({{"low", 0.1}, {"high", 2.0}, {"logarithmic", true}, {"map", "turbo"}}));
+    CHECK(place.view("show radiance\n", small) == 3);
+    CHECK(place.read("errors.txt").find("radiosity") != std::string::npos);
+    for (const char* wrong : {"map blue\n", "range 2 1\n", "range 1\n", "channel\n"}) {
+        CHECK(place.view(wrong, small) == 3);
+    }
+    CHECK(place.view("channel infrared\n", small) == 2);
+    CHECK(place.view("show direct\n", small) == 2);
+}

@@ -49,6 +49,9 @@ struct Names<Quantity> {
                                                      {Quantity::area, "area"}};
 };
 
+/// What a quantity is called.
+[[nodiscard]] const char* title_of(Quantity quantity);
+
 /// Whether a quantity needs the rows of all patches, not only of those that light comes from.
 [[nodiscard]] bool needs_all_rows(Quantity quantity);
 
