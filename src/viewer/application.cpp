@@ -313,6 +313,9 @@ void Application::settle() {
     if (why_not(choices_.look.shown, input, choices_.picked) != nullptr) {
         choices_.look.shown = {};
     }
+    if (shown_look_ && shown_look_->shown != choices_.look.shown) {
+        choices_.look.range.reset(); // it was of another quantity
+    }
     document_->set_materials(choices_.materials);
     const bool other_patch = shown_pick_ != choices_.picked;
     const bool other_look = shown_look_ != choices_.look;
@@ -552,7 +555,8 @@ std::string Application::command_line() const {
         picture_settings(choices_.look, document_->input().picture,
                          document_->exposure() * std::exp2(choices_.look.stops), view_size());
     picture.samples = choices_.samples;
-    command += look.shown.view == View::quantity ? quantity_options(look) : document_->input().show_option;
+    command += look.shown.view == View::quantity ? quantity_options(look, view_.field()->shown)
+                                                 : document_->input().show_option;
     return command + " -o " + quoted(document_->input().file.stem().string() + ".png") +
            picture_options(picture, navigator_.camera(), look.shown.view == View::picture);
 }

@@ -6,11 +6,11 @@
 
 namespace hemi::viewer {
 
-std::string quantity_options(const Look& look) {
+std::string quantity_options(const Look& look, const FalseColours& drawn) {
     std::string text = fmt::format(" --show {} --channel {} --map {}", to_word(look.shown.quantity),
                                    quoted(look.channel), to_word(look.map));
-    text += look.range ? fmt::format(" --range {},{}", (*look.range)[0], (*look.range)[1]) : "";
-    text += look.logarithmic ? " --log" : "";
+    text += look.range ? fmt::format(" --range {},{}", (*drawn.range)[0], (*drawn.range)[1]) : "";
+    text += drawn.logarithmic ? " --log" : "";
     return text;
 }
 

@@ -12,7 +12,8 @@ namespace hemi::viewer {
 /// @param lit  whether light is drawn, and not false colours
 [[nodiscard]] std::string picture_options(const PictureSettings& settings, const Camera& camera, bool lit);
 /// Those for a quantity and its colours.
-[[nodiscard]] std::string quantity_options(const Look& look);
+/// @param drawn  as the window draws it
+[[nodiscard]] std::string quantity_options(const Look& look, const FalseColours& drawn);
 
 /// A word as a shell takes it: in quotes where it needs them.
 [[nodiscard]] std::string quoted(const std::string& word);

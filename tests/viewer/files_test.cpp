@@ -147,8 +147,9 @@ TEST_CASE("Viewer: quantities have the pixels that hemi render draws of them", "
     for (const std::string& quantity : quantities) {
         script += "show " + quantity + "\nscreenshot " + quantity + ".png\ncommand " + quantity + ".txt\n";
     }
-    script += "show irradiance\nchannel sum\nmap turbo\nrange 0.1 2\nkey L\nscreenshot own.png\n"
-              "command own.txt\nreport own.json\n";
+    script +=
+        "show irradiance\nchannel sum\nmap turbo\nrange 0.1 2\nkey L\nscreenshot own.png\n"
+        "command own.txt\nreport own.json\nshow exitance\nreport other.json\n"; // with a scale of its own
     REQUIRE(place.view(script, small) == 0);
     std::vector<std::string> all = quantities;
     all.emplace_back("own");
@@ -168,6 +169,7 @@ TEST_CASE("Viewer: quantities have the pixels that hemi render draws of them", "
     }
     CHECK(place.json("own.json")["scale"] ==
           nlohmann::json({{"low", 0.1}, {"high", 2.0}, {"logarithmic", true}, {"map", "turbo"}}));
+    CHECK(place.json("other.json")["scale"]["high"] != 2.0);
     CHECK(place.view("show radiance\n", small) == 3);
     CHECK(place.read("errors.txt").find("radiosity") != std::string::npos);
     for (const char* wrong : {"map blue\n", "range 2 1\n", "range 1\n", "channel\n"}) {
