@@ -206,10 +206,7 @@ CutMesh mesh_of_rows(const LoadedScene& loaded, const SceneOptions& options,
         } catch (const InvalidArgument&) { // they are no cuts of this
         }
     }
-    throw InputError(fmt::format(
-        "{}: these form factors belong to another geometry ({}; this scene has {}); remove the file or name "
-        "another one",
-        path.string(), plural(rows.patches, "patch", "patches"), count_text(loaded.mesh.size())));
+    return {loaded.as_begin(), loaded.mesh}; // by which read_form_factors() refuses them
 }
 
 void adopt_mesh_of_rows(LoadedScene& loaded, const SceneOptions& options, const std::filesystem::path& path,

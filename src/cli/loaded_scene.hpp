@@ -87,8 +87,8 @@ struct CutMesh {
 /// What refinement begins with: patches of the size that the command line asks for, or a coarse mesh.
 [[nodiscard]] CoarseMesh coarse_begin(const LoadedScene& loaded, const SceneOptions& options);
 /// The mesh that the rows of a `.hff` are of: the scene's own, one that a refinement begins with, or one that
-/// was cut from either.
-/// @throws InputError for the file, and if its rows are of another geometry
+/// was cut from either; the scene's own where the rows are of another geometry.
+/// @throws InputError for the file
 [[nodiscard]] CutMesh mesh_of_rows(const LoadedScene& loaded, const SceneOptions& options,
                                    const std::filesystem::path& path);
 /// Cuts the scene as the rows of a file are, where a refinement stored them.
