@@ -26,9 +26,11 @@ namespace {
 
 /// Patches that a refinement begins with, about: few enough to cost little, enough to see where the light is.
 constexpr double first_patches = 400.0;
-/// Of the square of a patch's error, what its parts together still have: between a smooth field's 1/16 and
-/// the half that is left along the edge of a shadow.
-constexpr double left_by_parts = 0.25;
+/// Of the square of a patch's error, what its parts together still have: a smooth field's 1/16, the half that
+/// is left along the edge of a shadow, and what is taken before a step has shown it.
+constexpr double least_left_by_parts = 1.0 / 16.0;
+constexpr double most_left_by_parts = 0.5;
+constexpr double usually_left_by_parts = 0.25;
 /// A step aims a little below the goal, since estimates scatter.
 constexpr double aim = 0.9;
 /// A step splits at least and at most such shares of the patches: fewer are not worth a step's solution and
@@ -357,9 +359,10 @@ private:
     }
 
     /// Patches that are to be split, ascending.
-    [[nodiscard]] std::vector<std::uint32_t> choose(const Errors& errors) const {
+    [[nodiscard]] std::vector<std::uint32_t> choose(const Errors& errors) {
         const PatchMesh& mesh = result_.mesh;
-        const std::vector<double> parts = contributions(mesh, result_.solution, goal_.error_of);
+        std::vector<double> parts = contributions(mesh, result_.solution, goal_.error_of);
+        const double left_by_parts = left_by(parts);
         const double total = std::accumulate(parts.begin(), parts.end(), 0.0);
         std::vector<std::uint32_t> order;
         const double smallest = std::pow(least_size * mesh.bounds().diagonal(), 2.0);
@@ -402,7 +405,27 @@ private:
                 result.push_back(i);
             }
         }
+        contributions_ = std::move(parts);
         return result;
+    }
+
+    /// What the parts of the patches that the last step split have of those patches' contributions.
+    /// @param parts  contributions of the patches as they are now
+    [[nodiscard]] double left_by(std::span<const double> parts) const {
+        std::vector<std::uint32_t> count(contributions_.size(), 0);
+        for (const std::uint32_t parent : parents_) {
+            ++count[parent];
+        }
+        double before = 0.0;
+        for (std::size_t parent = 0; parent < count.size(); ++parent) {
+            before += count[parent] > 1 ? contributions_[parent] : 0.0;
+        }
+        double after = 0.0;
+        for (std::size_t k = 0; k < parents_.size(); ++k) {
+            after += count[parents_[k]] > 1 ? parts[k] : 0.0;
+        }
+        return before > 0.0 ? std::clamp(after / before, least_left_by_parts, most_left_by_parts)
+                            : usually_left_by_parts;
     }
 
     /// Adds patches beside which others would become more than one step smaller.
@@ -473,6 +496,7 @@ private:
         rows.work.seconds += result_.raw.work.seconds;
         result_.raw = std::move(rows);
         result_.mesh = std::move(finer.mesh);
+        parents_ = std::move(finer.parents);
         keep();
         return {result_.mesh.size(), fresh.size(), not_known};
     }
@@ -486,6 +510,8 @@ private:
     RefinementRows rows_;
     Stopwatch watch_;
     Refinement result_;
+    std::vector<double> contributions_;  ///< of the patches that the last step began with
+    std::vector<std::uint32_t> parents_; ///< of the patches as they are now, among those
 };
 
 } // namespace

@@ -89,6 +89,7 @@ struct VertexGather::State {
                 }
             }
         }
+        add_ends_of_edges(corners_at);
         for (std::uint32_t vertex = 0; vertex < corners_at.size(); ++vertex) {
             found.clear();
             for (const std::uint32_t corner : corners_at[vertex]) {
@@ -99,6 +100,31 @@ struct VertexGather::State {
                     add_point(surfaces.position(vertex), entry->first);
                 }
                 point_of[corner] = entry->second;
+            }
+        }
+    }
+
+    /// Adds the corners between which the values of vertices in the middle of an edge are interpolated.
+    /// @param corners_at  corner k of patch i as i·4 + k, of every vertex
+    void add_ends_of_edges(std::vector<std::vector<std::uint32_t>>& corners_at) const {
+        const auto hanging = surfaces.hanging();
+        // Those of short edges first: their ends may lie in the middle of longer ones.
+        for (auto entry = hanging.rbegin(); entry != hanging.rend(); ++entry) {
+            const auto& here = corners_at[entry->vertex];
+            const bool depends = std::any_of(here.begin(), here.end(), [&](std::uint32_t corner) {
+                return surfaces.continues_at(entry->vertex, entry->patch, corner / 4);
+            });
+            if (!depends || is_covered(blocked, entry->patch)) {
+                continue;
+            }
+            const auto ring = surfaces.corners(entry->patch);
+            for (std::uint32_t k = 0; k < ring.size(); ++k) {
+                auto& corners = corners_at[ring[k]];
+                const std::uint32_t corner = entry->patch * 4 + k;
+                if ((ring[k] == entry->from || ring[k] == entry->to) &&
+                    std::find(corners.begin(), corners.end(), corner) == corners.end()) {
+                    corners.push_back(corner);
+                }
             }
         }
     }

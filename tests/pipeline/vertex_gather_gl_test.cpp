@@ -162,6 +162,27 @@ TEST_CASE("gather: kept rows give the same again, and follow other materials", "
                     InvalidArgument);
 }
 
+TEST_CASE("gather: of some patches it is what it is of all, also beside patches twice their size",
+          "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4, 1);
+    PatchMesh mesh = PatchMesh(scene).split(std::vector<std::uint32_t>{0, 5, 9, 10}).mesh;
+    mesh = mesh.split(std::vector<std::uint32_t>{mesh.first_patch(0) + 8}).mesh;
+    const Solution solution = solved(scene, mesh);
+    const PatchValues values = patch_values(scene, mesh);
+    const auto corners_of = [&](const std::vector<std::uint32_t>& patches) {
+        return VertexGather(mesh, solution.back_face_share, patches)
+            .compute(values, solution.radiosity, settings_of(Preset::standard), scene.enclosure, 0);
+    };
+    const std::vector<float> all = corners_of(all_patches(mesh.size()));
+    for (std::uint32_t i = 0; i < mesh.patches_per_side(0); ++i) {
+        const std::vector<float> own = corners_of({i});
+        for (std::size_t k = std::size_t{i} * 4; k < std::size_t{i} * 4 + 4; ++k) {
+            INFO("patch " << i << " of " << mesh.patches_per_side(0) << ", corner " << k % 4);
+            CHECK(own[k] == Approx(all[k]).epsilon(0.02).margin(2e-4)); // the same vertices by other rays
+        }
+    }
+}
+
 TEST_CASE("gather: automatic leaves plain and fast pictures alone", "[pipeline]") {
     const Scene scene = lamp_and_sheet(4, 2);
     const PatchMesh mesh(scene);
