@@ -62,7 +62,7 @@ void check_input(const SolveArguments& arguments) {
         throw InvalidArgument(fmt::format("--show {} needs the estimate that --no-estimate leaves out",
                                           to_word(*arguments.picture.quantity)));
     }
-    if (arguments.budget > 0.0 && !arguments.refines()) {
+    if (arguments.refinement.budget > 0.0 && !arguments.refines()) {
         throw InvalidArgument("--budget needs --error-target or --refine, by which patches are cut");
     }
     if (arguments.rows.error_target && !arguments.refines() && has_rows(arguments)) {
@@ -132,12 +132,8 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
                               const Terminal& terminal, Seconds& seconds, Report& report,
                               std::string& missed) {
     const Stopwatch watch;
-    RefinementGoal goal;
-    goal.error = arguments.rows.error_target;
-    goal.error_of = arguments.rows.error_of;
-    goal.patches = arguments.refine;
-    goal.seconds = arguments.budget;
-    goal.gather = arguments.picture.flat && !arguments.result ? Gather::off : arguments.gather;
+    const RefinementGoal goal = arguments.refinement.goal(
+        arguments.rows, arguments.picture.flat && !arguments.result ? Gather::off : arguments.gather);
     FactorSettings settings = arguments.rows.factors;
     CutMesh start = has_rows(arguments) ? mesh_of_rows(loaded, arguments.scene, *arguments.factors)
                                         : CutMesh{coarse_begin(loaded, arguments.scene), loaded.mesh};
@@ -169,17 +165,6 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
                              std::isfinite(error) ? fmt::format("{:.2g} %", 100.0 * error) : "not known");
     }
     return {std::move(found.factors), std::move(found.solution)};
-}
-
-/// What is not there yet for scenes with sun or sky.
-void check_direct(const SolveArguments& arguments, const Scene& scene) {
-    if (!scene.sun && !scene.sky) {
-        return;
-    }
-    if (arguments.refines()) {
-        throw InvalidArgument("--refine and --error-target cut patches by the light that goes between them, "
-                              "not by shadows of a sun or a sky, which the scene has; give --patch-size");
-    }
 }
 
 /// Whether a file of that name is replaced when it is written again; a pipe would get both.
@@ -264,7 +249,9 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         adopt_mesh_of_rows(loaded, arguments.scene, *arguments.factors, arguments.parts);
     }
     seconds["load"] = loaded.seconds;
-    check_direct(arguments, loaded.scene);
+    if (arguments.refines()) {
+        check_refinable(loaded.scene);
+    }
     if (arguments.picture.output) { // tested before the work
         if (arguments.picture.quantity) {
             check_channel(loaded.scene.channels, arguments.picture.channel);

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -108,27 +109,49 @@ private:
             options.path = path;
             options.also.clear();
         }
-        const auto loaded = std::make_shared<const LoadedScene>(load_scene(options, terminal_));
+        auto loaded = std::make_shared<LoadedScene>(load_scene(options, terminal_));
+        std::function<void(viewer::ViewerInput&, PatchMesh)> adopt;
+        if (arguments_.refinement.asked(arguments_.rows)) {
+            check_refinable(loaded->scene);
+            const CoarseMesh begin = coarse_begin(*loaded, options);
+            adopt = [whole = *loaded, begin](viewer::ViewerInput& input, PatchMesh mesh) {
+                const auto finer = std::make_shared<LoadedScene>(whole);
+                finer->adopt(std::move(mesh), begin, false);
+                adopt_scene(input, finer);
+            };
+            loaded->adopt(begin.mesh, begin, false);
+        }
         Solution lamps;
         lamps.channels = static_cast<std::uint32_t>(loaded->scene.channels.size());
         viewer::ViewerInput input =
             describe(path, std::shared_ptr<const Scene>(loaded, &loaded->scene),
                      std::shared_ptr<const PatchMesh>(loaded, &loaded->mesh), std::move(lamps));
+        adopt_scene(input, loaded);
+        input.adopt = std::move(adopt);
         input.solution.radiosity = input.solution.exitance;
         input.command = "hemi solve " + viewer::quoted(path.string());
         for (const std::filesystem::path& more : options.also) {
             input.command += " " + viewer::quoted(more.string());
         }
         input.command += given_options(arguments_.common);
+        input.factor_settings = arguments_.rows.factors;
+        input.solver = arguments_.solver;
+        input.gather = arguments_.gather;
+        if (input.adopt) {
+            input.refinement = arguments_.refinement.goal(arguments_.rows, arguments_.gather);
+        }
+        input.observer = std::make_shared<TerminalObserver>(terminal_);
+        return input;
+    }
+
+    /// Scene, mesh and what results hold of them.
+    static void adopt_scene(viewer::ViewerInput& input, const std::shared_ptr<const LoadedScene>& loaded) {
+        input.scene = std::shared_ptr<const Scene>(loaded, &loaded->scene);
+        input.mesh = std::shared_ptr<const PatchMesh>(loaded, &loaded->mesh);
         io::ResultFile stored = loaded->result({});
         input.subdivision = loaded->subdivision;
         input.surfaces_as_read = std::move(stored.surfaces_as_read);
         input.parts = std::move(stored.parts);
-        input.factor_settings = arguments_.rows.factors;
-        input.solver = arguments_.solver;
-        input.gather = arguments_.gather;
-        input.observer = std::make_shared<TerminalObserver>(terminal_);
-        return input;
     }
 
     [[nodiscard]] viewer::ViewerInput result(const std::filesystem::path& path) const {
@@ -149,6 +172,11 @@ private:
 
 ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
     check_display();
+    if (arguments.rows.error_target && arguments.rows.error_of == ErrorOf::factors) {
+        throw InvalidArgument(
+            "--error-target-of factors: the window cuts patches until an error of vertices, "
+            "field or groups is met; `hemi solve` chooses settings for form factors");
+    }
     const std::filesystem::path& path = arguments.scene.path;
     if (extension_of(path) == ".hres") {
         refuse_all_but(arguments.common, window_options(), path);

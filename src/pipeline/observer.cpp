@@ -10,6 +10,8 @@ void Observer::row(std::uint32_t, const RowView&) {}
 
 void Observer::row(std::uint32_t, const VisibilityRow&) {}
 
+void Observer::refined(const Refinement&) {}
+
 void Observer::warning(std::string_view, std::string_view) {}
 
 void Observer::note(std::string_view) {}

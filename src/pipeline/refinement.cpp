@@ -210,6 +210,7 @@ public:
             result_.steps.push_back(step);
             observer_.detail(fmt::format("refinement: {}, error {:.2g} %",
                                          plural(step.patches, "patch", "patches"), 100.0 * step.error));
+            observer_.refined(result_);
             const bool enough = is_enough(errors.at_most);
             if (enough || !may_go_on()) {
                 errors = finish();

@@ -291,6 +291,9 @@ void Application::take_opened() {
 
 void Application::update() {
     take_opened();
+    if (std::optional<ViewerInput> finer = document_->take_refined()) {
+        exchange(std::move(*finer));
+    }
     const Clock::time_point now = Clock::now();
     if (document_->update(now >= gathers_at_)) {
         took_light_ = took_light_.value_or(now);

@@ -7,6 +7,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/pipeline/daylight.hpp"
+#include "viewer/mesh_refiner.hpp"
 
 #include <fmt/format.h>
 
@@ -18,11 +19,34 @@ Document::Document(ViewerInput input, std::shared_ptr<FactorCache> cache, std::f
     : input_(std::move(input)), wake_(std::move(wake)), surfaces_(*input_.mesh),
       materials_(input_.scene->materials), light_(of_materials()), blocked_(input_.solution.back_face_share),
       exposure_(input_.picture.exposure), exposure_settled_(!input_.automatic_exposure) {
-    show_light(input_.solution.radiosity, input_.factor_settings ? State::lamps : State::solved,
+    const bool solved = !input_.factor_settings || !input_.of_solution.empty();
+    show_light(input_.solution.radiosity,
+               !solved             ? State::lamps
+               : input_.refinement ? State::converging
+                                   : State::solved,
                input_.solution.vertex_radiosity);
-    if (input_.factor_settings) {
+    work_.light = input_.of_solution;
+    if (input_.refinement && !input_.refiner) {
+        input_.refiner = std::make_shared<MeshRefiner>(input_, wake_);
+    } else if (input_.factors) {
+        begin_with_factors(solved);
+    } else if (input_.factor_settings && !input_.refinement) {
         finder_.emplace(input_, std::move(cache), wake_);
     }
+}
+
+/// @param solved  by them
+void Document::begin_with_factors(bool solved) {
+    show_factors(std::exchange(input_.factors, nullptr));
+    relighter_.emplace(input_, wake_);
+    if (!solved) {
+        relighter_->ask(of_materials());
+        return;
+    }
+    solved_.emplace();
+    solved_->light = light_;
+    solved_->converged = true;
+    solved_->solution = input_.solution;
 }
 
 void Document::show_light(std::vector<double> radiosity, State state, std::vector<float> vertices) {
@@ -62,6 +86,9 @@ void Document::make_light_mesh() {
 }
 
 bool Document::update(bool gathered) {
+    if (input_.refiner) {
+        look_at_refiner();
+    }
     if (finder_) {
         take_rows(gathered);
     }
@@ -69,6 +96,25 @@ bool Document::update(bool gathered) {
         take_light();
     }
     return std::exchange(changed_, false);
+}
+
+void Document::look_at_refiner() {
+    const bool finished = input_.refiner->finished();
+    work_.doing = finished ? "" : input_.refiner->status(work_.share);
+    if (finished && input_.refinement && state_ == State::converging) {
+        work_.light = "stopped: " + input_.of_solution;
+    }
+}
+
+std::optional<ViewerInput> Document::take_refined() {
+    if (!input_.refiner) {
+        return std::nullopt;
+    }
+    std::optional<ViewerInput> next = input_.refiner->take();
+    if (next) {
+        next->refiner = input_.refiner;
+    }
+    return next;
 }
 
 double Document::gathered_share() const {
@@ -111,6 +157,9 @@ void Document::show_gathered(const GatheredLight& gathered) {
 void Document::show_factors(std::shared_ptr<const FormFactors> factors) {
     const FormFactorMatrix& matrix = factors->matrix;
     Solution& solution = input_.solution;
+    solution.row_sum.clear();
+    solution.environment_share.clear();
+    solution.back_face_share.clear();
     for (std::uint32_t i = 0; i < matrix.size(); ++i) {
         const RowView row = matrix.row(i);
         solution.row_sum.push_back(row.sum());
@@ -192,12 +241,15 @@ void Document::take_light() {
 }
 
 bool Document::busy() const {
-    return finder_ || (relighter_ && relighter_->busy());
+    return finder_ || (input_.refiner && input_.refiner->busy()) || (relighter_ && relighter_->busy());
 }
 
 void Document::cancel() {
     if (finder_) {
         finder_->cancel();
+    }
+    if (input_.refiner) {
+        input_.refiner->cancel();
     }
 }
 

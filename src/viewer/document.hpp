@@ -57,8 +57,11 @@ public:
     bool update(bool gathered = true);
     /// Whether something is under way that goes on by itself.
     [[nodiscard]] bool busy() const;
-    /// Stops the search for rows.
+    /// Stops the search for rows, and the cutting of patches.
     void cancel();
+    /// The same scene on patches that were cut further, once, to be shown instead.
+    /// @throws what ended the cutting
+    [[nodiscard]] std::optional<ViewerInput> take_refined();
 
     /// Asks for the light of other materials, from the light that is there on.
     void set_materials(const std::vector<Material>& materials);
@@ -78,6 +81,8 @@ public:
 private:
     enum class State { lamps, preview, converging, solved };
 
+    void begin_with_factors(bool solved);
+    void look_at_refiner();
     void take_rows(bool gathered);
     void show_factors(std::shared_ptr<const FormFactors> factors);
     void show_gathered(const GatheredLight& gathered);

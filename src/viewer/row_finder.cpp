@@ -6,74 +6,30 @@
 
 #include "hemi/core/error.hpp"
 
-#include <fmt/format.h>
-
-#include <chrono>
 #include <span>
 #include <utility>
 
 namespace hemi::viewer {
 
 /// Hears of the work on the finder's thread, and passes it on to the window's.
-class RowFinder::Listener : public Observer {
+class RowFinder::Listener : public WorkObserver {
 public:
-    Listener(RowFinder& finder, const std::stop_token& stop) : finder_(finder), stop_(stop) {}
+    Listener(RowFinder& finder, const std::stop_token& stop)
+        : WorkObserver(finder.progress_, stop, finder.observer_.get(), finder.changed_), finder_(finder) {}
 
-    bool progress(Phase phase, std::size_t done, std::size_t total) override {
-        constexpr std::chrono::milliseconds interval{100};
-        const Clock::time_point now = Clock::now();
-        const std::string title(to_word(phase));
-        const bool counts =
-            phase != Phase::radiosity && phase != Phase::preview && phase != Phase::error_estimate;
-        bool tell = now - told_ >= interval;
-        {
-            const std::lock_guard lock(finder_.mutex_);
-            if (finder_.progress_.title != title) {
-                began_ = now;
-                tell = true;
-            }
-            finder_.progress_ = {title, counts ? "rows" : "", done, total,
-                                 std::chrono::duration<double>(now - began_).count()};
-        }
-        if (tell) {
-            told_ = now;
-            finder_.changed_();
-        }
-        return !stop_.stop_requested();
-    }
-
-    void warning(std::string_view message, std::string_view setting) override {
-        if (finder_.observer_) {
-            finder_.observer_->warning(message, setting);
-        }
-    }
-    void note(std::string_view message) override {
-        if (finder_.observer_) {
-            finder_.observer_->note(message);
-        }
-    }
-    void detail(std::string_view message) override {
-        if (finder_.observer_) {
-            finder_.observer_->detail(message);
-        }
-    }
-
-    /// What the light will be about; rows that come now sharpen it.
     void show_preview(const std::vector<double>& radiosity) {
         shown_ = radiosity;
         {
             const std::lock_guard lock(finder_.mutex_);
             finder_.preview_ = radiosity;
         }
-        finder_.changed_();
+        tell();
     }
 
     void row(std::uint32_t patch, const RowView& row) override { gather(patch, row); }
     void row(std::uint32_t patch, const VisibilityRow& row) override { gather(patch, row); }
 
 private:
-    using Clock = std::chrono::steady_clock;
-
     /// Gives the row's own patch what it has of the light that is shown: that of the preview, or of the
     /// lamps.
     template <class Row>
@@ -102,9 +58,6 @@ private:
     }
 
     RowFinder& finder_;
-    const std::stop_token& stop_;
-    Clock::time_point began_;
-    Clock::time_point told_;
     std::vector<double> shown_;
     std::vector<double> exitance_;
     std::vector<double> reflectance_;
@@ -121,17 +74,7 @@ RowFinder::RowFinder(const ViewerInput& input, std::shared_ptr<FactorCache> cach
 RowFinder::~RowFinder() = default;
 
 std::string RowFinder::status(double& share) const {
-    if (thread_.get_stop_token().stop_requested()) {
-        return "stopping";
-    }
-    const std::lock_guard lock(mutex_);
-    const Progress& now = progress_;
-    share = now.total > 0 ? static_cast<double>(now.done) / static_cast<double>(now.total) : 0.0;
-    std::string text = now.title.empty() ? "starting" : now.title;
-    if (!now.unit.empty() && now.seconds > 0.5) {
-        text += fmt::format(", {:.0f} {}/s", static_cast<double>(now.done) / now.seconds, now.unit);
-    }
-    return text;
+    return thread_.get_stop_token().stop_requested() ? "stopping" : progress_.text(share);
 }
 
 void RowFinder::cancel() {

@@ -2,6 +2,7 @@
 
 #include "viewer/factor_cache.hpp"
 #include "viewer/viewer.hpp"
+#include "viewer/work_progress.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -52,13 +53,6 @@ public:
 
 private:
     class Listener;
-    struct Progress {
-        std::string title;
-        std::string unit; ///< plural; empty: nothing is counted
-        std::size_t done = 0;
-        std::size_t total = 0;
-        double seconds = 0.0; ///< since this title began
-    };
 
     void work(const std::stop_token& stop);
 
@@ -71,8 +65,8 @@ private:
     std::shared_ptr<Observer> observer_;
     std::shared_ptr<FactorCache> cache_;
     std::function<void()> changed_;
+    WorkProgress progress_;
     mutable std::mutex mutex_;
-    Progress progress_;
     std::optional<std::vector<double>> preview_;
     GatheredLight gathered_;
     std::shared_ptr<const FormFactors> result_;

@@ -324,6 +324,8 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
             line.fail(fmt::format("{} as the share of the rows; must be above 0, at most 1", share));
         }
         result.action = RowsCommand{share};
+    } else if (command == "patches") {
+        result.action = PatchesCommand{line.size("the number of patches")};
     } else if (command == "wait") {
         result.action = WaitCommand{};
     } else if (command == "cancel") {
@@ -333,7 +335,7 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
             "command \"{}\"; must be drag, click, move, scroll, key, show, channel, map, range, set, "
             "fov, resize, minimise, restore, screenshot, windowshot, report, command, save-result, "
             "save-camera, drop, reload, "
-            "changed, live, preview, rows, wait, cancel or quit",
+            "changed, live, preview, rows, patches, wait, cancel or quit",
             command));
     }
     line.end();

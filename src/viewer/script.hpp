@@ -106,6 +106,10 @@ struct PreviewCommand {};
 struct RowsCommand {
     double share;
 };
+/// Until the scene is cut into so many patches, or all is solved.
+struct PatchesCommand {
+    std::uint32_t count;
+};
 /// Stops solving.
 struct CancelCommand {};
 struct QuitCommand {};
@@ -115,7 +119,7 @@ struct ScriptCommand {
     std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand,
                  ChannelCommand, MapCommand, RangeCommand, SetCommand, ResizeCommand, ScreenshotCommand,
                  WindowshotCommand, ReportCommand, LiveCommand, WaitCommand, PreviewCommand, RowsCommand,
-                 CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
+                 PatchesCommand, CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
                  SaveCameraCommand, CommandLineCommand, FovCommand, MinimiseCommand, QuitCommand>
         action;
 };
@@ -148,7 +152,8 @@ struct ScriptCommand {
 /// live                   as the first command: the script does not wait until the scene is solved
 /// preview                until there is a coarse preview of it, or all
 /// rows SHARE             until that share of the rows has come and is on the picture, or all is solved
-/// wait                   until it is
+/// patches N              until it is cut into so many patches, or all is solved
+/// wait                   until it is solved
 /// cancel                 of what is being solved
 /// quit
 /// ```

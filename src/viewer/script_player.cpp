@@ -130,6 +130,10 @@ public:
         application_.wait_for_work(
             [this, &rows] { return application_.document().gathered_share() >= rows.share; });
     }
+    void perform(const PatchesCommand& patches) {
+        application_.wait_for_work(
+            [this, &patches] { return application_.document().input().mesh->size() >= patches.count; });
+    }
     void perform(const WaitCommand&) { application_.wait_for_work(); }
     void perform(const CancelCommand&) {
         application_.document().cancel();

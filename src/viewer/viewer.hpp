@@ -3,6 +3,7 @@
 #include "hemi/display/picture.hpp"
 #include "hemi/matrix/form_factors.hpp"
 #include "hemi/pipeline/observer.hpp"
+#include "hemi/pipeline/refinement.hpp"
 #include "hemi/pipeline/settings.hpp"
 #include "hemi/pipeline/vertex_gather.hpp"
 #include "hemi/scene/patch_mesh.hpp"
@@ -23,6 +24,8 @@
 
 namespace hemi::viewer {
 
+class MeshRefiner;
+
 /// A scene to look at, solved or to be solved, and how to begin.
 struct ViewerInput {
     std::filesystem::path file;            ///< what was opened
@@ -33,13 +36,20 @@ struct ViewerInput {
     PatchParts parts;                      ///< as well
     /// How form factors are computed, beside the window. Empty: a stored solution, which has none.
     std::optional<FactorSettings> factor_settings;
-    SolverSettings solver;              ///< for the radiosity
-    Gather gather = Gather::automatic;  ///< whether vertices get rows of their own
-    std::shared_ptr<Observer> observer; ///< gets warnings and notes, on another thread; may be null
+    /// When patches are fine enough, if they are to be cut; `mesh` is the coarse one.
+    std::optional<RefinementGoal> refinement;
+    /// Makes this the input of a mesh that was cut from the coarse one: scene, mesh, and what results hold
+    /// of them. Called on another thread.
+    std::function<void(ViewerInput&, PatchMesh)> adopt;
+    std::shared_ptr<MeshRefiner> refiner; ///< the window's, while patches are cut
+    SolverSettings solver;                ///< for the radiosity
+    Gather gather = Gather::automatic;    ///< whether vertices get rows of their own
+    std::shared_ptr<Observer> observer;   ///< gets warnings and notes, on another thread; may be null
     /// The stored solution, or, until there is one, the lamps alone: their exitance as radiosity, nothing
     /// known of rows.
     Solution solution;
     std::shared_ptr<const FormFactors> factors; ///< prepared; null until they are found
+    std::string of_solution;                    ///< what the window says of a solution that is there
     /// Command line that draws this file without a window, up to the picture's own options:
     /// "hemi render room.hres".
     std::string command;

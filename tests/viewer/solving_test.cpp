@@ -85,6 +85,55 @@ TEST_CASE("Viewer: the light converges a sweep at a time, to the same solution",
     CHECK(two["light"].get<std::string>().find("sweep 2") != std::string::npos);
 }
 
+TEST_CASE("Viewer: shows patches as they are cut, and the light of hemi solve in the end", "[viewer][gl]") {
+    const Workplace place;
+    const std::string options = "--preset default --patches-per-face 9 --refine 120";
+    const int status = place.view("live\nreport coarse.json\npatches 46\n"
+                                  "report cut.json\nwait\nreport all.json\n"
+                                  "screenshot all.png\nsave-result window.hres\nclick 150 150\nshow row\n"
+                                  "report row.json\nset exitance 40,36,24 lamp\nreport twice.json\n",
+                                  "--size 300x200 " + options);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    CHECK(place.json("coarse.json")["radiosity"].size() == 45);
+    const auto cut = place.json("cut.json");
+    CHECK(cut["radiosity"].size() > 45);
+    CHECK(cut["light"].get<std::string>().find("on the way") != std::string::npos);
+    REQUIRE(place.run(fmt::format("'{}' solve room.json --device osmesa --result solve.hres {}", HEMI_PROGRAM,
+                                  options)) == 0);
+    const io::ResultFile window = io::read_hres(place.path("window.hres"));
+    const io::ResultFile solve = io::read_hres(place.path("solve.hres"));
+    REQUIRE(window.solution.radiosity.size() == solve.solution.radiosity.size());
+    REQUIRE(window.solution.vertex_radiosity.size() == solve.solution.vertex_radiosity.size());
+    CHECK(place.json("all.json")["radiosity"].size() * 3 == solve.solution.radiosity.size());
+    for (std::size_t k = 0; k < solve.solution.radiosity.size(); ++k) {
+        REQUIRE(window.solution.radiosity[k] == Approx(solve.solution.radiosity[k]).epsilon(1e-5));
+    }
+    CHECK(window.subdivision == solve.subdivision);
+    CHECK(window.parts.patch_of == solve.parts.patch_of);
+    const auto once = place.json("all.json")["radiosity"];
+    const auto twice = place.json("twice.json")["radiosity"];
+    for (std::size_t i = 0; i < once.size(); ++i) {
+        REQUIRE(twice[i][0].get<double>() == Approx(2.0 * once[i][0].get<double>()).epsilon(1e-5));
+    }
+    const auto row = place.json("row.json");
+    CHECK(row["quantity"] == "row");
+    CHECK(row["values"].size() * 3 == window.solution.radiosity.size());
+}
+
+TEST_CASE("Viewer: what is cut stays when the rest is cancelled", "[viewer][gl]") {
+    const Workplace place;
+    const int status =
+        place.view("live\npatches 46\ncancel\nreport rest.json\nscreenshot rest.png\n",
+                   "--size 300x200 --preset default --patches-per-face 9 --refine 3000 --jobs 1");
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto rest = place.json("rest.json");
+    CHECK(rest["radiosity"].size() > 45);
+    CHECK(rest["radiosity"].size() < 3000);
+    CHECK(rest["light"].get<std::string>().find("stopped") != std::string::npos);
+}
+
 TEST_CASE("Viewer: sun and sky give the light that they give elsewhere", "[viewer][gl][sun]") {
     const Workplace place;
     std::string scene = place.read("room.json");

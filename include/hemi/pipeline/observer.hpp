@@ -10,6 +10,8 @@
 
 namespace hemi {
 
+struct Refinement;
+
 /// What long work is at.
 enum class Phase {
     visibility,     ///< hemicubes for visibilities; units are rows
@@ -51,6 +53,9 @@ public:
     /// A row of visibilities has come, from which factors will be made once all are there. Valid during the
     /// call.
     virtual void row(std::uint32_t patch, const VisibilityRow& row);
+    /// A mesh on the way of a refinement is solved, and its error estimated; valid during the call.
+    /// @param so_far  with the form factors and the solution of the mesh, whose vertices are not gathered
+    virtual void refined(const Refinement& so_far);
     /// Something that a person should know and that does not stop the work.
     /// @param message  one sentence
     /// @param setting  name of a setting that would help, such as "max-memory"; empty: none

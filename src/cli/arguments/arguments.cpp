@@ -185,21 +185,25 @@ void add_estimate(CLI::App& app, RowOptions& rows) {
     }
 }
 
-/// Patches that are cut until the solution is good enough.
-void add_refinement(CLI::App& app, SolveArguments& a) {
+/// Patches that are cut until the solution is good enough. After add_estimate.
+/// @param of_factors  whether the target may be for form factors, too
+void add_refinement(CLI::App& app, RowOptions& rows, RefinementOptions& a, bool of_factors) {
     Options options(app, "Refinement");
     options
-        .choice<ErrorOf>("--error-target-of", "ERROR",
-                         "error of vertices (in pictures; the default), of the field (one value a patch), of "
-                         "groups' means; or of factors: patches stay, settings are chosen",
-                         a.rows.error_of)
+        .choice<ErrorOf>(
+            "--error-target-of", "ERROR",
+            fmt::format("error of vertices (in pictures; the default), of the field (one value a "
+                        "patch){}",
+                        of_factors ? ", of groups' means; or of factors: patches stay, settings "
+                                     "are chosen"
+                                   : " or of groups' means"),
+            rows.error_of)
         ->needs(app.get_option("--error-target"));
-    auto* refine = options.value("--refine", "N", "cut patches where it tells, until there are N",
-                                 [&a](const std::string& text) { a.refine = to_index("--refine", text, 1); });
+    auto* refine =
+        options.value("--refine", "N", "cut patches where it tells, until there are N",
+                      [&a](const std::string& text) { a.patches = to_index("--refine", text, 1); });
     options.value("--budget", "TIME", "cut no more patches after this time, such as 30s or 5m",
                   [&a](const std::string& text) { a.budget = parse_duration("--budget", text); });
-    options.flag("--parts", a.parts,
-                 "tables, .hres and .csv of cut patches, also where the scene's own patches are whole faces");
     refine->excludes(app.get_option("--method"))->excludes(app.get_option("--no-estimate"));
 }
 
@@ -259,7 +263,10 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     add_rows(app, a.rows);
     add_repair(app, a.rows.factors.repair);
     add_estimate(app, a.rows);
-    add_refinement(app, a);
+    add_refinement(app, a.rows, a.refinement, true);
+    Options(app, "Refinement")
+        .flag("--parts", a.parts,
+              "tables, .hres and .csv of cut patches, also where the scene's own patches are whole faces");
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
     add_solver(app, a.solver);
@@ -441,8 +448,11 @@ void add_render(CLI::App& app, RenderArguments& a) {
 #ifdef HEMI_WITH_VIEWER
 void add_view(CLI::App& app, ViewArguments& a) {
     add_scene(app, a.scene, "SCENE|RESULT", ".hres");
+    a.rows.error_of = ErrorOf::vertices;
     add_rows(app, a.rows);
     add_repair(app, a.rows.factors.repair);
+    add_estimate(app, a.rows);
+    add_refinement(app, a.rows, a.refinement, false);
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
     add_solver(app, a.solver);
@@ -460,6 +470,7 @@ void add_view(CLI::App& app, ViewArguments& a) {
     add_common(app, a.common, false);
     app.footer("Examples:\n"
                "  hemi view scenes/cornell-box.json\n"
+               "  hemi view scenes/l-room.json --error-target 1%\n"
                "  hemi view room.hres --flat");
 }
 

@@ -80,6 +80,19 @@ struct PictureOptions {
     std::optional<UpAxis> up; ///< none: the scene's
 };
 
+/// When patches that are cut are fine enough, with RowOptions::error_target.
+struct RefinementOptions {
+    std::uint32_t patches = 0; ///< so many; 0: as many as the error takes
+    double budget = 0.0;       ///< seconds, after which no patches are split any more; 0: no limit
+
+    [[nodiscard]] bool asked(const RowOptions& rows) const {
+        return patches > 0 || (rows.error_target && rows.error_of != ErrorOf::factors);
+    }
+    [[nodiscard]] RefinementGoal goal(const RowOptions& rows, Gather gather) const {
+        return {rows.error_target, rows.error_of, patches, budget, gather};
+    }
+};
+
 struct SolveArguments {
     CommonOptions common;
     SceneOptions scene;
@@ -87,18 +100,15 @@ struct SolveArguments {
     SolverSettings solver;
     PictureOptions picture;
     Gather gather = Gather::automatic;
-    std::uint32_t refine = 0; ///< number of patches that they are cut into; 0: as the scene wants
-    bool parts = false;       ///< results are about the patches that it ends with, even of whole faces
-    double budget = 0.0;      ///< seconds, after which no patches are split any more; 0: no limit
+    RefinementOptions refinement;
+    bool parts = false; ///< results are about the patches that it ends with, even of whole faces
     std::optional<std::filesystem::path> factors;
     std::optional<std::filesystem::path> result;
     std::optional<std::filesystem::path> radiosity;
     std::optional<std::filesystem::path> patches;
 
     /// Whether patches become smaller until the result is good enough.
-    [[nodiscard]] bool refines() const {
-        return refine > 0 || (rows.error_target && rows.error_of != ErrorOf::factors);
-    }
+    [[nodiscard]] bool refines() const { return refinement.asked(rows); }
     /// Whether an output holds the irradiance, which takes the rows of all patches.
     [[nodiscard]] bool with_irradiance() const {
         return result || radiosity || (picture.quantity && needs_all_rows(*picture.quantity));
@@ -211,6 +221,7 @@ struct ViewArguments {
     SolverSettings solver;
     PictureOptions picture; ///< to start with; its output is not used
     Gather gather = Gather::automatic;
+    RefinementOptions refinement;
     std::string script; ///< file that drives the window; empty: a person does
     viewer::Controls controls = viewer::Controls::standard;
 };
