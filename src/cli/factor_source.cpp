@@ -26,9 +26,10 @@ std::string preset_word(const std::optional<Preset>& preset) {
     return preset ? std::string(to_word(*preset)) : "none";
 }
 
-/// Raw form factors from a file.
-FormFactors reuse_rows(const std::filesystem::path& path, const LoadedScene& loaded,
-                       const FactorSettings& settings, const CommonOptions& common) {
+} // namespace
+
+FormFactors read_rows(const std::filesystem::path& path, const LoadedScene& loaded,
+                      const FactorSettings& settings, const CommonOptions& common) {
     FormFactors factors = read_form_factors(path, loaded.scene, loaded.mesh);
     const Provenance& made = factors.provenance;
     check_setting(common, path, "--resolution", settings.resolution.value_or(0), made.resolution);
@@ -39,8 +40,6 @@ FormFactors reuse_rows(const std::filesystem::path& path, const LoadedScene& loa
     check_setting(common, path, "--shadow-rays", settings.shadow_rays.value_or(0), made.shadow_rays);
     return factors;
 }
-
-} // namespace
 
 bool has_rows(const SolveArguments& arguments) {
     std::error_code ignored; // a name that no file can have
@@ -80,7 +79,7 @@ FormFactors find_rows(const SolveArguments& arguments, const LoadedScene& loaded
                       RowCheckpoint* checkpoint) {
     FormFactors factors;
     if (has_rows(arguments)) {
-        factors = reuse_rows(*arguments.factors, loaded, arguments.rows.factors, arguments.common);
+        factors = read_rows(*arguments.factors, loaded, arguments.rows.factors, arguments.common);
         terminal.detail(fmt::format("form factors from {}: no rows to compute", arguments.factors->string()));
         if (arguments.with_irradiance() && !factors.matrix.all_known()) {
             throw InputError(fmt::format("{}: rows are missing that --result and --radiosity need",

@@ -15,6 +15,11 @@ namespace hemi::cli {
 
 /// Whether `--factors` names rows that are there.
 [[nodiscard]] bool has_rows(const SolveArguments& arguments);
+/// Raw form factors of a file.
+/// @throws InputError if it belongs to another geometry; InvalidArgument if a setting that was given on the
+///   command line is not the file's.
+[[nodiscard]] FormFactors read_rows(const std::filesystem::path& path, const LoadedScene& loaded,
+                                    const FactorSettings& settings, const CommonOptions& common);
 /// Raw form factors: those of the `--factors` file if it is there, else computed and stored in it.
 /// @param patches     whose rows are computed
 /// @param checkpoint  discarded when the rows are complete; may be null

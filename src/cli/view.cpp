@@ -1,4 +1,5 @@
 #include "cli/commands.hpp"
+#include "cli/factor_source.hpp"
 #include "cli/loaded_scene.hpp"
 #include "cli/output_paths.hpp"
 #include "cli/picture_output.hpp"
@@ -50,7 +51,8 @@ void check_display() {
 std::string given_options(const CommonOptions& common) {
     std::string text;
     for (const auto& [name, values] : common.words) {
-        if (std::find(window_options().begin(), window_options().end(), name) != window_options().end()) {
+        if (name == "--factors" || // which a dropped file replaces
+            std::find(window_options().begin(), window_options().end(), name) != window_options().end()) {
             continue;
         }
         text += ' ';
@@ -69,9 +71,15 @@ public:
     ViewSource(const ViewArguments& arguments, const Terminal& terminal)
         : arguments_(arguments), terminal_(terminal) {}
 
-    [[nodiscard]] viewer::ViewerInput open(const std::filesystem::path& path) const {
+    /// @param factors  stored rows of the scene; empty: none
+    [[nodiscard]] viewer::ViewerInput open(const std::filesystem::path& path,
+                                           const std::filesystem::path& factors) const {
+        if (!factors.empty() && !io::is_scene_file(path)) {
+            throw InvalidArgument(
+                fmt::format("{}: rows are of a scene, and {} is none", factors.string(), path.string()));
+        }
         if (io::is_scene_file(path)) {
-            return scene(path);
+            return scene(path, factors);
         }
         if (extension_of(path) == ".hres") {
             return result(path);
@@ -103,7 +111,8 @@ private:
         return input;
     }
 
-    [[nodiscard]] viewer::ViewerInput scene(const std::filesystem::path& path) const {
+    [[nodiscard]] viewer::ViewerInput scene(const std::filesystem::path& path,
+                                            const std::filesystem::path& factors) const {
         SceneOptions options = arguments_.scene;
         if (path != options.path) { // opened in the window
             options.path = path;
@@ -111,7 +120,9 @@ private:
         }
         auto loaded = std::make_shared<LoadedScene>(load_scene(options, terminal_));
         std::function<void(viewer::ViewerInput&, PatchMesh)> adopt;
-        if (arguments_.refinement.asked(arguments_.rows)) {
+        if (!factors.empty()) {
+            adopt_mesh_of_rows(*loaded, options, factors);
+        } else if (arguments_.refinement.asked(arguments_.rows)) {
             check_refinable(loaded->scene);
             const CoarseMesh begin = coarse_begin(*loaded, options);
             adopt = [whole = *loaded, begin](viewer::ViewerInput& input, PatchMesh mesh) {
@@ -137,11 +148,31 @@ private:
         input.factor_settings = arguments_.rows.factors;
         input.solver = arguments_.solver;
         input.gather = arguments_.gather;
+        if (!factors.empty()) {
+            input.factor_file = factors;
+            input.command += " --factors " + viewer::quoted(factors.string());
+            input.factors = std::make_shared<const FormFactors>(stored_factors(factors, *loaded));
+            input.factor_settings->preset =
+                input.factors->provenance.preset.value_or(input.factor_settings->preset);
+            input.factor_settings->method = input.factors->provenance.method;
+        }
         if (input.adopt) {
             input.refinement = arguments_.refinement.goal(arguments_.rows, arguments_.gather);
         }
         input.observer = std::make_shared<TerminalObserver>(terminal_);
         return input;
+    }
+
+    /// Prepared, of all patches.
+    [[nodiscard]] FormFactors stored_factors(const std::filesystem::path& path,
+                                             const LoadedScene& loaded) const {
+        FormFactors factors = read_rows(path, loaded, arguments_.rows.factors, arguments_.common);
+        if (!factors.matrix.all_known()) {
+            throw InputError(
+                fmt::format("{}: rows are missing; the window needs those of all patches", path.string()));
+        }
+        prepare_form_factors(factors, arguments_.rows.factors.repair);
+        return factors;
     }
 
     /// Scene, mesh and what results hold of them.
@@ -185,8 +216,10 @@ ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
     viewer::ViewerSettings settings;
     settings.controls = arguments.controls;
     settings.script = arguments.script;
-    settings.open = [&source](const std::filesystem::path& file) { return source.open(file); };
-    viewer::run_viewer(source.open(path), settings);
+    settings.open = [&source](const std::filesystem::path& file, const std::filesystem::path& factors) {
+        return source.open(file, factors);
+    };
+    viewer::run_viewer(source.open(path, arguments.factors.value_or(std::filesystem::path())), settings);
     return ExitStatus::ok;
 }
 

@@ -272,7 +272,12 @@ void Application::moved() {
 
 void Application::open(const std::filesystem::path& file) {
     note_ = fmt::format("reading {}", file.filename().string());
-    opener_.open(file);
+    const ViewerInput& input = document_->input();
+    if (file.extension() == ".hff") {
+        opener_.open(input.file, file);
+    } else {
+        opener_.open(file, same_file(file, input.file) ? input.factor_file : std::filesystem::path());
+    }
 }
 
 void Application::take_opened() {

@@ -5,19 +5,19 @@
 
 namespace hemi::viewer {
 
-Opener::Opener(std::function<ViewerInput(const std::filesystem::path&)> open, std::function<void()> done)
+Opener::Opener(decltype(ViewerSettings::open) open, std::function<void()> done)
     : open_(std::move(open)), done_(std::move(done)) {}
 
-void Opener::open(const std::filesystem::path& file) {
+void Opener::open(const std::filesystem::path& file, const std::filesystem::path& factors) {
     if (thread_.joinable()) {
         thread_.join();
     }
     working_ = true;
     opened_.reset();
-    thread_ = std::jthread([this, file] {
+    thread_ = std::jthread([this, file, factors] {
         Opened opened{file, {}, {}};
         try {
-            opened.input = open_(file);
+            opened.input = open_(file, factors);
         } catch (const std::exception& error) {
             opened.problem = error.what();
         }

@@ -23,15 +23,16 @@ class Opener {
 public:
     /// @param open  @see ViewerSettings::open; @param done  called on the other thread when take() has
     /// something
-    Opener(std::function<ViewerInput(const std::filesystem::path&)> open, std::function<void()> done);
+    Opener(decltype(ViewerSettings::open) open, std::function<void()> done);
 
     /// Waits for the file before, where one is under way.
-    void open(const std::filesystem::path& file);
+    /// @param factors  see ViewerSettings::open
+    void open(const std::filesystem::path& file, const std::filesystem::path& factors);
     [[nodiscard]] bool busy() const;
     [[nodiscard]] std::optional<Opened> take();
 
 private:
-    std::function<ViewerInput(const std::filesystem::path&)> open_;
+    decltype(ViewerSettings::open) open_;
     std::function<void()> done_;
     mutable std::mutex mutex_;
     bool working_ = false;

@@ -458,7 +458,7 @@ void file_section(Choices& choices) {
     wishes.save_result = ImGui::Button("Save result") || wishes.save_result;
     ImGui::SameLine();
     wishes.reload = ImGui::Button("Read again") || wishes.reload;
-    faint("Drop a scene or a .hres on the window to open it.");
+    faint("Drop a scene or a .hres on the window to open it, or a .hff with the rows of this scene.");
 }
 
 } // namespace

@@ -29,6 +29,7 @@ class MeshRefiner;
 /// A scene to look at, solved or to be solved, and how to begin.
 struct ViewerInput {
     std::filesystem::path file;            ///< what was opened
+    std::filesystem::path factor_file;     ///< stored rows that are used; empty: none
     std::shared_ptr<const Scene> scene;    ///< names, materials, channels
     std::shared_ptr<const PatchMesh> mesh; ///< its patches
     Subdivision subdivision;               ///< how the mesh was made, for stored results
@@ -69,16 +70,17 @@ struct ViewerInput {
 struct ViewerSettings {
     Controls controls = Controls::standard;
     std::string script; ///< path of a script (see parse_script); empty: a person drives the window
-    /// Reads another file, or the same one again; called on a thread of its own. @throws InputError, …
-    std::function<ViewerInput(const std::filesystem::path&)> open;
+    /// Reads another file, or the same one again, with the file of its rows, if there is one; called on a
+    /// thread of its own. @throws InputError, …
+    std::function<ViewerInput(const std::filesystem::path&, const std::filesystem::path&)> open;
 };
 
 /// Opens a window and runs it until it is closed, or until the script ends. Call from the main thread.
 ///
 /// Mouse and keys: see guide(). Beside the scene stands a panel where the window is large enough for it.
 /// Screenshots have the pixels that draw_picture() gives for the same camera and size. The file is read again
-/// when it changes, and files that are dropped on the window are opened. An OpenGL error
-/// ends it.
+/// when it changes, and files that are dropped on the window are opened; a .hff holds rows of the open scene.
+/// An OpenGL error ends it.
 /// @throws NoDevice without a display or without OpenGL 4.5 on it; InputError if the script cannot be read or
 ///   understood, naming file and line; GlError; IoError where a script's file cannot be written.
 void run_viewer(ViewerInput input, const ViewerSettings& settings);

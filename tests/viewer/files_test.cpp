@@ -1,5 +1,8 @@
 #include "viewer/workplace.hpp"
 
+#include "hemi/io/result_file.hpp"
+
+using namespace hemi;
 using namespace hemi::viewer_test;
 
 namespace {
@@ -177,4 +180,36 @@ TEST_CASE("Viewer: quantities have the pixels that hemi render draws of them", "
     }
     CHECK(place.view("channel infrared\n", small) == 2);
     CHECK(place.view("show direct\n", small) == 2);
+}
+
+TEST_CASE("Viewer: stored rows of a scene are used, given or dropped, and no others", "[viewer][gl]") {
+    const Workplace place;
+    const std::string rows = "--preset exact --patches-per-face 16";
+    REQUIRE(place.run(fmt::format("'{}' solve room.json --device osmesa {} --factors room.hff --result "
+                                  "solve.hres",
+                                  HEMI_PROGRAM, rows)) == 0);
+    REQUIRE(place.run(fmt::format("'{}' factors room.json --device osmesa --preset plain --resolution 32 -o "
+                                  "other.hff",
+                                  HEMI_PROGRAM)) == 0);
+    REQUIRE(place.view("live\nclick 150 150\nshow row\nreport row.json\nwait\nreport given.json\n"
+                       "show picture\ncommand line.txt\nreload\nreport again.json\nsave-result "
+                       "window.hres\ndrop other.hff\nreport refused.json\n",
+                       "--size 300x200 --patches-per-face 16 --factors room.hff") == 0);
+    const auto row = place.json("row.json"); // at once
+    CHECK(row["values"].size() == 80);
+    const Solution solve = io::read_hres(place.path("solve.hres")).solution;
+    const Solution window = io::read_hres(place.path("window.hres")).solution;
+    REQUIRE(window.radiosity.size() == solve.radiosity.size());
+    for (std::size_t k = 0; k < solve.radiosity.size(); ++k) {
+        REQUIRE(window.radiosity[k] == Approx(solve.radiosity[k]).epsilon(1e-5));
+    }
+    CHECK(place.json("again.json")["radiosity"] == place.json("given.json")["radiosity"]);
+    CHECK(place.read("line.txt").find("--factors room.hff") != std::string::npos);
+    const auto refused = place.json("refused.json"); // of another geometry; what was open stays
+    CHECK(refused["message"].get<std::string>().find("other.hff") != std::string::npos);
+    CHECK(refused["radiosity"] == place.json("given.json")["radiosity"]);
+    // Dropped on the scene that is open.
+    REQUIRE(place.view("live\ncancel\ndrop room.hff\nreport dropped.json\n",
+                       "--size 300x200 --preset exact --patches-per-face 16") == 0);
+    CHECK(place.json("dropped.json")["radiosity"] == place.json("given.json")["radiosity"]);
 }

@@ -459,6 +459,11 @@ void add_view(CLI::App& app, ViewArguments& a) {
     a.picture.size = {1280, 720};
     add_picture(app, a.picture, nullptr, false);
     add_gather(app, a.gather);
+    auto* factors = Options(app, "Form factors")
+                        .path("--factors", "FILE.hff", a.factors, "use these form factors, with no new row");
+    for (const char* name : {"--error-target", "--refine"}) {
+        factors->excludes(app.get_option(name));
+    }
     Options window(app, "Window");
     window.choice<viewer::Controls>("--controls", "NAME",
                                     "standard (the default) or blender: what the mouse does", a.controls);

@@ -222,6 +222,7 @@ struct ViewArguments {
     PictureOptions picture; ///< to start with; its output is not used
     Gather gather = Gather::automatic;
     RefinementOptions refinement;
+    std::optional<std::filesystem::path> factors;
     std::string script; ///< file that drives the window; empty: a person does
     viewer::Controls controls = viewer::Controls::standard;
 };
