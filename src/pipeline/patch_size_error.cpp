@@ -295,7 +295,8 @@ private:
     }
 
     /// Errors of all patches that count, modelled: a sum of both signs, neither below 0, that agrees best
-    /// with the sample, relative to what the signs are there; then scaled to the sample's whole.
+    /// with the sample, relative to what the signs are there; then scaled to the sample's whole. Patches of
+    /// the sample have no less than was found there.
     /// @param squares  of the sample: area means of the squared errors of every patch, channel by channel
     [[nodiscard]] std::vector<double> model_patches(const std::vector<Drawn>& sample,
                                                     const std::vector<double>& squares) const {
@@ -331,6 +332,10 @@ private:
                 if (reflectance_[at(patch, c)] > 0.0) {
                     result[at(patch, c)] = std::sqrt(scale * modelled(patch));
                 }
+            }
+            for (std::size_t k = 0; k < sample.size(); ++k) {
+                double& error = result[at(sample[k].patch, c)];
+                error = std::max(error, std::sqrt(squares[k * channels_ + c]));
             }
         }
         return result;

@@ -37,9 +37,11 @@ constexpr double aim = 0.9;
 /// estimate, more would follow an estimate from a mesh that is too coarse to see where the error is.
 constexpr double least_split = 1.0 / 16.0;
 constexpr double most_split = 1.0 / 3.0;
-/// Times the usual sample of patches for every estimate: refinement stops where it says so, and would stop
-/// too early by a lucky one.
-constexpr double effort = 2.0;
+/// Times the usual sample of patches for estimates near the goal: refinement stops where they say so, and
+/// would stop too early by a lucky one.
+constexpr double effort_near_goal = 2.0;
+/// While the error is so many times the goal, the next step does not come near it.
+constexpr double far_from_goal = 2.0;
 /// Patches are not cut into more than this share of the scene's diagonal: two surfaces that touch have
 /// singular light there, at any size.
 constexpr double least_size = 1e-3;
@@ -326,10 +328,12 @@ private:
 
     /// @param last  with all vertices, if they are gathered, and the form factors' error
     Errors estimate(bool last) {
+        const bool far = !last && (!goal_.error || result_.steps.empty() ||
+                                   result_.steps.back().error > far_from_goal * *goal_.error);
         const bool gathers = should_gather(goal_.gather, settings_, result_.mesh, result_.solution);
-        result_.solution.patch_size_error =
-            estimate_patch_size_error(scene_, result_.mesh, result_.factors, result_.solution, settings_,
-                                      observer_, gathers && !last ? Gather::on : Gather::off, effort);
+        result_.solution.patch_size_error = estimate_patch_size_error(
+            scene_, result_.mesh, result_.factors, result_.solution, settings_, observer_,
+            gathers && !last ? Gather::on : Gather::off, far ? 1.0 : effort_near_goal);
         if (!result_.solution.patch_size_error) {
             if (!result_.steps.empty()) {
                 result_.stopped = fmt::format("memory is short to estimate the error of {}",
@@ -375,11 +379,14 @@ private:
         std::stable_sort(order.begin(), order.end(),
                          [&parts](std::uint32_t a, std::uint32_t b) { return parts[a] > parts[b]; });
         // What the error's other parts leave for the patches' size, of the square of what it is now.
+        // Estimates scatter, and a finer mesh is no worse than a coarser one: the least so far says how far
+        // it is.
         double wanted = 0.0;
         if (goal_.error && errors.patch_size > 0.0) {
             const double others = errors.all * errors.all - errors.patch_size * errors.patch_size;
+            least_error_ = std::min(least_error_, errors.patch_size);
             wanted = std::max(0.0, std::pow(aim * *goal_.error, 2.0) - std::max(0.0, others)) /
-                     (errors.patch_size * errors.patch_size);
+                     (least_error_ * least_error_);
         }
         const auto share = [&mesh](double of) {
             return static_cast<std::size_t>(std::ceil(of * mesh.size()));
@@ -511,6 +518,7 @@ private:
     RefinementRows rows_;
     Stopwatch watch_;
     Refinement result_;
+    double least_error_ = std::numeric_limits<double>::infinity(); ///< of the patches' size, so far
     std::vector<double> contributions_;  ///< of the patches that the last step began with
     std::vector<std::uint32_t> parents_; ///< of the patches as they are now, among those
 };

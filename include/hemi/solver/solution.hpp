@@ -55,7 +55,8 @@ struct PatchSizeError {
     FieldError field;               ///< of one constant for each patch
     std::vector<GroupError> groups; ///< of every group; empty where there are too many
     /// Absolute, as RadiosityErrorEstimate::patches: rms of the interpolated values over a patch. Modelled,
-    /// from how fast the radiosity changes there, to agree with the sample.
+    /// from how fast the radiosity changes there, to agree with the sample, whose patches have no less than
+    /// was found there.
     std::vector<double> patches;
     std::uint32_t sampled = 0; ///< patches whose quarters were looked at
     double seconds = 0.0;      ///< that took

@@ -87,16 +87,17 @@ std::string advice(const SolutionError& error, const PatchMesh& mesh) {
     if (error.patch_size < 2.0 * std::hypot(error.factors, error.solver)) {
         return {};
     }
-    double area = 0.0;
-    double size = 0.0; // mean over the area
-    for (const double patch : mesh.areas()) {
-        area += patch;
-        size += patch * std::sqrt(patch);
+    std::string by = fmt::format("--error-target {:.2g}%", 50.0 * error.vertices.rms);
+    if (!mesh.cuts().any()) {
+        double area = 0.0;
+        double size = 0.0; // mean over the area
+        for (const double patch : mesh.areas()) {
+            area += patch;
+            size += patch * std::sqrt(patch);
+        }
+        by = fmt::format("--patch-size {:.2g}, half of it, or {}", 0.5 * size / area, by);
     }
-    return fmt::format(
-        "most of it from the patches' size: half of it, --patch-size {:.2g}, would about halve "
-        "the error",
-        0.5 * size / area);
+    return fmt::format("most of it from the patches' size: {} would halve it", by);
 }
 
 /// How far the solution is from the exact one; empty where that was not estimated.
