@@ -120,6 +120,9 @@ private:
             input.command += " " + viewer::quoted(more.string());
         }
         input.command += given_options(arguments_.common);
+        if (options.reader.up && (loaded->scene.sun || loaded->scene.sky)) {
+            input.command += fmt::format(" --up {}", to_word(*options.reader.up));
+        }
         io::ResultFile stored = loaded->result({});
         input.subdivision = loaded->subdivision;
         input.surfaces_as_read = std::move(stored.surfaces_as_read);

@@ -4,6 +4,7 @@
 #include "hemi/display/picture.hpp"
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,14 @@ namespace hemi {
 [[nodiscard]] std::vector<double> round_marks(double low, double high, std::size_t most);
 /// Words of one of them, with as many digits as tell it from the next.
 [[nodiscard]] std::string mark_text(double mark, const std::vector<double>& marks);
+
+/// Room that a legend takes below a picture.
+struct LegendSpace {
+    std::uint32_t width = 0;  ///< at least, pixels
+    std::uint32_t height = 0; ///< pixels
+};
+/// That below a picture of so many pixels of height, so that draw_legend() has room and covers nothing of it.
+[[nodiscard]] LegendSpace legend_space(std::uint32_t height);
 
 /// Draws a title and a scale with marks into the lower left of `srgb`.
 /// @param beyond  whether values lie below and above the scale: < and > at its ends say so
