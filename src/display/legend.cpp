@@ -21,6 +21,7 @@ constexpr int line_height = 12; // of the font, pixels before scaling
 constexpr int raised = 2;
 constexpr std::uint32_t least_width = 200; // of a picture with a legend, pixels
 constexpr std::uint32_t least_height = 160;
+constexpr std::uint32_t scale_height = 400; // of a picture for each step of its size
 // Of the legend, pixels before scaling.
 constexpr int legend_margin = 6;
 constexpr int legend_pad = 6;
@@ -28,7 +29,7 @@ constexpr int legend_height = 2 * legend_pad + 2 * line_height + 14;
 
 /// How much larger than in a small picture it is drawn.
 int scale_of_height(std::uint32_t height) {
-    return std::max(1, static_cast<int>(height) / 400);
+    return std::max(1, static_cast<int>(height / scale_height));
 }
 
 std::uint8_t srgb_of(float linear) {
@@ -180,17 +181,6 @@ std::string mark_text(double mark, const std::vector<double>& marks) {
     return fmt::format("{:.{}f}", mark, decimals);
 }
 
-LegendSpace legend_space(std::uint32_t height) {
-    constexpr std::uint32_t box_width = 320; // of a title of 40 letters
-    for (int scale = 1;; ++scale) {
-        const auto box = static_cast<std::uint32_t>((legend_height + 2 * legend_margin) * scale);
-        const std::uint32_t below = std::max(box, least_height > height ? least_height - height : 0);
-        if (scale_of_height(height + below) <= scale) {
-            return {box_width * static_cast<std::uint32_t>(scale), below};
-        }
-    }
-}
-
 bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title,
                  const std::array<bool, 2>& beyond) {
     const int width = static_cast<int>(picture.width);
@@ -252,6 +242,22 @@ bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view ti
         canvas.text(place(mark) - canvas.width_of(words) / 2, bar_bottom + 5 * s, words);
     }
     return true;
+}
+
+Picture legend_strip(std::uint32_t width, const ColourScale& scale, std::string_view title,
+                     const std::array<bool, 2>& beyond) {
+    constexpr std::uint32_t box_width = 320; // of a title of 40 letters
+    constexpr std::uint8_t paper = 255;
+    const std::uint32_t s = std::clamp(width / box_width, 1u, 2u);
+    Picture picture;
+    picture.width = std::max(width, box_width);
+    picture.height = s * scale_height;
+    picture.srgb.assign(std::size_t{picture.width} * picture.height * 3, paper);
+    draw_legend(picture, scale, title, beyond);
+    const std::uint32_t height = s * static_cast<std::uint32_t>(legend_height + 2 * legend_margin);
+    picture.srgb.erase(picture.srgb.begin(), picture.srgb.end() - std::ptrdiff_t{height} * picture.width * 3);
+    picture.height = height;
+    return picture;
 }
 
 } // namespace hemi

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace hemi {
 
@@ -28,17 +27,15 @@ std::uint8_t encoded(float linear) {
 /// The map with a legend below it.
 ValueMap with_legend(const ValueMap& map, const ColourScale& scale, const std::string& title,
                      const std::array<bool, 2>& beyond) {
-    const LegendSpace space = legend_space(map.height);
-    Picture picture;
-    picture.width = std::max(map.width, space.width);
-    picture.height = map.height + space.height;
-    picture.srgb.assign(std::size_t{picture.width} * picture.height * 3, paper);
+    const Picture legend = legend_strip(map.width, scale, title, beyond);
+    ValueMap both{legend.width, map.height + legend.height, {}};
+    both.rgb.assign(std::size_t{both.width} * map.height * 3, paper);
     for (std::uint32_t y = 0; y < map.height; ++y) {
         std::copy_n(map.rgb.begin() + std::ptrdiff_t{y} * map.width * 3, std::size_t{map.width} * 3,
-                    picture.srgb.begin() + std::ptrdiff_t{y} * picture.width * 3);
+                    both.rgb.begin() + std::ptrdiff_t{y} * both.width * 3);
     }
-    draw_legend(picture, scale, title, beyond);
-    return {picture.width, picture.height, std::move(picture.srgb)};
+    both.rgb.insert(both.rgb.end(), legend.srgb.begin(), legend.srgb.end());
+    return both;
 }
 
 } // namespace

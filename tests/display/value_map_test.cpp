@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 using namespace hemi;
 
@@ -62,8 +63,8 @@ TEST_CASE("value map: the legend stands below and leaves the map as it is", "[di
     const std::array<GridValues, 1> grids{GridValues{2, 2, {0, 1, 3}, {0.0, 10.0, 20.0}}};
     const ValueMap bare = make_value_map(grids, {0.0, 10.0});
     const ValueMap map = make_value_map(grids, {0.0, 10.0}, "irradiance  [W/m²]");
-    REQUIRE(map.width >= 200);
-    REQUIRE(map.height >= 160);
+    REQUIRE(map.width == 320);
+    REQUIRE(map.height > bare.height + 40);
     REQUIRE(map.rgb.size() == std::size_t{map.width} * map.height * 3);
     for (std::uint32_t y = 0; y < bare.height; ++y) {
         REQUIRE(std::equal(bare.rgb.begin() + y * bare.width * 3, bare.rgb.begin() + (y + 1) * bare.width * 3,
@@ -86,13 +87,16 @@ TEST_CASE("value map: the legend stands below and leaves the map as it is", "[di
     // 20 is beyond: the scale says so, and another title or range is another picture.
     CHECK(make_value_map(grids, {0.0, 20.0}, "irradiance  [W/m²]").rgb != map.rgb);
     CHECK(make_value_map(grids, {0.0, 10.0}, "irradiance  [lx]").rgb != map.rgb);
-    // A tall map has a larger legend.
-    GridValues tall{1, 100, {}, {}};
+    // A wide map has a larger legend, a tall one has not.
+    GridValues wide{100, 1, {}, {}};
     for (std::uint32_t k = 0; k < 100; ++k) {
-        tall.cell.push_back(k);
-        tall.values.push_back(k);
+        wide.cell.push_back(k);
+        wide.values.push_back(k);
     }
-    const ValueMap large = make_value_map(std::array{tall}, {0.0, 99.0}, "sky");
-    CHECK(large.height > 3200 + 400);
-    CHECK(large.width > 32);
+    const ValueMap large = make_value_map(std::array{wide}, {0.0, 99.0}, "sky");
+    CHECK(large.width == 800);
+    CHECK(large.height == 8 + 2 * (map.height - bare.height));
+    GridValues tall = wide;
+    std::swap(tall.columns, tall.rows);
+    CHECK(make_value_map(std::array{tall}, {0.0, 99.0}, "sky").width == 320);
 }
