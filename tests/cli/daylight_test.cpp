@@ -177,6 +177,18 @@ TEST_CASE("hemi solve: lumens are what a lamp gives", "[cli][solve][daylight]") 
         }
         CHECK(sum / patches == Approx(lux).epsilon(5e-5));
     }
+    // Of a coloured lamp, lumens are what the shares of luminance make of its channels: not their sum.
+    Json coloured = cube(2);
+    coloured["channels"] = {"red", "green", "blue"};
+    coloured["materials"]["lamp"] = {{"reflectance", 0.5}};
+    coloured["groups"] = {{"ceiling", {{"luminous_flux", {3000, 2000, 1000}}}}};
+    const Json colours =
+        run_hemi(on_cpu({"solve", directory.write("colours.json", coloured), "--json"})).json();
+    const double lumens = 0.2126 * 3000.0 + 0.7152 * 2000.0 + 0.0722 * 1000.0;
+    CHECK(colours["balance"]["emitted"].get<double>() == Approx(lumens).epsilon(1e-12));
+    CHECK(colours["balance"]["absorbed"].get<double>() == Approx(lumens).epsilon(1e-5));
+    coloured["groups"]["ceiling"]["luminous_flux"] = 3000;
+    CHECK(run_hemi(on_cpu({"solve", directory.write("white.json", coloured)})).out_has("emitted 3000 lm"));
     CHECK(run_hemi(on_cpu({"solve", file})).out_has("emitted 3000 lm"));
     const Outcome heat = run_hemi(on_cpu({"heat", file, "--temperature", "floor=300"}));
     CHECK(heat.status == 3);
