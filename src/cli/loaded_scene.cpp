@@ -99,6 +99,10 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     }
     terminal.warn(diagnostics);
     warn_of_turned_faces(scene, terminal);
+    if (options.reader.up && !options.up_is_visible && !scene.sky && !scene.sun) {
+        throw InvalidArgument(
+            fmt::format("--up: {} has neither sun nor sky, and no picture is drawn", options.path.string()));
+    }
     scene.enclosure = options.enclosure.value_or(scene.enclosure);
     if (!options.environment.empty()) {
         replace_environment(scene, options.environment);

@@ -64,7 +64,8 @@ std::array<std::uint32_t, 3> channels_to_show(const std::vector<std::string>& ch
 
 Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOptions& options) {
     const std::optional<CameraOption>& option = options.camera;
-    if (option && option->up && options.up) {
+    const bool of_sky = scene.sun || scene.sky; // which it says something of, too
+    if (option && option->up && options.up && !of_sky) {
         throw InvalidArgument("--up: --camera names an up direction, too; leave one out");
     }
     const UpAxis up = options.up.value_or(scene.up);
@@ -78,8 +79,8 @@ Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOpt
         camera.up = option->up.value_or(camera.up);
         camera.fov = option->fov.value_or(camera.fov);
     }
-    if (options.up) {
-        camera.up = turned_upright({0.0, 0.0, 1.0}, up);
+    if (options.up && !(option && option->up)) {
+        camera.up = upwards(up);
     }
     const Vec3 view = camera.target - camera.eye;
     const double sine = glm::length(glm::cross(view, camera.up));

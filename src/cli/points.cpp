@@ -50,6 +50,7 @@ struct Lit {
 void add_sun_and_sky(const Scene& scene, Lit& lit) {
     lit.radiation.sun = scene.sun;
     lit.radiation.sky = scene.sky;
+    lit.radiation.up = scene.up;
     if (lit.radiation.sun) {
         lit.radiation.sun->irradiance.resize(lit.radiation.channels);
     }
@@ -96,7 +97,8 @@ Outputs check_outputs(const PointsArguments& arguments) {
             fmt::format("-o {}: a map is that of a grid (--grid)", arguments.output->string()));
     }
     for (const auto& [option, given] :
-         {std::pair{"--show", !arguments.show.empty()}, std::pair{"--range", arguments.range.has_value()}}) {
+         {std::pair{"--show", !arguments.show.empty()}, std::pair{"--range", arguments.range.has_value()},
+          std::pair{"--no-legend", !arguments.legend}}) {
         if (given && !is_map(arguments)) {
             throw InvalidArgument(fmt::format("{} is for maps: -o FILE.png", option));
         }
@@ -329,6 +331,17 @@ std::size_t shown_column(const PointsArguments& arguments, const PointColumns& c
     return static_cast<std::size_t>(found - columns.names.begin());
 }
 
+/// Of a column: that of irradiances, or by its name; shares have none.
+std::string unit_of(const std::string& column, const std::string& irradiance) {
+    if (column.starts_with("irradiance")) {
+        return irradiance;
+    }
+    if (column.starts_with("daylight_factor")) {
+        return "%";
+    }
+    return column.ends_with("_temperature") || column.starts_with("plane_") ? "K" : "";
+}
+
 /// Writes the map. @return report of it
 Report write_map(const PointsArguments& arguments, const Points& points, const PointColumns& columns,
                  const std::string& unit) {
@@ -355,14 +368,18 @@ Report write_map(const PointsArguments& arguments, const Points& points, const P
         grids.push_back({plane.columns, plane.rows, plane.cell, {next, end}});
         next = end;
     }
-    const ValueMap map = make_value_map(grids, range);
+    const std::string& name = columns.names[column];
+    const std::string unit_of_column = unit_of(name, unit);
+    const ValueMap map = make_value_map(
+        grids, range,
+        arguments.legend ? std::optional(unit_of_column.empty() ? name : name + "  [" + unit_of_column + "]")
+                         : std::nullopt);
     io::write_png(*arguments.output, map.width, map.height, map.rgb);
     Report report;
     report.add("map",
-               fmt::format("{} from {} (dark) to {} (bright){}", columns.names[column], number_text(range[0]),
-                           number_text(range[1]),
-                           columns.names[column].starts_with("irradiance") ? ", " + unit : ""),
-               {{"map", {{"column", columns.names[column]}, {"range", range}}}});
+               fmt::format("{} from {} (dark) to {} (bright){}", name, number_text(range[0]),
+                           number_text(range[1]), unit_of_column.empty() ? "" : ", " + unit_of_column),
+               {{"map", {{"column", name}, {"range", range}, {"unit", unit_of_column}}}});
     return report;
 }
 
@@ -417,15 +434,16 @@ ExitStatus run(const PointsArguments& arguments, const Terminal& terminal) {
                         ? light_of_scene(arguments, observer, terminal, seconds, find)
                         : light_of_result(arguments, seconds, find);
     const Stopwatch watch;
-    const PointValues values =
-        compute_point_values(lit.mesh, points.points, lit.radiation, lit.enclosure, arguments.rows.factors,
-                             arguments.facing.value_or(0.0), observer);
+    const PointValues values = compute_point_values(
+        lit.mesh, points.points, lit.radiation, lit.enclosure, arguments.rows.factors,
+        arguments.posture ? std::optional(arguments.facing.value_or(0.0)) : std::nullopt, observer);
     seconds["points"] = watch.seconds();
     const PointsAsked asked{lit.channels,
                             arguments.by_group ? lit.mesh.groups() : std::vector<std::string>(),
                             lit.heat,
                             arguments.posture,
                             arguments.facing.has_value(),
+                            arguments.body,
                             lit.horizontal};
     const PointColumns columns = point_columns(points.points, values, asked);
     Report report;

@@ -14,6 +14,7 @@
 #include "hemi/pipeline/light_balance.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/vertex_gather.hpp"
+#include "hemi/scene/light_unit.hpp"
 
 #include <fmt/format.h>
 
@@ -300,7 +301,8 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     write_solution(arguments, loaded, solution, false);
     PatchValues values = patch_values(loaded.scene, loaded.mesh);
     values.direct = solution.direct;
-    const std::optional<LightBalance> balance = light_balance(factors, values, solution.radiosity);
+    const std::optional<LightBalance> balance =
+        light_balance(factors, values, solution.radiosity, flux_weights(loaded.scene));
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
     Report report =
         solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, balance, seconds);

@@ -145,6 +145,9 @@ private:
             input.command += " " + viewer::quoted(more.string());
         }
         input.command += given_options(arguments_.common);
+        if (options.reader.up && (loaded->scene.sun || loaded->scene.sky)) {
+            input.command += fmt::format(" --up {}", to_word(*options.reader.up));
+        }
         input.factor_settings = arguments_.rows.factors;
         input.solver = arguments_.solver;
         input.gather = arguments_.gather;

@@ -19,6 +19,18 @@ constexpr Colour ground{22, 24, 26};
 constexpr Colour ink{235, 235, 235};
 constexpr int line_height = 12; // of the font, pixels before scaling
 constexpr int raised = 2;
+constexpr std::uint32_t least_width = 200; // of a picture with a legend, pixels
+constexpr std::uint32_t least_height = 160;
+constexpr std::uint32_t scale_height = 400; // of a picture for each step of its size
+// Of the legend, pixels before scaling.
+constexpr int legend_margin = 6;
+constexpr int legend_pad = 6;
+constexpr int legend_height = 2 * legend_pad + 2 * line_height + 14;
+
+/// How much larger than in a small picture it is drawn.
+int scale_of_height(std::uint32_t height) {
+    return std::max(1, static_cast<int>(height / scale_height));
+}
 
 std::uint8_t srgb_of(float linear) {
     const float srgb =
@@ -53,8 +65,7 @@ std::vector<Run> runs_of(std::string_view text) {
 
 class Canvas {
 public:
-    explicit Canvas(Picture& picture)
-        : picture_(picture), scale_(std::max(1, static_cast<int>(picture.height) / 400)) {}
+    explicit Canvas(Picture& picture) : picture_(picture), scale_(scale_of_height(picture.height)) {}
 
     [[nodiscard]] int scale() const { return scale_; }
 
@@ -172,19 +183,17 @@ std::string mark_text(double mark, const std::vector<double>& marks) {
 
 bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title,
                  const std::array<bool, 2>& beyond) {
-    constexpr int least_width = 200;
-    constexpr int least_height = 160;
     const int width = static_cast<int>(picture.width);
     const int height = static_cast<int>(picture.height);
-    if (width < least_width || height < least_height) {
+    if (picture.width < least_width || picture.height < least_height) {
         return false;
     }
     Canvas canvas(picture);
     const int s = canvas.scale();
-    const int margin = 6 * s;
-    const int pad = 6 * s;
+    const int margin = legend_margin * s;
+    const int pad = legend_pad * s;
     const int box_width = std::min(std::max(220 * s, canvas.width_of(title) + 2 * pad), width - 2 * margin);
-    const int box_height = 2 * pad + 2 * line_height * s + 14 * s;
+    const int box_height = legend_height * s;
     const int left = margin;
     const int top = height - margin - box_height;
     canvas.fill(left, top, left + box_width, top + box_height, ground);
@@ -233,6 +242,22 @@ bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view ti
         canvas.text(place(mark) - canvas.width_of(words) / 2, bar_bottom + 5 * s, words);
     }
     return true;
+}
+
+Picture legend_strip(std::uint32_t width, const ColourScale& scale, std::string_view title,
+                     const std::array<bool, 2>& beyond) {
+    constexpr std::uint32_t box_width = 320; // of a title of 40 letters
+    constexpr std::uint8_t paper = 255;
+    const std::uint32_t s = std::clamp(width / box_width, 1u, 2u);
+    Picture picture;
+    picture.width = std::max(width, box_width);
+    picture.height = s * scale_height;
+    picture.srgb.assign(std::size_t{picture.width} * picture.height * 3, paper);
+    draw_legend(picture, scale, title, beyond);
+    const std::uint32_t height = s * static_cast<std::uint32_t>(legend_height + 2 * legend_margin);
+    picture.srgb.erase(picture.srgb.begin(), picture.srgb.end() - std::ptrdiff_t{height} * picture.width * 3);
+    picture.height = height;
+    return picture;
 }
 
 } // namespace hemi

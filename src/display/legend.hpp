@@ -4,6 +4,7 @@
 #include "hemi/display/picture.hpp"
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,5 +22,10 @@ namespace hemi {
 /// @return whether there was room for it
 bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title,
                  const std::array<bool, 2>& beyond = {false, false});
+
+/// The same by itself, on white, to stand below a picture: `linear` is empty.
+/// @param width  of the picture, pixels; a narrower one than 320 gets a legend of 320
+[[nodiscard]] Picture legend_strip(std::uint32_t width, const ColourScale& scale, std::string_view title,
+                                   const std::array<bool, 2>& beyond = {false, false});
 
 } // namespace hemi

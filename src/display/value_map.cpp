@@ -1,6 +1,7 @@
 #include "hemi/display/value_map.hpp"
 
 #include "display/colour_scale.hpp"
+#include "display/legend.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
@@ -23,9 +24,24 @@ std::uint8_t encoded(float linear) {
     return static_cast<std::uint8_t>(std::lround(255.0 * curved));
 }
 
+/// The map with a legend below it.
+ValueMap with_legend(const ValueMap& map, const ColourScale& scale, const std::string& title,
+                     const std::array<bool, 2>& beyond) {
+    const Picture legend = legend_strip(map.width, scale, title, beyond);
+    ValueMap both{legend.width, map.height + legend.height, {}};
+    both.rgb.assign(std::size_t{both.width} * map.height * 3, paper);
+    for (std::uint32_t y = 0; y < map.height; ++y) {
+        std::copy_n(map.rgb.begin() + std::ptrdiff_t{y} * map.width * 3, std::size_t{map.width} * 3,
+                    both.rgb.begin() + std::ptrdiff_t{y} * both.width * 3);
+    }
+    both.rgb.insert(both.rgb.end(), legend.srgb.begin(), legend.srgb.end());
+    return both;
+}
+
 } // namespace
 
-ValueMap make_value_map(std::span<const GridValues> grids, const std::array<double, 2>& range) {
+ValueMap make_value_map(std::span<const GridValues> grids, const std::array<double, 2>& range,
+                        const std::optional<std::string>& legend) {
     if (!(range[0] < range[1])) {
         throw InvalidArgument(fmt::format("map: from {} to {}; the range must ascend", range[0], range[1]));
     }
@@ -48,12 +64,15 @@ ValueMap make_value_map(std::span<const GridValues> grids, const std::array<doub
     ValueMap map{columns * side, rows * side, {}};
     map.rgb.assign(std::size_t{map.width} * map.height * 3, paper);
     const ColourScale scale{range[0], range[1], false};
+    std::array<bool, 2> beyond{false, false};
     std::uint32_t above = 0; // rows of grids before
     for (const GridValues& grid : grids) {
         for (std::size_t k = 0; k < grid.cell.size(); ++k) {
             if (!std::isfinite(grid.values[k])) {
                 continue;
             }
+            beyond[0] = beyond[0] || grid.values[k] < range[0];
+            beyond[1] = beyond[1] || grid.values[k] > range[1];
             const std::array<float, 3> colour = scale_colour(scale.position(grid.values[k]));
             const std::uint32_t column = grid.cell[k] % grid.columns;
             const std::uint32_t row = above + grid.rows - 1 - grid.cell[k] / grid.columns;
@@ -67,7 +86,7 @@ ValueMap make_value_map(std::span<const GridValues> grids, const std::array<doub
         }
         above += grid.rows + 1;
     }
-    return map;
+    return legend ? with_legend(map, scale, *legend, beyond) : map;
 }
 
 } // namespace hemi

@@ -34,16 +34,9 @@ std::vector<double> sun_irradiance(const PatchMesh& mesh, const Sun& sun, std::s
     parallel_for(mesh.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto patch = static_cast<std::uint32_t>(i);
-            const double cosine = glm::dot(mesh.normal(patch), sun.direction);
-            if (!(cosine > 0.0)) {
-                continue;
-            }
-            double lit = rays.lit_share(patch, sun.direction, first_rays);
-            if (lit > 0.0 && lit < 1.0) {
-                lit = rays.lit_share(patch, sun.direction, edge_rays);
-            }
+            const double share = rays.sun_share(patch, sun, first_rays, edge_rays);
             for (std::size_t c = 0; c < channels; ++c) {
-                result[i * channels + c] = sun.irradiance[c] * cosine * lit;
+                result[i * channels + c] = sun.irradiance[c] * share;
             }
         }
         stop_if_interrupted();
@@ -54,7 +47,8 @@ std::vector<double> sun_irradiance(const PatchMesh& mesh, const Sun& sun, std::s
 /// What patches see of the sky.
 class SkyShares {
 public:
-    SkyShares(const PatchMesh& mesh, const FormFactorMatrix& factors) : mesh_(mesh), factors_(factors) {
+    SkyShares(const PatchMesh& mesh, const FormFactorMatrix& factors, const Vec3& up)
+        : mesh_(mesh), factors_(factors), up_(up) {
         for (std::uint32_t i = 0; i < mesh.size(); ++i) {
             double radius = 0.0;
             const PatchCorners corners = mesh.corners(i);
@@ -75,7 +69,7 @@ public:
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
             hidden += static_cast<double>(row.values[k]) * behind(i, eyes, row.columns[k]);
         }
-        return PointDaylight::split(row.environment, row.blocked, open_sky(mesh_.normal(i)), hidden);
+        return PointDaylight::split(row.environment, row.blocked, open_sky(mesh_.normal(i), up_), hidden);
     }
 
 private:
@@ -106,8 +100,9 @@ private:
         const Vec3 way = mesh_.centres()[j] - mesh_.centres()[i];
         const double distance = glm::length(way);
         const double size = radii_[i] + radii_[j];
-        if (distance > far * size && std::abs(way.z) > size) {
-            return in_direction(way.z / distance);
+        const double rise = glm::dot(way, up_);
+        if (distance > far * size && std::abs(rise) > size) {
+            return in_direction(rise / distance);
         }
         const PatchCorners corners = mesh_.corners(j);
         const Vec3 normal = mesh_.normal(i);
@@ -117,10 +112,10 @@ private:
         double all = 0.0;
         for (std::size_t k = first; k < end; ++k) {
             all += eyes.weight[k] * point_factor(eyes.at[k], normal, corners.polygon());
-            above += eyes.weight[k] * sky_behind(eyes.at[k], normal, corners.polygon());
+            above += eyes.weight[k] * sky_behind(eyes.at[k], normal, corners.polygon(), up_);
         }
         if (!(all > 0.0)) {
-            return distance > 0.0 ? in_direction(way.z / distance) : SkyMoments{};
+            return distance > 0.0 ? in_direction(rise / distance) : SkyMoments{};
         }
         const double share = std::min(1.0, above.share / all);
         return {share, std::min(share, above.elevation / all)};
@@ -129,12 +124,13 @@ private:
 
     const PatchMesh& mesh_;
     const FormFactorMatrix& factors_;
+    Vec3 up_;
     std::vector<double> radii_;
 };
 
-std::vector<double> sky_irradiance(const PatchMesh& mesh, const Sky& sky, std::size_t channels,
-                                   const FormFactorMatrix& factors) {
-    const SkyShares shares(mesh, factors);
+std::vector<double> sky_irradiance(const PatchMesh& mesh, const Sky& sky, const Vec3& up,
+                                   std::size_t channels, const FormFactorMatrix& factors) {
+    const SkyShares shares(mesh, factors, up);
     std::vector<double> result(mesh.size() * channels, 0.0);
     parallel_for(mesh.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -163,7 +159,7 @@ DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,
         result.sun = sun_irradiance(mesh, *scene.sun, channels);
     }
     if (scene.sky) {
-        result.sky = sky_irradiance(mesh, *scene.sky, channels, factors);
+        result.sky = sky_irradiance(mesh, *scene.sky, upwards(scene.up), channels, factors);
     }
     return result;
 }

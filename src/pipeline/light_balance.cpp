@@ -10,13 +10,15 @@
 namespace hemi {
 
 std::optional<LightBalance> light_balance(const FormFactors& factors, const PatchValues& values,
-                                          std::span<const double> radiosity) {
+                                          std::span<const double> radiosity,
+                                          std::span<const double> weights) {
     const std::uint32_t patches = factors.matrix.size();
     const std::size_t channels = values.channels;
     const std::size_t count = patches * channels;
     if (radiosity.size() != count || values.reflectance.size() != count || values.exitance.size() != count ||
         (!values.environment.empty() && values.environment.size() != channels) ||
-        (!values.direct.empty() && values.direct.size() != count)) {
+        (!values.direct.empty() && values.direct.size() != count) ||
+        (!weights.empty() && weights.size() != channels)) {
         throw InvalidArgument(fmt::format("balance: {} values for {} patches of {} channels",
                                           radiosity.size(), patches, channels));
     }
@@ -39,12 +41,13 @@ std::optional<LightBalance> light_balance(const FormFactors& factors, const Patc
             if (!factors.matrix.known(i) && (radiosity[at] > 0.0 || is_lit_from_outside)) {
                 return std::nullopt;
             }
-            const double leaving = area * radiosity[at];
+            const double counted = weights.empty() ? area : weights[c] * area;
+            const double leaving = counted * radiosity[at];
             const double coming =
-                area * ((values.environment.empty() ? 0.0 : row.environment * values.environment[c]) +
-                        (values.direct.empty() ? 0.0 : values.direct[at]));
-            balance.emitted += area * values.exitance[at];
-            balance.incoming += area * values.exitance[at] + coming;
+                counted * ((values.environment.empty() ? 0.0 : row.environment * values.environment[c]) +
+                           (values.direct.empty() ? 0.0 : values.direct[at]));
+            balance.emitted += counted * values.exitance[at];
+            balance.incoming += counted * values.exitance[at] + coming;
             balance.absorbed += leaving * absorbed_share[at] + coming * absorbing[at];
             balance.environment += leaving * row.environment - coming;
             balance.lost += leaving * row.blocked;

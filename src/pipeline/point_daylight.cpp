@@ -9,8 +9,8 @@
 
 namespace hemi {
 
-PointDaylight::PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky)
-    : mesh_(mesh), sun_(std::move(sun)), sky_(std::move(sky)) {
+PointDaylight::PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky, UpAxis up)
+    : mesh_(mesh), sun_(std::move(sun)), sky_(std::move(sky)), up_(upwards(up)) {
     if (sun_) {
         rays_.emplace(mesh);
     }
@@ -19,8 +19,8 @@ PointDaylight::PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std:
         double low = std::numeric_limits<double>::infinity();
         double high = -low;
         for (const Vec3& corner : corners.polygon()) {
-            low = std::min(low, corner.z);
-            high = std::max(high, corner.z);
+            low = std::min(low, glm::dot(corner, up_));
+            high = std::max(high, glm::dot(corner, up_));
         }
         low_.push_back(low);
         high_.push_back(high);
@@ -29,11 +29,12 @@ PointDaylight::PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std:
 
 SkyMoments PointDaylight::seen_above(const Vec3& at, const std::optional<Vec3>& normal,
                                      std::uint32_t patch) const {
-    const bool all_above = low_[patch] >= at.z;
+    const double height = glm::dot(at, up_);
+    const bool all_above = low_[patch] >= height;
     if (all_above && !sky_) {
         return {1.0, 0.0};
     }
-    if (high_[patch] <= at.z) {
+    if (high_[patch] <= height) {
         return {};
     }
     const PatchCorners corners = mesh_.corners(patch);
@@ -43,7 +44,7 @@ SkyMoments PointDaylight::seen_above(const Vec3& at, const std::optional<Vec3>& 
     if (!(all > 0.0)) {
         return {all_above ? 1.0 : 0.0, 0.0};
     }
-    const SkyMoments above = normal ? sky_behind(at, *normal, polygon) : sky_behind(at, polygon);
+    const SkyMoments above = normal ? sky_behind(at, *normal, polygon, up_) : sky_behind(at, polygon, up_);
     const double share = all_above ? 1.0 : std::min(1.0, above.share / all);
     return {share, std::min(share, above.elevation / all)};
 }
@@ -60,13 +61,13 @@ PointDaylight::Environment PointDaylight::split(double environment, double block
     return {{scale * free_above, scale * elevation}, free > 0.0 ? scale * free_below : environment};
 }
 
-PointDaylight::Environment PointDaylight::seen_by(const Vec3& at, const Vec3& normal,
+PointDaylight::Environment PointDaylight::seen_by(const Vec3& at, const std::optional<Vec3>& normal,
                                                   const RowView& row) const {
     SkyMoments above;
     for (std::size_t k = 0; k < row.columns.size(); ++k) {
         above += static_cast<double>(row.values[k]) * seen_above(at, normal, row.columns[k]);
     }
-    return split(row.environment, row.blocked, open_sky(normal), above);
+    return split(row.environment, row.blocked, available(normal), above);
 }
 
 } // namespace hemi

@@ -19,7 +19,8 @@ public:
     /// @param mesh  must outlive this
     /// @param sun   none: no beam
     /// @param sky   none: no light; moments of what is seen are of shares alone then
-    PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky);
+    /// @param up    of the horizon
+    PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky, UpAxis up);
 
     /// What is seen of the environment.
     struct Environment {
@@ -37,46 +38,41 @@ public:
     /// @param above      of patches
     [[nodiscard]] static Environment split(double environment, double blocked, const SkyMoments& available,
                                            const SkyMoments& above);
-    /// That of an area by its row.
-    [[nodiscard]] Environment seen_by(const Vec3& at, const Vec3& normal, const RowView& row) const;
+    /// That of an area, or of a small sphere, by its row.
+    [[nodiscard]] Environment seen_by(const Vec3& at, const std::optional<Vec3>& normal,
+                                      const RowView& row) const;
 
     /// Irradiance of an area; what it sees need not be told where there is no sky.
     /// @param add  takes a channel and an irradiance
+    /// @param normal  none: mean spherical irradiance
     template <class Add>
-    void irradiance(const Vec3& at, const Vec3& normal, const Environment& seen, const Add& add) const {
-        const double cosine = sun_ ? glm::dot(normal, sun_->direction) : 0.0;
-        add_all(at, cosine, seen, add);
-    }
-    /// Mean spherical irradiance: a sphere's cross-section is a quarter of its surface.
-    template <class Add>
-    void spherical_irradiance(const Vec3& at, const Environment& seen, const Add& add) const {
-        constexpr double cross_section = 0.25;
-        add_all(at, cross_section, seen, add);
-    }
-
-    [[nodiscard]] bool has_sky() const { return sky_.has_value(); }
-
-private:
-    template <class Add>
-    void add_all(const Vec3& at, double beam, const Environment& seen, const Add& add) const {
+    void irradiance(const Vec3& at, const std::optional<Vec3>& normal, const Environment& seen,
+                    const Add& add) const {
         if (sky_) {
             const double above = sky_irradiance(sky_->distribution, seen.above);
             for (std::uint32_t c = 0; c < sky_->horizontal.size(); ++c) {
                 add(c, sky_->horizontal[c] * (above + sky_->ground[c] * seen.below));
             }
         }
-        if (rays_ && beam > 0.0 && rays_->is_lit(at, sun_->direction)) {
-            for (std::uint32_t c = 0; c < sun_->irradiance.size(); ++c) {
-                add(c, beam * sun_->irradiance[c]);
-            }
+        const double beam = rays_ ? rays_->sun_share_at(at, normal, *sun_) : 0.0;
+        for (std::uint32_t c = 0; beam > 0.0 && c < sun_->irradiance.size(); ++c) {
+            add(c, beam * sun_->irradiance[c]);
         }
     }
 
+    [[nodiscard]] bool has_sky() const { return sky_.has_value(); }
+    /// Of all directions in front of an area, or of a small sphere.
+    [[nodiscard]] SkyMoments available(const std::optional<Vec3>& normal) const {
+        return normal ? open_sky(*normal, up_) : open_sky();
+    }
+
+private:
     const PatchMesh& mesh_;
     std::optional<Sun> sun_;
     std::optional<Sky> sky_;
+    Vec3 up_;
     std::optional<ShadowRays> rays_; ///< where there is a sun
-    std::vector<double> low_;        ///< z of every patch
+    std::vector<double> low_;        ///< height of every patch
     std::vector<double> high_;       ///< likewise
 };
 

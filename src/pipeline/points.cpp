@@ -5,7 +5,6 @@
 #include "engine/visibility_weighted/factor_assembly.hpp"
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
-#include "hemi/engine/exchange_area.hpp"
 #include "pipeline/heat_rows.hpp"
 #include "pipeline/point_daylight.hpp"
 #include "pipeline/visible_radiosity.hpp"
@@ -15,8 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace hemi {
@@ -26,16 +25,28 @@ namespace {
 constexpr std::uint32_t plane_count = 6;
 /// One hemicube has as many texels as the four of a patch by the same preset.
 constexpr std::uint32_t resolution_factor = 2;
-/// Spheres whose shares are found at once, by all threads.
-constexpr std::size_t spheres_at_once = 32;
+/// The two of a sphere have to do with about as many as the six of its planes: in the office, their
+/// texels 1.5 times as fine, its light is as exact as by those.
+std::uint32_t sphere_resolution(std::uint32_t resolution) {
+    constexpr std::uint32_t most = 4096;
+    const std::uint32_t half = (3 * resolution + 3) / 4;
+    return std::min(2 * half, most);
+}
+/// Rows that are made use of at once, by all threads.
+constexpr std::size_t rows_at_once = 64;
+/// µm. Source: WMO, Guide to Instruments and Methods of Observation, WMO-No. 8: short-wave radiation.
+constexpr double short_wave_end = 4.0;
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-const Vec3 upwards(0.0, 0.0, 1.0);
 
 void check(const PatchMesh& mesh, std::span<const Receiver> points, const Radiation& radiation) {
     if (radiation.radiosity.size() != std::size_t{mesh.size()} * radiation.channels ||
         (!radiation.environment.empty() && radiation.environment.size() != radiation.channels)) {
         throw InvalidArgument(fmt::format("points: {} values for {} patches of {} channels",
                                           radiation.radiosity.size(), mesh.size(), radiation.channels));
+    }
+    if (!radiation.short_wave.empty() && radiation.short_wave.size() != radiation.channels) {
+        throw InvalidArgument(fmt::format("points: short waves are told of {} channels of {}",
+                                          radiation.short_wave.size(), radiation.channels));
     }
     for (std::size_t k = 0; k < points.size(); ++k) {
         const Vec3& at = points[k].position;
@@ -49,26 +60,35 @@ void check(const PatchMesh& mesh, std::span<const Receiver> points, const Radiat
     }
 }
 
-/// Rows that are computed: one of a plane, six of a sphere.
+/// Rows that are computed: of a plane one, of a sphere one by the solid angle, and of six planes if they are
+/// wanted.
 struct Rows {
-    std::vector<SurfacePoint> places;
-    std::vector<std::uint32_t> point; ///< of every row
-    std::vector<std::uint32_t> first; ///< row of every point
+    std::vector<SurfacePoint> planes;
+    std::vector<std::uint32_t> point_of_plane;
+    std::vector<std::uint32_t> direction; ///< of the six, of every plane; of a point with a normal 0
+    std::vector<SurfacePoint> spheres;
+    std::vector<std::uint32_t> point_of_sphere;
+
+    [[nodiscard]] std::size_t size() const { return planes.size() + spheres.size(); }
 };
 
-Rows rows_of(std::span<const Receiver> points, double facing) {
-    const std::array<Vec3, plane_count> directions = plane_directions(facing);
+Rows rows_of(std::span<const Receiver> points, std::span<const Vec3> directions) {
     Rows rows;
     for (std::uint32_t k = 0; k < points.size(); ++k) {
-        rows.first.push_back(static_cast<std::uint32_t>(rows.places.size()));
-        if (points[k].normal) {
-            rows.places.push_back({points[k].position, *points[k].normal, points[k].surface});
-            rows.point.push_back(k);
+        const Receiver& point = points[k];
+        const auto add_plane = [&](const Vec3& normal, std::uint32_t direction) {
+            rows.planes.push_back({point.position, normal, point.surface});
+            rows.point_of_plane.push_back(k);
+            rows.direction.push_back(direction);
+        };
+        if (point.normal) {
+            add_plane(*point.normal, 0);
             continue;
         }
-        for (const Vec3& direction : directions) {
-            rows.places.push_back({points[k].position, direction, points[k].surface});
-            rows.point.push_back(k);
+        rows.spheres.push_back({point.position, {}, point.surface});
+        rows.point_of_sphere.push_back(k);
+        for (std::uint32_t d = 0; d < directions.size(); ++d) {
+            add_plane(directions[d], d);
         }
     }
     return rows;
@@ -85,14 +105,10 @@ public:
         for (std::uint32_t c = 0; c < radiation_.channels; ++c) {
             total += source[c];
         }
-        if (!std::isfinite(total)) {
-            return;
+        if (std::isfinite(total)) {
+            add(source, share);
+            known_ += share;
         }
-        for (std::uint32_t c = 0; c < radiation_.channels; ++c) {
-            irradiance_[c] += share * source[c];
-        }
-        exitance_ += share * total;
-        known_ += share;
     }
     /// Of sun and sky, in addition to what was added for the share.
     [[nodiscard]] auto adder() {
@@ -103,45 +119,58 @@ public:
     }
     /// @param seen  else it is a leak, which counts as light but not among the surroundings
     void add_environment(double share, bool seen) {
-        double total = 0.0;
+        if (seen) {
+            if (!radiation_.environment.empty()) {
+                add(radiation_.environment.data(), share);
+            }
+            known_ += share;
+            return;
+        }
         for (std::uint32_t c = 0; c < radiation_.channels && !radiation_.environment.empty(); ++c) {
             irradiance_[c] += share * radiation_.environment[c];
-            total += radiation_.environment[c];
-        }
-        if (seen) {
-            exitance_ += share * total;
-            known_ += share;
         }
     }
     [[nodiscard]] std::span<const double> irradiance() const { return irradiance_; }
     [[nodiscard]] double surroundings() const {
-        return known_ > 0.0 ? exitance_ / known_ + direct_ : not_known;
+        return known_ > 0.0 ? (long_ + short_) / known_ + direct_ : not_known;
     }
+    [[nodiscard]] double long_wave() const { return known_ > 0.0 ? long_ / known_ : not_known; }
+    [[nodiscard]] double short_wave() const { return known_ > 0.0 ? short_ / known_ + direct_ : not_known; }
 
 private:
+    void add(const double* source, double share) {
+        for (std::uint32_t c = 0; c < radiation_.channels; ++c) {
+            irradiance_[c] += share * source[c];
+            const bool is_short = !radiation_.short_wave.empty() && radiation_.short_wave[c];
+            (is_short ? short_ : long_) += share * source[c];
+        }
+    }
+
     const Radiation& radiation_;
     std::vector<double> irradiance_;
-    double exitance_ = 0.0;
+    double long_ = 0.0;
+    double short_ = 0.0;
     double known_ = 0.0;
     double direct_ = 0.0;
 };
 
-/// The six rows of a sphere, while they come.
-struct Sphere {
+/// A row that waits for its turn.
+struct WaitingRow {
     std::uint32_t point = 0;
-    std::uint32_t rows = 0;
-    std::vector<double> seen; ///< sums over the rows, N
-    double environment = 0.0; ///< likewise
-    double blocked = 0.0;     ///< likewise
+    std::optional<std::uint32_t> direction; ///< of the six; none: of the point itself
+    std::vector<std::uint32_t> columns;
+    std::vector<float> values;
+    double environment = 0.0;
+    double blocked = 0.0;
 };
 
 /// Makes values of rows.
 class Values {
 public:
     Values(const PatchMesh& mesh, std::span<const Receiver> points, const Radiation& radiation,
-           Enclosure enclosure, ExchangeRule rule, double facing)
-        : mesh_(mesh), points_(points), radiation_(radiation), enclosure_(enclosure), areas_(mesh, rule),
-          directions_(plane_directions(facing)), daylight_(mesh, radiation.sun, radiation.sky) {
+           Enclosure enclosure, std::span<const Vec3> directions)
+        : mesh_(mesh), points_(points), radiation_(radiation), enclosure_(enclosure), directions_(directions),
+          daylight_(mesh, radiation.sun, radiation.sky, radiation.up) {
         const std::size_t count = points.size();
         values_.channels = radiation.channels;
         values_.groups = static_cast<std::uint32_t>(mesh.groups().size());
@@ -151,145 +180,88 @@ public:
         values_.below_horizon.assign(count, 0.0);
         values_.blocked.assign(count, 0.0);
         values_.surroundings.assign(count, not_known);
-        values_.planes.assign(count * plane_count, not_known);
+        values_.planes.assign(count * directions.size(), not_known);
+        values_.planes_short.assign(count * directions.size(), not_known);
     }
 
-    /// @param direction  of the six of a sphere
-    void take(std::uint32_t point, std::uint32_t direction, const RowView& row) {
+    /// @param direction  of the six of a sphere; none: the row of the point itself
+    void take(std::uint32_t point, std::optional<std::uint32_t> direction, const RowView& row) {
+        waiting_.push_back({point,
+                            direction,
+                            {row.columns.begin(), row.columns.end()},
+                            {row.values.begin(), row.values.end()},
+                            row.environment,
+                            row.blocked});
+        if (waiting_.size() == rows_at_once) {
+            finish_rows();
+        }
+    }
+    /// Finishes what is left. @return the values; call once
+    [[nodiscard]] PointValues finish() {
+        finish_rows();
+        return std::move(values_);
+    }
+
+private:
+    void finish_rows() {
+        parallel_for(waiting_.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const WaitingRow& waiting = waiting_[k];
+                finish_row(waiting,
+                           {waiting.columns, waiting.values, {}, waiting.environment, waiting.blocked});
+            }
+        });
+        waiting_.clear();
+    }
+
+    void finish_row(const WaitingRow& waiting, const RowView& row) {
+        const std::uint32_t point = waiting.point;
         Sum sum(radiation_);
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
             sum.add(row.columns[k], static_cast<double>(row.values[k]));
         }
         const bool open = sees_environment(row.environment, enclosure_);
         sum.add_environment(row.environment, open);
-        const bool is_plane = points_[point].normal.has_value();
-        const Vec3& normal = is_plane ? *points_[point].normal : directions_[direction];
-        for (std::size_t k = 0; is_plane && k < row.columns.size(); ++k) {
+        const std::optional<Vec3> normal =
+            waiting.direction ? std::optional(directions_[*waiting.direction]) : points_[point].normal;
+        const Vec3& at = points_[point].position;
+        const bool of_point = !waiting.direction;
+        const PointDaylight::Environment seen =
+            open && (of_point || daylight_.has_sky())
+                ? daylight_.seen_by(at, normal, row)
+                : PointDaylight::split(row.environment, row.blocked, daylight_.available(normal), {});
+        daylight_.irradiance(at, normal, seen, sum.adder());
+        if (of_point) {
+            set(point, sum, seen, row);
+        } else {
+            const std::size_t plane = std::size_t{point} * plane_count + *waiting.direction;
+            values_.planes[plane] = sum.long_wave();
+            values_.planes_short[plane] = sum.short_wave();
+        }
+    }
+
+    void set(std::uint32_t point, const Sum& sum, const PointDaylight::Environment& environment,
+             const RowView& row) {
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
             values_.factors[std::size_t{point} * values_.groups + mesh_.group(row.columns[k])] +=
                 static_cast<double>(row.values[k]);
         }
-        const Vec3& at = points_[point].position;
-        PointDaylight::Environment seen;
-        if (open && (is_plane || daylight_.has_sky())) {
-            seen = daylight_.seen_by(at, normal, row);
-        } else {
-            seen = PointDaylight::split(row.environment, row.blocked, open_sky(normal), {});
-        }
-        daylight_.irradiance(at, normal, seen, sum.adder());
-        if (!is_plane) {
-            values_.planes[std::size_t{point} * plane_count + direction] = sum.surroundings();
-            take_of_sphere(point, row);
-            return;
-        }
-        set(point, sum, seen, row.blocked);
-    }
-    /// Finishes what is left. @return the values; call once
-    [[nodiscard]] PointValues finish() {
-        finish_spheres();
-        return std::move(values_);
-    }
-
-private:
-    void set(std::uint32_t point, const Sum& sum, const PointDaylight::Environment& environment,
-             double blocked) {
         values_.sky[point] = environment.above.share;
         values_.below_horizon[point] = environment.below;
-        values_.blocked[point] = blocked;
+        values_.blocked[point] = row.blocked;
         std::copy(sum.irradiance().begin(), sum.irradiance().end(),
                   values_.irradiance.begin() +
                       static_cast<std::ptrdiff_t>(std::size_t{point} * radiation_.channels));
         values_.surroundings[point] = sum.surroundings();
     }
 
-    void take_of_sphere(std::uint32_t point, const RowView& row) {
-        Sphere& sphere = pending_[point];
-        if (sphere.rows == 0) {
-            sphere.point = point;
-            sphere.seen.assign(mesh_.size(), 0.0);
-        }
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            sphere.seen[row.columns[k]] += static_cast<double>(row.values[k]);
-        }
-        sphere.environment += row.environment;
-        sphere.blocked += row.blocked;
-        if (++sphere.rows < plane_count) {
-            return;
-        }
-        ready_.push_back(std::move(sphere));
-        pending_.erase(point);
-        if (ready_.size() == spheres_at_once) {
-            finish_spheres();
-        }
-    }
-
-    void finish_spheres() {
-        parallel_for(ready_.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                finish_sphere(ready_[k]);
-            }
-        });
-        ready_.clear();
-    }
-
-    /// Shares of the full solid angle, in place of what was seen.
-    void to_solid_angles(Sphere& sphere) const {
-        const Vec3& at = points_[sphere.point].position;
-        for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
-            if (sphere.seen[j] == 0.0) {
-                continue;
-            }
-            double unoccluded = 0.0;
-            for (const Vec3& direction : directions_) {
-                unoccluded += areas_.at_point(at, direction, j);
-            }
-            const PatchCorners corners = mesh_.corners(j);
-            sphere.seen[j] = unoccluded > 0.0
-                                 ? sphere.seen[j] / unoccluded * solid_angle(at, corners.polygon()) /
-                                       (4.0 * std::numbers::pi)
-                                 : 0.0;
-        }
-    }
-
-    void finish_sphere(Sphere& sphere) {
-        to_solid_angles(sphere);
-        const double measured = sphere.environment / plane_count;
-        const double blocked = sphere.blocked / plane_count;
-        double sum = 0.0;
-        for (const double share : sphere.seen) {
-            sum += share;
-        }
-        const bool open = sees_environment(measured, enclosure_);
-        const double environment = open ? std::max(0.0, 1.0 - blocked - sum) : measured;
-        const double scale = !open && sum > 0.0 ? (1.0 - environment - blocked) / sum : 1.0;
-        Sum light(radiation_);
-        SkyMoments above;
-        double* const factors = &values_.factors[std::size_t{sphere.point} * values_.groups];
-        for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
-            const double share = scale * sphere.seen[j];
-            if (share == 0.0) {
-                continue;
-            }
-            light.add(j, share);
-            factors[mesh_.group(j)] += share;
-            if (open) {
-                above += share * daylight_.seen_above(points_[sphere.point].position, std::nullopt, j);
-            }
-        }
-        light.add_environment(environment, open);
-        const PointDaylight::Environment seen = PointDaylight::split(environment, blocked, open_sky(), above);
-        daylight_.spherical_irradiance(points_[sphere.point].position, seen, light.adder());
-        set(sphere.point, light, seen, blocked);
-    }
-
     const PatchMesh& mesh_;
     std::span<const Receiver> points_;
     const Radiation& radiation_;
     Enclosure enclosure_;
-    ExchangeAreas areas_;
-    std::array<Vec3, plane_count> directions_;
+    std::span<const Vec3> directions_;
     PointDaylight daylight_;
-    std::map<std::uint32_t, Sphere> pending_;
-    std::vector<Sphere> ready_;
+    std::vector<WaitingRow> waiting_;
     PointValues values_;
 };
 
@@ -312,11 +284,12 @@ std::vector<double> weights_of(const PatchMesh& mesh, const Radiation& radiation
 
 } // namespace
 
-std::array<Vec3, 6> plane_directions(double facing) {
+std::array<Vec3, 6> plane_directions(double facing, UpAxis up) {
     const double angle = facing * std::numbers::pi / 180.0;
-    const Vec3 front(std::sin(angle), std::cos(angle), 0.0);
-    const Vec3 right(std::cos(angle), -std::sin(angle), 0.0);
-    return {upwards, -upwards, right, -right, front, -front};
+    const Vec3 above = upwards(up);
+    const Vec3 front = turned_upright({std::sin(angle), std::cos(angle), 0.0}, up);
+    const Vec3 right = turned_upright({std::cos(angle), -std::sin(angle), 0.0}, up);
+    return {above, -above, right, -right, front, -front};
 }
 
 Radiation radiation_of(const PatchMesh& mesh, const PatchValues& values, const Solution& solution) {
@@ -333,34 +306,72 @@ Radiation radiation_of(const PatchMesh& mesh, const PatchValues& values, const S
 }
 
 Radiation radiation_of(const HeatProblem& problem, const HeatSolution& solution) {
-    return {solution.bands, solution.radiosity, environment_exitance(problem)};
+    Radiation radiation{solution.bands, solution.radiosity, environment_exitance(problem)};
+    for (std::uint32_t band = 0; band < solution.bands; ++band) {
+        radiation.short_wave.push_back(band < problem.band_limits.size() &&
+                                       problem.band_limits[band] <= short_wave_end);
+    }
+    return radiation;
 }
 
 PointValues compute_point_values(const PatchMesh& mesh, std::span<const Receiver> points,
                                  const Radiation& radiation, Enclosure enclosure,
-                                 const FactorSettings& settings, double facing, Observer& observer) {
+                                 const FactorSettings& settings, std::optional<double> facing,
+                                 Observer& observer) {
     check(mesh, points, radiation);
     RowPlan plan = plan_rows(settings, mesh.size());
     if (plan.hemicube.eye_points > 1) {
         plan.hemicube.resolution *= resolution_factor;
     }
     const VisibilityWeightedSettings weighted = plan.weighted.value_or(VisibilityWeightedSettings{});
-    Values values(mesh, points, radiation, enclosure, weighted.rule, facing);
-    if (points.empty()) {
-        return values.finish();
+    std::vector<Vec3> directions;
+    if (facing) {
+        const std::array<Vec3, plane_count> six = plane_directions(*facing, radiation.up);
+        directions.assign(six.begin(), six.end());
     }
-    const Rows rows = rows_of(points, facing);
-    const auto engine = make_point_visibility_provider(mesh, rows.places, plan.hemicube, settings);
-    compute_point_rows(
-        *engine, mesh, rows.places, weighted, enclosure, weights_of(mesh, radiation),
-        [&](std::uint32_t index, const RowView& row) {
-            const std::uint32_t point = rows.point[index];
-            values.take(point, index - rows.first[point], row);
-        },
-        [&observer](std::size_t done, std::size_t total) {
-            return observer.progress(Phase::points, done, total);
-        });
+    Values values(mesh, points, radiation, enclosure, directions);
+    const Rows rows = rows_of(points, directions);
+    const std::vector<double> weights = weights_of(mesh, radiation);
+    std::size_t before = 0;
+    const auto compute = [&](std::span<const SurfacePoint> places, DirectionMeasure measure,
+                             const PointRowSink& sink) {
+        if (places.empty()) {
+            return;
+        }
+        HemicubeSettings hemicube = plan.hemicube;
+        if (measure == DirectionMeasure::solid_angle) {
+            hemicube.resolution = sphere_resolution(hemicube.resolution);
+        }
+        const auto engine = make_point_visibility_provider(mesh, places, hemicube, settings, measure);
+        compute_point_rows(
+            *engine, mesh, places, weighted, enclosure, weights, sink,
+            [&](std::size_t done, std::size_t) {
+                return observer.progress(Phase::points, before + done, rows.size());
+            },
+            measure);
+        before += places.size();
+    };
+    compute(rows.spheres, DirectionMeasure::solid_angle, [&](std::uint32_t index, const RowView& row) {
+        values.take(rows.point_of_sphere[index], std::nullopt, row);
+    });
+    compute(rows.planes, DirectionMeasure::projected_solid_angle,
+            [&](std::uint32_t index, const RowView& row) {
+                const std::uint32_t point = rows.point_of_plane[index];
+                values.take(point, points[point].normal ? std::nullopt : std::optional(rows.direction[index]),
+                            row);
+            });
     return values.finish();
+}
+
+std::array<double, 6> plane_exitances(const PointValues& values, std::size_t point,
+                                      const BodyAbsorption& body) {
+    std::array<double, plane_count> exitances{};
+    for (std::size_t d = 0; d < plane_count; ++d) {
+        const std::size_t plane = point * plane_count + d;
+        exitances[d] =
+            values.planes.at(plane) + body.short_wave / body.long_wave * values.planes_short.at(plane);
+    }
+    return exitances;
 }
 
 double person_radiant_temperature(std::span<const double, 6> planes, Posture posture, bool faces) {

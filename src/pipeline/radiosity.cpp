@@ -131,7 +131,8 @@ PatchValues patch_values(const Scene& scene, const PatchMesh& mesh) {
             scene.environment,
             {},
             scene.sun,
-            scene.sky};
+            scene.sky,
+            scene.up};
 }
 
 Solution solve_radiosity(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,

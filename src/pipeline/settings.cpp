@@ -144,8 +144,9 @@ std::unique_ptr<VisibilityProvider> make_visibility_provider(const PatchMesh& me
 std::unique_ptr<VisibilityProvider> make_point_visibility_provider(const PatchMesh& mesh,
                                                                    std::span<const SurfacePoint> points,
                                                                    const HemicubeSettings& hemicube,
-                                                                   const FactorSettings& settings) {
-    return make_point_visibility_engine(mesh, points, hemicube, with_workers(settings.engine));
+                                                                   const FactorSettings& settings,
+                                                                   DirectionMeasure measure) {
+    return make_point_visibility_engine(mesh, points, hemicube, with_workers(settings.engine), measure);
 }
 
 } // namespace hemi

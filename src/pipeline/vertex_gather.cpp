@@ -257,7 +257,7 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
             kept.blocked.resize(state.points.size());
         }
         const auto engine = make_point_visibility_provider(state.mesh, state.points, plan.hemicube, settings);
-        const PointDaylight daylight(state.mesh, values.sun, values.sky);
+        const PointDaylight daylight(state.mesh, values.sun, values.sky, values.up);
         compute_point_rows(
             *engine, state.mesh, state.points, plan.weighted.value_or(VisibilityWeightedSettings{}),
             enclosure, weights,
@@ -302,7 +302,7 @@ std::vector<float> VertexGather::gather(const PatchValues& values, std::span<con
     const std::uint32_t channels = values.channels;
     std::vector<float> at_points(state.points.size() * channels, 0.0F);
     std::vector<std::uint8_t> buried(state.points.size(), 0);
-    const PointDaylight daylight(state.mesh, values.sun, values.sky);
+    const PointDaylight daylight(state.mesh, values.sun, values.sky, values.up);
     constexpr std::size_t points_at_once = 64;
     parallel_for(state.points.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {

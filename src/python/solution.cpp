@@ -85,6 +85,7 @@ PatchValues given_values(const FactorsOfScene& factors, const py::object& reflec
     if (factors.scene && channels == factors.scene->scene.channels.size()) {
         values.sun = factors.scene->scene.sun;
         values.sky = factors.scene->scene.sky;
+        values.up = factors.scene->scene.up;
         values.direct = direct_irradiance(factors.scene->scene, factors.scene->mesh, factors.factors.matrix);
     }
     return values;

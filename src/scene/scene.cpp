@@ -111,6 +111,11 @@ void validate(const Scene& scene) {
             throw InputError(
                 fmt::format("sun: a direction of length {}; must be 1", glm::length(scene.sun->direction)));
         }
+        constexpr double most = 90.0;
+        if (!(scene.sun->diameter >= 0.0 && scene.sun->diameter <= most)) {
+            throw InputError(
+                fmt::format("sun: diameter {}; must be in [0, {}] degrees", scene.sun->diameter, most));
+        }
     }
     if (scene.sky) {
         check_light("sky", scene.sky->horizontal, finite_values);

@@ -203,10 +203,11 @@ SunPosition sun_position(double latitude, double longitude, const std::string& t
     return {std::fmod(from_south / degree + 540.0, 360.0), elevation + refraction(elevation)};
 }
 
-Vec3 sky_direction(double azimuth, double elevation, double north) {
+Vec3 sky_direction(double azimuth, double elevation, double north, UpAxis up) {
     const double around = (azimuth + north) * degree;
-    const double up = elevation * degree;
-    return {std::sin(around) * std::cos(up), std::cos(around) * std::cos(up), std::sin(up)};
+    const double above = elevation * degree;
+    return turned_upright(
+        {std::sin(around) * std::cos(above), std::cos(around) * std::cos(above), std::sin(above)}, up);
 }
 
 } // namespace hemi

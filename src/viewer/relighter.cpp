@@ -136,7 +136,7 @@ void Relighter::try_to_gather(SolveUpdate& update, const std::stop_token& stop) 
     }
     const PatchValues values{solution.channels,         update.light.reflectance, update.light.exitance,
                              input_.scene->environment, solution.direct,          input_.scene->sun,
-                             input_.scene->sky};
+                             input_.scene->sky,         input_.scene->up};
     if (!gather_) {
         gather_.emplace(*input_.mesh, solution.back_face_share, all_patches(input_.mesh->size()));
     }

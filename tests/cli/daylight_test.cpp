@@ -131,8 +131,118 @@ TEST_CASE("hemi solve: lumens are what a lamp gives", "[cli][solve][daylight]") 
         mean += (json["radiosity"][g][0].get<double>() - json["exitance"][g][0].get<double>()) / 0.5 / 6.0;
     }
     CHECK(mean == Approx(3000.0 / (6.0 * 0.5)).epsilon(1e-4));
+    // One of 4 m with 10,000 lm: the mean illuminance, the lamp's first bounce and all.
+    for (const auto& [reflectance, lux] :
+         {std::pair{0.0, 104.17}, std::pair{0.2, 130.21}, std::pair{0.5, 208.33}, std::pair{0.8, 520.83}}) {
+        Json large = cube(4);
+        for (Json& surface : large["surfaces"]) {
+            for (Json& corner : surface["polygon"]) {
+                for (Json& coordinate : corner) {
+                    coordinate = 4.0 * coordinate.get<double>();
+                }
+            }
+        }
+        for (auto& [name, material] : large["materials"].items()) {
+            material = {{"reflectance", reflectance}};
+        }
+        large["groups"] = {{"ceiling", {{"luminous_flux", 10000}}}};
+        const std::string table = directory.path("cube.csv");
+        const Outcome lit =
+            run_hemi(on_cpu({"solve", directory.write("large.json", large), "--radiosity", table,
+                             "--tolerance", "1e-10", "--preset", "fast", "--no-estimate", "-q"}));
+        INFO(lit.err);
+        REQUIRE(lit.status == 0);
+        std::istringstream lines(directory.read("cube.csv"));
+        std::string line;
+        std::getline(lines, line);
+        const auto column_of = [header = line](const std::string& name) {
+            std::size_t column = 0;
+            std::istringstream cells(header);
+            for (std::string cell; std::getline(cells, cell, ',') && cell != name;) {
+                ++column;
+            }
+            return column;
+        };
+        const std::size_t irradiance = column_of("irradiance_grey");
+        double sum = 0.0;
+        int patches = 0;
+        while (std::getline(lines, line)) {
+            std::istringstream cells(line);
+            std::string cell;
+            for (std::size_t column = 0; column <= irradiance; ++column) {
+                std::getline(cells, cell, ',');
+            }
+            sum += std::stod(cell); // patches of one size
+            ++patches;
+        }
+        CHECK(sum / patches == Approx(lux).epsilon(5e-5));
+    }
+    // Of a coloured lamp, lumens are what the shares of luminance make of its channels: not their sum.
+    Json coloured = cube(2);
+    coloured["channels"] = {"red", "green", "blue"};
+    coloured["materials"]["lamp"] = {{"reflectance", 0.5}};
+    coloured["groups"] = {{"ceiling", {{"luminous_flux", {3000, 2000, 1000}}}}};
+    const Json colours =
+        run_hemi(on_cpu({"solve", directory.write("colours.json", coloured), "--json"})).json();
+    const double lumens = 0.2126 * 3000.0 + 0.7152 * 2000.0 + 0.0722 * 1000.0;
+    CHECK(colours["balance"]["emitted"].get<double>() == Approx(lumens).epsilon(1e-12));
+    CHECK(colours["balance"]["absorbed"].get<double>() == Approx(lumens).epsilon(1e-5));
+    coloured["groups"]["ceiling"]["luminous_flux"] = 3000;
+    CHECK(run_hemi(on_cpu({"solve", directory.write("white.json", coloured)})).out_has("emitted 3000 lm"));
     CHECK(run_hemi(on_cpu({"solve", file})).out_has("emitted 3000 lm"));
     const Outcome heat = run_hemi(on_cpu({"heat", file, "--temperature", "floor=300"}));
     CHECK(heat.status == 3);
     CHECK(heat.err_has("lumens"));
+}
+
+TEST_CASE("hemi points, solve: the sky is about the axis that --up names", "[cli][points][sky]") {
+    const Directory directory;
+    const Json overcast_sky{{"sky", "overcast"}, {"horizontal_irradiance", 1000}};
+    const std::string court_file = directory.write("court.json", court(overcast_sky));
+    const auto points = [&](const std::string& file, const Words& more) {
+        Words words{"points", file, "--points", directory.path("points.csv"), "--json", "--preset", "fast"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_hemi(on_cpu(words));
+    };
+    // Far away and alone: the sky is what a plane that faces upwards gets all of.
+    (void)directory.write("points.csv", "x,y,z,nx,ny,nz\n90,90,90,0,1,0\n90,90,90,0,0,1\n");
+    const auto irradiance = [](const Outcome& run, std::size_t point) {
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        return run.json()["irradiance"][point][0].get<double>();
+    };
+    const double wall = 1000.0 * (3.0 / 14.0 + 4.0 / (7.0 * std::numbers::pi));
+    CHECK(irradiance(points(court_file, {}), 0) == Approx(wall).epsilon(1e-4));
+    CHECK(irradiance(points(court_file, {}), 1) == Approx(1000.0).epsilon(1e-3));
+    CHECK(irradiance(points(court_file, {"--up", "y"}), 0) == Approx(1000.0).epsilon(1e-3));
+    CHECK(irradiance(points(court_file, {"--up", "y"}), 1) == Approx(wall).epsilon(1e-4));
+    CHECK(points(court_file, {"--up", "y"}).json()["sky"][0] == 1.0);
+    Json lying = court(overcast_sky);
+    lying["up"] = "y";
+    const std::string lying_file = directory.write("lying.json", lying);
+    CHECK(irradiance(points(lying_file, {}), 0) == Approx(1000.0).epsilon(1e-3));
+    // The court's opening is where z is 1: lying, it sees half of the sky.
+    const auto incoming = [](const Outcome& run) {
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        return -run.json()["balance"]["environment"].get<double>();
+    };
+    const auto solve = [&](const std::string& file, const Words& more) {
+        Words words{"solve", file, "--json", "--preset", "fast"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_hemi(on_cpu(words));
+    };
+    const double upright = incoming(solve(court_file, {}));
+    const double turned = incoming(solve(court_file, {"--up", "y"}));
+    CHECK(turned < 0.5 * upright);
+    CHECK(incoming(solve(lying_file, {})) == Approx(turned).epsilon(1e-12));
+    CHECK(incoming(solve(lying_file, {"--up", "z"})) == Approx(upright).epsilon(1e-12));
+    // The stored solution knows.
+    const std::string result = directory.path("lying.hres");
+    REQUIRE(solve(lying_file, {"--result", result}).status == 0);
+    CHECK(irradiance(points(result, {}), 0) == Approx(1000.0).epsilon(1e-3));
+    // Without a sky and a picture nothing depends on it.
+    const Outcome unused = run_hemi({"solve", directory.write("cube.json", cube(2)), "--up", "y"});
+    CHECK(unused.status == 2);
+    CHECK(unused.err_has("--up"));
 }

@@ -2,8 +2,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -307,6 +310,60 @@ TEST_CASE("hemi heat: MOOSE's cavity by factors from a file", "[cli][heat]") {
         run_hemi({"heat", scene, "--factors", directory.write("G.csv", "i,j,F\n0,1,1\n1,0,1\n")});
     CHECK(wrong.status == 3);
     CHECK(wrong.err_has("2 rows"));
+}
+
+TEST_CASE("hemi heat: MOOSE's cavity as a duct of 600 m", "[cli][heat]") {
+    const Directory directory;
+    Json duct = box(1, 600, 2);
+    duct["materials"]["bottom"]["emissivity"] = 1;
+    duct["groups"]["back"] = {{"heat_flux", 0}};
+    const Outcome run = run_hemi(on_cpu({"heat", directory.write("duct.json", duct), "--json"}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json heat = run.json();
+    CHECK(heat["net_flux"][0].get<double>() == Approx(2423.657817).epsilon(1e-3));
+    CHECK(heat["radiosity"][1].get<double>() == Approx(1267.186267).epsilon(1e-3));
+    CHECK(heat["temperature"][2].get<double>() == Approx(488.460360).epsilon(1e-3));
+}
+
+TEST_CASE("hemi solve, heat: energy balances in every closed scene that comes with hemi",
+          "[cli][heat][scenes]") {
+    int closed = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(HEMI_SOURCE_DIR "/scenes")) {
+        if (entry.path().extension() != ".json") {
+            continue;
+        }
+        std::ifstream file(entry.path());
+        const Json scene = Json::parse(file);
+        if (!scene.contains("enclosure") || scene["enclosure"] != "closed") {
+            continue;
+        }
+        ++closed;
+        INFO(entry.path());
+        const bool heat = scene.contains("groups") &&
+                          std::any_of(scene["groups"].begin(), scene["groups"].end(),
+                                      [](const Json& group) { return group.contains("temperature"); });
+        // Coarse, which does not matter to it.
+        Words words = on_cpu({heat ? "heat" : "solve", entry.path().string(), "--json", "--patches-per-face",
+                              "1", "--preset", "fast", "--resolution", "16", "--eye-points", "1"});
+        if (!heat) {
+            words.insert(words.end(), {"--tolerance", "1e-10"});
+        }
+        const Outcome run = run_hemi(words);
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        const Json balance = run.json()["balance"];
+        if (heat) {
+            CHECK(std::abs(balance["relative"].get<double>()) < 1e-7);
+            continue;
+        }
+        const double emitted = balance["emitted"];
+        REQUIRE(emitted > 0.0);
+        CHECK(balance["lost"] == 0.0);
+        CHECK(std::abs(balance["environment"].get<double>()) < 1e-7 * emitted);
+        CHECK(balance["absorbed"].get<double>() == Approx(emitted).epsilon(1e-7));
+    }
+    CHECK(closed == 5);
 }
 
 TEST_CASE("hemi heat: a furnace with a load on its hearth balances", "[cli][heat][scenes]") {

@@ -176,7 +176,13 @@ TEST_CASE("hemi points: a grid as table, for ParaView and as a map", "[cli][poin
     REQUIRE(map.status == 0);
     CHECK(map.json()["map"]["column"] == "mean_radiant_temperature");
     CHECK(map.json()["map"]["range"] == Json({290.0, 320.0}));
+    CHECK(map.json()["map"]["unit"] == "K");
+    CHECK(hemi::test::read_png(directory.path("map.png")).width > 4 * 32); // the legend's
+    const Outcome bare = with({"-o", directory.path("map.png"), "--no-legend", "-q"});
+    REQUIRE(bare.status == 0);
     CHECK(hemi::test::read_png(directory.path("map.png")).width == 4 * 32);
+    CHECK(hemi::test::read_png(directory.path("map.png")).height == 4 * 32);
+    CHECK(with({"-o", directory.path("grid.vtp"), "--no-legend"}).status == 2);
     const Outcome vtp = with({"-o", directory.path("grid.vtp"), "-q"});
     REQUIRE(vtp.status == 0);
     const std::string file = directory.read("grid.vtp");

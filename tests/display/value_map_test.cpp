@@ -4,7 +4,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <cstdlib>
 #include <limits>
+#include <utility>
 
 using namespace hemi;
 
@@ -54,4 +57,46 @@ TEST_CASE("value map: wide grids have small cells, and what does not fit is refu
     CHECK_THROWS_AS(make_value_map({}, {0.0, 1.0}), InvalidArgument);
     CHECK_THROWS_AS(make_value_map(std::array{GridValues{1, 1, {0}, {1.0}}}, {1.0, 1.0}), InvalidArgument);
     CHECK_THROWS_AS(make_value_map(std::array{GridValues{1, 1, {0}, {}}}, {0.0, 1.0}), InvalidArgument);
+}
+
+TEST_CASE("value map: the legend stands below and leaves the map as it is", "[display]") {
+    const std::array<GridValues, 1> grids{GridValues{2, 2, {0, 1, 3}, {0.0, 10.0, 20.0}}};
+    const ValueMap bare = make_value_map(grids, {0.0, 10.0});
+    const ValueMap map = make_value_map(grids, {0.0, 10.0}, "irradiance  [W/m²]");
+    REQUIRE(map.width == 320);
+    REQUIRE(map.height > bare.height + 40);
+    REQUIRE(map.rgb.size() == std::size_t{map.width} * map.height * 3);
+    for (std::uint32_t y = 0; y < bare.height; ++y) {
+        REQUIRE(std::equal(bare.rgb.begin() + y * bare.width * 3, bare.rgb.begin() + (y + 1) * bare.width * 3,
+                           map.rgb.begin() + y * map.width * 3));
+    }
+    // The colours of the map, and ink, are below it.
+    const auto has_below = [&](const std::array<int, 3>& colour) {
+        for (std::size_t at = std::size_t{bare.height} * map.width * 3; at < map.rgb.size(); at += 3) {
+            if (std::abs(map.rgb[at] - colour[0]) + std::abs(map.rgb[at + 1] - colour[1]) +
+                    std::abs(map.rgb[at + 2] - colour[2]) <
+                12) {
+                return true;
+            }
+        }
+        return false;
+    };
+    CHECK(has_below(colour_at(bare, 0, 1)));
+    CHECK(has_below(colour_at(bare, 1, 1)));
+    CHECK(has_below({235, 235, 235}));
+    // 20 is beyond: the scale says so, and another title or range is another picture.
+    CHECK(make_value_map(grids, {0.0, 20.0}, "irradiance  [W/m²]").rgb != map.rgb);
+    CHECK(make_value_map(grids, {0.0, 10.0}, "irradiance  [lx]").rgb != map.rgb);
+    // A wide map has a larger legend, a tall one has not.
+    GridValues wide{100, 1, {}, {}};
+    for (std::uint32_t k = 0; k < 100; ++k) {
+        wide.cell.push_back(k);
+        wide.values.push_back(k);
+    }
+    const ValueMap large = make_value_map(std::array{wide}, {0.0, 99.0}, "sky");
+    CHECK(large.width == 800);
+    CHECK(large.height == 8 + 2 * (map.height - bare.height));
+    GridValues tall = wide;
+    std::swap(tall.columns, tall.rows);
+    CHECK(make_value_map(std::array{tall}, {0.0, 99.0}, "sky").width == 320);
 }

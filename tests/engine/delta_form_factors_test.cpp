@@ -138,6 +138,28 @@ TEST_CASE("DeltaFormFactors: every texel is the integral of the form factor kern
     }
 }
 
+TEST_CASE("DeltaFormFactors: of spheres every texel weighs its solid angle", "[engine]") {
+    const std::uint32_t resolution = 64;
+    const DeltaFormFactors weights(resolution, DirectionMeasure::solid_angle);
+    CHECK(sum_of_rows(weights, 0, weights.rows()) == DeltaFormFactors::total);
+    CHECK(static_cast<double>(sum_of_rows(weights, 0, resolution)) * unit == Approx(1.0 / 3.0).margin(1e-9));
+    const double step = 2.0 / resolution;
+    const auto kernel = [](double x, double y) {
+        return 0.5 * std::numbers::inv_pi / std::pow(1.0 + x * x + y * y, 1.5);
+    };
+    double worst = 0.0;
+    for (std::uint32_t row = 0; row < weights.rows(); ++row) {
+        for (std::uint32_t column = 0; column < resolution; ++column) {
+            const double u = -1.0 + step * column;
+            const double v = row < resolution ? -1.0 + step * row : step * (row % (resolution / 2));
+            const double exact = quadrature(kernel, u, u + step, v, v + step);
+            worst = std::max(worst, std::abs(weights.weight(row, column) * unit - exact));
+        }
+    }
+    CHECK(worst < 1.01 * unit);
+    CHECK(weights.scaled(0.5).sum() == DeltaFormFactors::total / 2);
+}
+
 TEST_CASE("DeltaFormFactors: small texels keep their weight at the highest resolution", "[engine][slow]") {
     const std::uint32_t resolution = 4096;
     const DeltaFormFactors weights(resolution);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 using namespace hemi;
@@ -36,21 +37,23 @@ struct StoredRow {
 
 std::vector<StoredRow> rows_of(const PatchMesh& mesh, const std::vector<SurfacePoint>& points,
                                std::uint32_t shadow_rays, std::uint32_t jobs = 1,
-                               Enclosure enclosure = Enclosure::automatic) {
+                               DirectionMeasure measure = DirectionMeasure::projected_solid_angle) {
     FactorSettings settings;
     settings.engine.device = test_device();
     settings.engine.jobs = jobs;
     HemicubeSettings hemicube;
     hemicube.resolution = 128;
-    const auto engine = make_point_visibility_provider(mesh, points, hemicube, settings);
+    const auto engine = make_point_visibility_provider(mesh, points, hemicube, settings, measure);
     std::vector<StoredRow> rows(points.size());
-    compute_point_rows(*engine, mesh, points, {ExchangeRule::standard, shadow_rays}, enclosure, {},
-                       [&rows](std::uint32_t index, const RowView& row) {
-                           rows[index] = {{row.columns.begin(), row.columns.end()},
-                                          {row.values.begin(), row.values.end()},
-                                          row.environment,
-                                          row.blocked};
-                       });
+    compute_point_rows(
+        *engine, mesh, points, {ExchangeRule::standard, shadow_rays}, Enclosure::automatic, {},
+        [&rows](std::uint32_t index, const RowView& row) {
+            rows[index] = {{row.columns.begin(), row.columns.end()},
+                           {row.values.begin(), row.values.end()},
+                           row.environment,
+                           row.blocked};
+        },
+        {}, measure);
     return rows;
 }
 
@@ -151,6 +154,40 @@ TEST_CASE("point rows: a sheet before a lamp hides its share of it", "[engine][e
     const double by_rays = error_of(64);
     CHECK(by_rays < 0.02);
     CHECK(by_rays < 0.5 * by_texels); // the lamp has some 40 texels
+}
+
+TEST_CASE("point rows: of spheres they are the exact solid angles of what is seen",
+          "[engine][every-device]") {
+    Scene room = empty_scene();
+    add_room(room, Vec3(0.0), Vec3(3.0, 2.0, 1.0), 4);
+    const PatchMesh mesh(room);
+    const std::vector<SurfacePoint> points{{{1.4, 0.9, 0.6}, {}, no_surface},
+                                           {{0.1, 1.9, 0.2}, {}, no_surface}};
+    const auto rows = rows_of(mesh, points, 16, 1, DirectionMeasure::solid_angle);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        CHECK(rows[k].sum() == Approx(1.0).margin(1e-6));
+        for (std::uint32_t j = 0; j < mesh.size(); ++j) {
+            const PatchCorners corners = mesh.corners(j);
+            REQUIRE(rows[k].at(j) ==
+                    Approx(solid_angle(points[k].position, corners.polygon()) / (4.0 * std::numbers::pi))
+                        .margin(1e-6));
+        }
+    }
+    // A wall across the horizon, of which a sheet leaves the lower part, from below the horizon to above it.
+    Scene scene = empty_scene();
+    add_polygon(scene, "wall", {{2, -1, -1}, {2, -1, 1}, {2, 1, 1}, {2, 1, -1}});
+    add_polygon(scene, "sheet", {{1, -3, 0.15}, {1, -3, 3}, {1, 3, 3}, {1, 3, 0.15}});
+    const PatchMesh hidden(scene);
+    const std::vector<Vec3> seen{{2, -1, -1}, {2, -1, 0.3}, {2, 1, 0.3}, {2, 1, -1}};
+    for (const std::uint32_t shadow_rays : {0u, 64u}) {
+        const auto row =
+            rows_of(hidden, {{Vec3(0.0), {}, no_surface}}, shadow_rays, 1, DirectionMeasure::solid_angle)[0];
+        CHECK(row.at(0) == Approx(solid_angle(Vec3(0.0), seen) / (4.0 * std::numbers::pi)).epsilon(0.01));
+        const PatchCorners sheet = hidden.corners(1);
+        CHECK(row.at(1) ==
+              Approx(solid_angle(Vec3(0.0), sheet.polygon()) / (4.0 * std::numbers::pi)).epsilon(1e-6));
+        CHECK(row.environment == Approx(1.0 - row.sum()).margin(1e-9));
+    }
 }
 
 TEST_CASE("point rows: the same bits by one and by two jobs", "[engine][every-device]") {

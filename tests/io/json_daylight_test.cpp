@@ -65,6 +65,16 @@ TEST_CASE("JSON: lumens become an exitance by the area of what radiates", "[io][
     json["surfaces"][1]["luminous_flux"] = {700, 300};
     scene = read(directory, json);
     CHECK(scene.materials[scene.surfaces[1].material].exitance == std::vector<double>{700.0, 300.0});
+    CHECK(scene.materials.size() == 2); // the other surfaces' stays dark
+
+    // A material that only lamps have is theirs.
+    json["materials"]["glass"] = {{"reflectance", 0.7}};
+    json["surfaces"][1]["material"] = "glass";
+    scene = read(directory, json);
+    CHECK(scene.materials.size() == 2);
+    CHECK(scene.materials[scene.surfaces[1].material].name == "glass");
+    CHECK(exitance(scene, 1) == 700.0);
+    CHECK(exitance(scene, 0) == 0.0);
 }
 
 TEST_CASE("JSON: what is wrong with lumens is said", "[io][daylight]") {
@@ -126,6 +136,32 @@ TEST_CASE("JSON: a sun has a place and a light", "[io][daylight]") {
     CHECK(scene.sun->irradiance[0] + scene.sun->irradiance[1] == Approx(1000.0));
     json["sun"]["normal_irradiance"] = {600, 400};
     CHECK(read(directory, json).sun->irradiance == std::vector<double>{600.0, 400.0});
+    CHECK(scene.sun->diameter == 0.0);
+    json["sun"]["diameter"] = 0.53;
+    CHECK(read(directory, json).sun->diameter == 0.53);
+}
+
+TEST_CASE("JSON: azimuths are about the axis that points upwards, the file's or the option's",
+          "[io][daylight]") {
+    const Directory directory;
+    Json json = room();
+    json["sun"] = {{"azimuth", 90}, {"elevation", 30}, {"normal_irradiance", 800}};
+    const auto near = [](const Vec3& a, const Vec3& b) { return glm::length(a - b) < 1e-12; };
+    CHECK(near(read(directory, json).sun->direction, {std::sqrt(0.75), 0.0, 0.5}));
+    json["up"] = "y";
+    Scene scene = read(directory, json);
+    CHECK(scene.up == UpAxis::y);
+    CHECK(near(scene.sun->direction, {std::sqrt(0.75), 0.5, 0.0}));
+    json["sun"]["azimuth"] = 0; // north is -z
+    CHECK(near(read(directory, json).sun->direction, {0.0, 0.5, -std::sqrt(0.75)}));
+    Diagnostics ignored;
+    io::SceneReaderOptions options;
+    options.up = UpAxis::z;
+    scene = io::read_scene(directory.write("scene.json", json), options, ignored);
+    CHECK(scene.up == UpAxis::z);
+    CHECK(near(scene.sun->direction, {0.0, std::sqrt(0.75), 0.5}));
+    json["up"] = "x";
+    CHECK_THROWS_WITH(read(directory, json), Contains("up") && Contains("\"y\" or \"z\""));
 }
 
 TEST_CASE("JSON: what is wrong with a sun is said", "[io][daylight]") {
@@ -146,6 +182,8 @@ TEST_CASE("JSON: what is wrong with a sun is said", "[io][daylight]") {
     fails({{"azimuth", 180}, {"normal_irradiance", 800}}, "elevation");
     fails({{"azimuth", 180}, {"elevation", 91}, {"normal_irradiance", 800}}, "[-90, 90]");
     fails({{"latitude", 48}, {"longitude", 11}, {"time", "noon"}, {"normal_irradiance", 800}}, "noon");
+    fails({{"direction", {0, 0, 1}}, {"normal_irradiance", 800}, {"diameter", -1}}, "0.53");
+    fails({{"direction", {0, 0, 1}}, {"normal_irradiance", 800}, {"diameter", 200}}, "[0, 90]");
     fails({{"azimut", 180}, {"elevation", 9}, {"normal_irradiance", 800}}, "azimuth");
 }
 

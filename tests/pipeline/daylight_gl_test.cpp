@@ -140,6 +140,108 @@ TEST_CASE("daylight: walls and roofs that nothing hides get what the sky gives i
     CHECK(direct(soffit, rows_of(soffit))[0] == Approx(2000.0).epsilon(1e-12));
 }
 
+TEST_CASE("daylight: the sky is about the axis that points upwards", "[pipeline][sky]") {
+    Scene upright = empty_scene();
+    add_polygon(upright, "roof", {{0, 0, 5}, {1, 0, 5}, {1, 1, 5}, {0, 1, 5}});
+    add_polygon(upright, "wall", {{9, 0, 0}, {9, 1, 0}, {9, 1, 1}, {9, 0, 1}});
+    add_polygon(upright, "fence", {{11, 0, 0}, {11, 0, 2}, {11, 1, 2}, {11, 1, 0}}); // in front of the wall
+    upright.sky = Sky{SkyDistribution::overcast, {10000.0}, {0.2}};
+    upright.sun = Sun{sky_direction(120.0, 40.0), {800.0}};
+    Scene turned = upright;
+    turned.up = UpAxis::y;
+    for (Surface& surface : turned.surfaces) {
+        for (Vec3& vertex : surface.vertices) {
+            vertex = turned_upright(vertex, UpAxis::y);
+        }
+    }
+    turned.sun->direction = sky_direction(120.0, 40.0, 0.0, UpAxis::y);
+    const std::vector<double> expected = direct(upright, rows_of(upright));
+    const std::vector<double> found = direct(turned, rows_of(turned));
+    REQUIRE(expected[0] == Approx(10000.0 + 800.0 * std::sin(40.0 * std::numbers::pi / 180.0)));
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+        CHECK(found[k] == Approx(expected[k]).epsilon(1e-6));
+    }
+    turned.up = UpAxis::z; // whatever the file says counts
+    CHECK(direct(turned, rows_of(turned))[0] < 0.8 * expected[0]);
+    // Points, with the horizon and a person's planes.
+    turned.up = UpAxis::y;
+    const auto points_of = [](const Scene& scene) {
+        const auto place = [&](const Vec3& v) { return turned_upright(v, scene.up); };
+        const PatchMesh mesh(scene);
+        Radiation radiation;
+        radiation.radiosity.assign(mesh.size(), 0.0);
+        radiation.environment = {0.0};
+        radiation.sky = scene.sky;
+        radiation.up = scene.up;
+        return compute_point_values(
+            mesh,
+            std::vector<Receiver>{{place({10, 0.5, 0.5}), place({-1, 0, 0})}, {place({10, 0.5, 0.5}), {}}},
+            radiation, Enclosure::open, settings_here(), 30.0);
+    };
+    const PointValues a = points_of(upright);
+    const PointValues b = points_of(turned);
+    for (std::size_t k = 0; k < 2; ++k) {
+        CHECK(b.irradiance[k] == Approx(a.irradiance[k]).epsilon(2e-3));
+        CHECK(b.sky[k] == Approx(a.sky[k]).epsilon(2e-3));
+        CHECK(b.below_horizon[k] == Approx(a.below_horizon[k]).epsilon(2e-3));
+    }
+    for (std::size_t d = 6; d < 12; ++d) {
+        CHECK(b.planes_short[d] == Approx(a.planes_short[d]).epsilon(5e-3));
+    }
+}
+
+TEST_CASE("daylight: a disc's shadow has the penumbra of a circle cut by the edge", "[pipeline][sun]") {
+    // A half-plane 2 m above the floor ends at x = 0, under the sun in the zenith: at a distance d from the
+    // edge's foot, the edge cuts the disc at u = sin(atan(d / 2)) / sin(radius) of its radius.
+    Scene scene = empty_scene();
+    add_polygon(scene, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {200, 1});
+    add_polygon(scene, "roof", {{0, -50, 2}, {0, 50, 2}, {50, 50, 2}, {50, -50, 2}});
+    scene.sun = Sun{{0, 0, 1}, {1000.0}, 4.0};
+    const auto share_at = [](double d) { // lit, where x = -d
+        const double u =
+            std::clamp(std::sin(std::atan(0.5 * d)) / std::sin(2.0 * std::numbers::pi / 180.0), -1.0, 1.0);
+        return 1.0 - (std::acos(u) - u * std::sqrt(1.0 - u * u)) / std::numbers::pi;
+    };
+    const PatchMesh mesh(scene);
+    const std::vector<double> irradiance = direct_irradiance(scene, mesh, FormFactorMatrix(mesh.size()));
+    std::vector<Receiver> points;
+    double worst = 0.0;
+    int partly = 0;
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        const double d = -mesh.centres()[i].x;
+        // The mean over a patch of 1 cm, by Simpson's rule.
+        const double exact = (share_at(d - 0.005) + 4.0 * share_at(d) + share_at(d + 0.005)) / 6.0;
+        worst = std::max(worst, std::abs(irradiance[i] / 1000.0 - exact));
+        partly += exact > 0.01 && exact < 0.99 ? 1 : 0;
+        points.push_back({mesh.centres()[i], Vec3(0, 0, 1), mesh.surface_of()[i]});
+    }
+    CHECK(partly > 10); // it is 14 cm wide
+    CHECK(worst < 0.01);
+    Radiation radiation;
+    radiation.radiosity.assign(mesh.size(), 0.0);
+    radiation.sun = scene.sun;
+    const PointValues values =
+        compute_point_values(mesh, points, radiation, Enclosure::open, settings_here());
+    worst = 0.0;
+    for (std::uint32_t i = 0; i < 200; ++i) {
+        worst = std::max(worst, std::abs(values.irradiance[i] / 1000.0 - share_at(-mesh.centres()[i].x)));
+    }
+    CHECK(worst < 0.003);
+    // Nothing in the way: the cosine of the middle, of a disc that has risen, and part of one that is
+    // setting.
+    Scene open = empty_scene();
+    add_polygon(open, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+    const auto of_elevation = [&](double degrees) {
+        open.sun = Sun{sky_direction(90.0, degrees), {1000.0}, 10.0};
+        return direct_irradiance(open, PatchMesh(open), FormFactorMatrix(1))[0] / 1000.0;
+    };
+    CHECK(of_elevation(30.0) == Approx(0.5).epsilon(2e-3));
+    // Half a disc of angular radius r on the horizon: to first order 4 r / (3 pi) times a half.
+    CHECK(of_elevation(0.0) ==
+          Approx(2.0 * std::sin(5.0 * std::numbers::pi / 180.0) / (3.0 * std::numbers::pi)).epsilon(0.02));
+    CHECK(of_elevation(-6.0) == 0.0);
+}
+
 TEST_CASE("daylight: what comes through an opening falls on what is below it", "[pipeline][sky]") {
     Scene scene = court(6);
     const Rows rows = rows_of(scene);

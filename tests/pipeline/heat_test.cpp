@@ -142,6 +142,12 @@ TEST_CASE("heat: plates, spheres, a shield", "[heat]") {
     const HeatSolution between = solve_heat(spheres, grey({0.6, 0.2}, {at(800.0), at(300.0)}));
     CHECK(between.net_flux[0] == Approx(driving / (1.0 / 0.6 + 0.25 * (1.0 / 0.2 - 1.0))).epsilon(1e-11));
 
+    // Long coaxial cylinders, the outer one twice as wide; per length as spheres, by the ratio of the radii.
+    const FormFactors cylinders = make_factors({{0.0, 1.0}, {0.5, 0.5}}, {1.0, 2.0}, {"inner", "outer"});
+    const HeatSolution coaxial = solve_heat(cylinders, grey({0.6, 0.2}, {at(800.0), at(300.0)}));
+    CHECK(coaxial.net_flux[0] == Approx(driving / (1.0 / 0.6 + 0.5 * (1.0 / 0.2 - 1.0))).epsilon(1e-11));
+    CHECK(coaxial.net_flux[1] == Approx(-0.5 * coaxial.net_flux[0]).epsilon(1e-11));
+
     // Both sides of the shield have one temperature, and no net power together.
     FormFactors shielded = make_factors({{0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 0, 1}, {0, 0, 1, 0}},
                                         {1, 1, 1, 1}, {"hot", "shield", "back of the shield", "cold"});

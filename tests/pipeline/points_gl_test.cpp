@@ -44,13 +44,9 @@ Radiation all_alike(const PatchMesh& mesh, double value, double environment = 0.
 }
 
 PointValues values_at(const PatchMesh& mesh, const std::vector<Receiver>& points, const Radiation& radiation,
-                      Enclosure enclosure = Enclosure::automatic, double facing = 0.0) {
+                      Enclosure enclosure = Enclosure::automatic,
+                      std::optional<double> facing = std::nullopt) {
     return compute_point_values(mesh, points, radiation, enclosure, settings_here(), facing);
-}
-
-/// The six planes of point k.
-std::span<const double, 6> planes_of(const PointValues& values, std::size_t k) {
-    return std::span<const double, 6>(values.planes.data() + k * 6, 6);
 }
 
 /// Depth of the bowl's floor.
@@ -151,6 +147,33 @@ TEST_CASE("points: the sky in a bowl is what its opening is seen as", "[pipeline
     CHECK(values.sky[0] == Approx(1.0 / (1.0 + depth(down) * depth(down))).margin(0.01));
 }
 
+TEST_CASE("form factors: patches of a hemispherical bowl see half of the sky", "[pipeline][every-device]") {
+    // Of a sphere every part sees any other by that one's share of the sphere, so that a hemisphere's inside
+    // sees a half of the sky everywhere. Of facets the area mean is exact by reciprocity: A e = A_opening.
+    double before = 1.0;
+    for (const std::uint32_t down : {3u, 6u}) {
+        const std::uint32_t around = 4 * down;
+        const Scene scene = bowl(around, down);
+        const PatchMesh mesh(scene);
+        const FormFactors factors = compute_form_factors(scene, mesh, settings_here());
+        double seen = 0.0;
+        double area = 0.0;
+        double worst = 0.0;
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            const double sky = factors.matrix.row(i).environment;
+            seen += mesh.areas()[i] * sky;
+            area += mesh.areas()[i];
+            worst = std::max(worst, std::abs(sky - 0.5));
+        }
+        INFO(down);
+        CHECK(seen == Approx(0.5 * around * std::sin(2.0 * std::numbers::pi / around)).epsilon(1e-5));
+        CHECK(std::abs(seen / area - 0.5) < 0.5 * before);
+        before = std::abs(seen / area - 0.5);
+        CHECK(worst < 0.5 / down);
+    }
+    CHECK(before < 0.01);
+}
+
 TEST_CASE("points: mean radiant temperature in a box, by solid angles", "[pipeline][every-device]") {
     const std::vector<double> kelvin{290.0, 295.0, 300.0, 305.0, 285.0, 330.0};
     std::vector<double> exitance;
@@ -214,7 +237,7 @@ TEST_CASE("points: a person under a warm ceiling, by six planes", "[pipeline][ev
         const double side = kelvin(across);
         const PointValues values = values_at(mesh, {{Vec3(0.0), {}, no_surface}}, by_group(mesh, exitance),
                                              Enclosure::automatic, facing);
-        const auto planes = planes_of(values, 0);
+        const auto planes = plane_exitances(values, 0);
         for (const bool faces : {false, true}) { // the sides are alike
             CHECK(person_radiant_temperature(planes, Posture::standing, faces) ==
                   Approx((0.08 * (up + down) + 0.58 * 2.0 * side) / 1.32).margin(1e-3));
@@ -252,7 +275,7 @@ TEST_CASE("points: spheres and planes know what hides what", "[pipeline][every-d
     const PatchMesh mesh(scene);
     const Vec3 at(0.0);
     const PointValues values = values_at(mesh, {{at, {}, no_surface}, {at, Vec3(0, 0, 1), no_surface}},
-                                         by_group(mesh, {8.0, 1.0}, 2.0));
+                                         by_group(mesh, {8.0, 1.0}, 2.0), Enclosure::automatic, 0.0);
     const std::vector<Vec3> seen{{0, 1, 2}, {1, 1, 2}, {1, -1, 2}, {0, -1, 2}};
     const double far = solid_angle(at, seen) / (4.0 * std::numbers::pi);
     const double near = solid_angle(at, mesh.corners(4).polygon()) / (4.0 * std::numbers::pi);
@@ -265,6 +288,55 @@ TEST_CASE("points: spheres and planes know what hides what", "[pipeline][every-d
     const double plane = hemi::point_factor(at, Vec3(0, 0, 1), seen);
     CHECK(values.factors[2] == Approx(plane).margin(1e-4));
     CHECK(std::isnan(values.planes[6]));
+    CHECK(values.planes[0] ==
+          Approx(8.0 * plane + 1.0 * values.factors[3] + 2.0 * values.sky[1]).margin(1e-3));
+    CHECK(values_at(mesh, {{at, {}, no_surface}}, by_group(mesh, {8.0, 1.0}, 2.0)).planes.empty());
+}
+
+TEST_CASE("points: what a person absorbs of sun and short waves warms it", "[pipeline]") {
+    // The sun in the zenith, over a floor that is small and far: 1000 W/m² on the head, 280 K all round.
+    Scene scene = empty_scene();
+    add_polygon(scene, "floor", {{0, 0, -900}, {1, 0, -900}, {1, 1, -900}, {0, 1, -900}});
+    const PatchMesh mesh(scene);
+    const double around = black_body_exitance(280.0);
+    Radiation radiation = all_alike(mesh, around, around);
+    radiation.sun = Sun{{0, 0, 1}, {1000.0}};
+    const std::vector<Receiver> points{{Vec3(0.5, 0.5, 0.0), {}, no_surface}};
+    const PointValues values = values_at(mesh, points, radiation, Enclosure::open, 0.0);
+    const double head = black_body_temperature(around + 0.7 / 0.97 * 1000.0);
+    CHECK(person_radiant_temperature(plane_exitances(values, 0), Posture::standing, false) ==
+          Approx((0.08 * (head + 280.0) + 2.0 * 0.58 * 280.0) / 1.32).epsilon(1e-6));
+    CHECK(person_radiant_temperature(plane_exitances(values, 0), Posture::seated, false) ==
+          Approx((0.18 * (head + 280.0) + 2.0 * 0.52 * 280.0) / 1.40).epsilon(1e-6));
+    // In the dark clothes of a black sphere, and in white ones.
+    CHECK(plane_exitances(values, 0, {1.0, 1.0})[0] == Approx(around + 1000.0).epsilon(1e-6));
+    CHECK(plane_exitances(values, 0, {0.2, 0.8})[0] == Approx(around + 250.0).epsilon(1e-6));
+    CHECK(plane_exitances(values, 0)[1] == Approx(around).epsilon(1e-6));
+    CHECK(values.surroundings[0] == Approx(around + 250.0).epsilon(1e-6)); // a black sphere: a quarter
+    // From the side, on two planes by the cosines.
+    radiation.sun->direction = glm::normalize(Vec3(3.0, 4.0, 0.0));
+    const auto side =
+        plane_exitances(values_at(mesh, points, radiation, Enclosure::open, 0.0), 0, {1.0, 1.0});
+    CHECK(side[2] == Approx(around + 600.0).epsilon(1e-6));
+    CHECK(side[4] == Approx(around + 800.0).epsilon(1e-6));
+    CHECK(side[0] == Approx(around).epsilon(1e-6));
+    // What patches reflect of short waves counts as such where a band tells them.
+    Scene room = empty_scene();
+    add_room(room, Vec3(-1.0), Vec3(1.0), 1);
+    const PatchMesh walls(room);
+    Radiation bands;
+    bands.channels = 2;
+    bands.short_wave = {true, false};
+    for (std::uint32_t i = 0; i < walls.size(); ++i) {
+        bands.radiosity.insert(bands.radiosity.end(), {100.0, 400.0});
+    }
+    const auto inside = plane_exitances(
+        values_at(walls, {{Vec3(0.0), {}, no_surface}}, bands, Enclosure::closed, 0.0), 0, {0.6, 0.8});
+    for (const double plane : inside) {
+        CHECK(plane == Approx(400.0 + 75.0).epsilon(1e-6));
+    }
+    bands.short_wave.pop_back();
+    CHECK_THROWS_AS(values_at(walls, {{Vec3(0.0), {}, no_surface}}, bands), InvalidArgument);
 }
 
 TEST_CASE("points: the horizon cuts walls and the environment", "[pipeline][every-device]") {

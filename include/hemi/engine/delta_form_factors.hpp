@@ -6,8 +6,15 @@
 
 namespace hemi {
 
+/// How directions are weighed.
+enum class DirectionMeasure {
+    projected_solid_angle, ///< with the cosine to the normal, as a small area sends and receives
+    solid_angle,           ///< all alike, as a small sphere receives
+};
+
 /// Weight of every texel of a hemicube: the share of the energy leaving the sample point, cosine-weighted
-/// over the hemisphere, that passes through that texel.
+/// over the hemisphere, that passes through that texel. For small spheres, the share of the hemisphere's
+/// solid angle instead.
 ///
 /// Dimensionless, as integers in units of 1 / total, total = 2^32 - 1: exact integrals over the texel (not
 /// midpoint values), rounded cumulatively so that they sum to exactly `total` at any resolution and any
@@ -23,8 +30,10 @@ public:
     static constexpr std::uint32_t total = 0xFFFFFFFFu;
 
     /// @param resolution  texels along a full hemicube edge; even, 2 to 4096.
+    /// @param measure     what the weights are shares of
     /// @throws InvalidArgument if `resolution` is odd or out of range.
-    explicit DeltaFormFactors(std::uint32_t resolution);
+    explicit DeltaFormFactors(std::uint32_t resolution,
+                              DirectionMeasure measure = DirectionMeasure::projected_solid_angle);
 
     /// The weights of a sample point that stands for `share` of its patch, in (0, 1]: they sum to about
     /// share·total, never more.
@@ -52,6 +61,9 @@ public:
     }
 
 private:
+    template <class Corners>
+    void sum_up(const Corners& corners);
+
     std::uint32_t resolution_;
     std::vector<std::uint32_t> prefix_;
 };

@@ -58,6 +58,11 @@ public:
     /// @param j       the patch
     [[nodiscard]] double at_point(const Vec3& at, const Vec3& normal, std::uint32_t j) const;
 
+    /// Solid angle of patch j's front, unoccluded: solid_angle().
+    /// @param at  position of the observer, scene units
+    /// @param j   the patch
+    [[nodiscard]] double solid_angle_at(const Vec3& at, std::uint32_t j) const;
+
     /// Number of patches.
     [[nodiscard]] std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(patches_.size()); }
 
@@ -75,6 +80,7 @@ private:
         std::uint32_t surface;
     };
 
+    [[nodiscard]] static std::array<Vec3, 4> corners_of(const Patch& patch);
     [[nodiscard]] double near_area(const Patch& a, const Patch& b, bool clipped, double distance) const;
 
     ExchangeRule rule_;

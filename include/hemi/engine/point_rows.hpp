@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/progress.hpp"
+#include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/engine/engine.hpp"
 #include "hemi/engine/visibility_provider.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
@@ -26,15 +27,19 @@ struct SurfacePoint {
 };
 
 /// Visibility of the patches from points, by one hemicube each: row k is that of point k, its columns are the
-/// patches. As make_visibility_engine() otherwise; eye points of the settings do not count.
+/// patches. As make_visibility_engine() otherwise; eye points of the settings do not count. By the solid
+/// angle, points are small spheres, whose normals do not count: two hemicubes look up and down, and all of a
+/// row, its environment too, is weighed by the solid angle.
 /// @param mesh      must outlive the engine
 /// @param points    are read here and not kept
 /// @param settings  what changes the rows
 /// @param engine    device and workers
+/// @param measure   of directions from the points
 /// @throws InvalidArgument if a point's surface does not exist; as make_hemicube_engine()
 [[nodiscard]] std::unique_ptr<VisibilityProvider>
 make_point_visibility_engine(const PatchMesh& mesh, std::span<const SurfacePoint> points,
-                             const HemicubeSettings& settings, const EngineSettings& engine);
+                             const HemicubeSettings& settings, const EngineSettings& engine,
+                             DirectionMeasure measure = DirectionMeasure::projected_solid_angle);
 
 /// Receives the row of point `index`: factors from it to the patches. The view is valid during the call only.
 using PointRowSink = std::function<void(std::uint32_t index, const RowView& row)>;
@@ -44,7 +49,8 @@ using PointRowSink = std::function<void(std::uint32_t index, const RowView& row)
 /// the visible share of the texels that j covers in the point's hemicube, with shadow rays to those few
 /// patches whose share is least certain and matters most. Rows are closed: their sum, e and b make 1. Where
 /// nothing of the environment is seen (as compute_visibility_weighted() has it) the factors are scaled for
-/// it, else e is what is left.
+/// it, else e is what is left. Rows of small spheres are shares of the full solid angle: F0 is then the exact
+/// solid angle of the patch over 4 pi.
 /// @param visibility  see make_point_visibility_engine()
 /// @param mesh        N patches
 /// @param points      that `visibility` is of
@@ -53,10 +59,12 @@ using PointRowSink = std::function<void(std::uint32_t index, const RowView& row)
 /// @param weights     how much each patch's light matters, N, for the choice of shadow rays; empty: all alike
 /// @param sink        gets the rows, block by block in any order; not from several threads at once
 /// @param progress    called after every batch of rows; may be empty
+/// @param measure     that `visibility` was made with
 /// @throws Cancelled; InvalidArgument if `weights` does not fit
 void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
                         std::span<const SurfacePoint> points, const VisibilityWeightedSettings& settings,
                         Enclosure enclosure, std::span<const double> weights, const PointRowSink& sink,
-                        const Progress& progress = {});
+                        const Progress& progress = {},
+                        DirectionMeasure measure = DirectionMeasure::projected_solid_angle);
 
 } // namespace hemi

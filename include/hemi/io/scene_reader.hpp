@@ -5,6 +5,7 @@
 #include "hemi/scene/scene.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,8 +26,9 @@ struct SceneReaderOptions {
     /// glTF: closed bodies of double-sided faces are taken as one-sided where one of their sides meets
     /// nothing, see make_bodies_one_sided(); not those with faces of two_sided_groups.
     bool close_bodies = true;
-    std::string zone{};     ///< .epJSON: the zone that is read; empty: the only one
-    bool adiabatic = false; ///< allow reflectances of 1 in .json, where heat is solved for
+    std::string zone{};         ///< .epJSON: the zone that is read; empty: the only one
+    bool adiabatic = false;     ///< allow reflectances of 1 in .json, where heat is solved for
+    std::optional<UpAxis> up{}; ///< axis upwards, in place of the file's
 };
 
 /// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3 (View3D),

@@ -29,10 +29,12 @@ struct LightBalance {
 /// @param factors    that it was solved by
 /// @param values     of the patches
 /// @param radiosity  N·channels, channel c of patch i at [i·channels + c]
+/// @param weights    what each channel counts, channels, such as flux_weights(); empty: 1
 /// @return nothing where a row is unknown that light leaves by, or that the environment's light comes by
 /// @throws InvalidArgument for spans that do not fit
 [[nodiscard]] std::optional<LightBalance> light_balance(const FormFactors& factors, const PatchValues& values,
-                                                        std::span<const double> radiosity);
+                                                        std::span<const double> radiosity,
+                                                        std::span<const double> weights = {});
 
 /// Patches from which light comes, ascending: those that reflect or radiate in some channel. Their rows are
 /// what a light_balance() needs.

@@ -33,9 +33,12 @@ struct Radiation {
     std::vector<double> environment; ///< exitance of the environment, channels; empty: dark
     std::optional<Sun> sun{};        ///< channels as the radiosity
     std::optional<Sky> sky{};        ///< likewise
+    UpAxis up = UpAxis::z;           ///< of the horizon
+    /// Channels of short waves, as the sun's: bands that end at 4 µm or before; empty: none is known to be.
+    std::vector<bool> short_wave{};
 };
-/// That of a solution, with what can be seen of patches that something stands on. Sun and sky are the
-/// scene's, and are left to be set.
+/// That of a solution, with what can be seen of patches that something stands on. Sun, sky and the axis
+/// upwards are the scene's, and are left to be set.
 /// @param mesh      N patches
 /// @param values    what patches and the environment radiate
 /// @param solution  radiosity and back-face shares are used
@@ -47,11 +50,12 @@ struct Radiation {
 
 /// Directions of a point's six planes, in this order: up, down, and to the right, left, front and back of
 /// somebody who faces an azimuth.
-/// @param facing  degrees from +y towards +x
-[[nodiscard]] std::array<Vec3, 6> plane_directions(double facing);
+/// @param facing  degrees from +y towards +x, or, where y is upwards, from -z towards +x
+/// @param up      axis
+[[nodiscard]] std::array<Vec3, 6> plane_directions(double facing, UpAxis up = UpAxis::z);
 
 /// What P points get. Shares and factors of a plane are weighted with the cosine, those of a sphere are
-/// shares of the full solid angle. Upwards is +z.
+/// shares of the full solid angle. Upwards is the radiation's axis.
 struct PointValues {
     std::uint32_t channels = 1;     ///< of the radiation
     std::uint32_t groups = 0;       ///< of the mesh
@@ -65,28 +69,31 @@ struct PointValues {
     /// W/m², P: of patches, and of the environment unless what is seen of it is but a leak, with sun and sky.
     /// Backs and patches of unknown radiosity are left out; not a number where nothing else is seen.
     std::vector<double> surroundings;
-    /// The same for the six planes of points without a normal, see plane_directions(): P·6, not a number with
-    /// a normal.
+    /// The same for the six planes of points without a normal, see plane_directions(), without short waves
+    /// and what comes from sun and sky: P·6, not a number with a normal; empty if it was not wanted.
     std::vector<double> planes;
+    /// Irradiance of these planes by short waves, and by what comes from sun and sky in any channel: P·6.
+    std::vector<double> planes_short;
 };
 
-/// Irradiance and factors of points, by rows of their own: compute_point_rows() for planes. Of a sphere the
-/// exact solid angle of every patch times the share of it that is seen by the six planes together; where that
-/// is neither 0 nor 1, parts of a patch count with a weight between 1 and 1.74 of each other. The horizon
-/// cuts patches exactly, but where backs are seen what they hide of the sky is estimated.
-/// Memory: 8 bytes a patch for each of some hundreds of spheres, and what is returned.
+/// Irradiance and factors of points, by rows of their own, see compute_point_rows(): of a plane by the
+/// cosine, of a sphere the exact solid angle of every patch times the share of it that is seen. The horizon
+/// cuts patches exactly, but where backs are seen what they hide of the sky is estimated. Memory: some
+/// hundreds of rows, and what is returned.
 /// @param mesh       N patches
 /// @param points     P
 /// @param radiation  of the patches
 /// @param enclosure  as the scene says
 /// @param settings   resolution, rule, shadow rays by the preset; device and workers
-/// @param facing     for the six planes, see plane_directions()
+/// @param facing     for the six planes, see plane_directions(); none: they are not found, which saves most
+///   of the time of points without a normal
 /// @param observer   gets progress (Phase::points) and may cancel
 /// @throws InvalidArgument for values that do not fit, positions that are not finite, normals not of unit
 ///   length; as make_point_visibility_engine(); Cancelled
 [[nodiscard]] PointValues compute_point_values(const PatchMesh& mesh, std::span<const Receiver> points,
                                                const Radiation& radiation, Enclosure enclosure,
-                                               const FactorSettings& settings, double facing = 0.0,
+                                               const FactorSettings& settings,
+                                               std::optional<double> facing = std::nullopt,
                                                Observer& observer = no_observer());
 
 /// How a person is there, for whom the mean radiant temperature is wanted.
@@ -103,9 +110,23 @@ struct Names<Posture> {
                                                     {Posture::seated, "seated"}};
 };
 
+/// What a body absorbs of what falls on it. Source of the values: VDI 3787 part 2, of a clothed person.
+struct BodyAbsorption {
+    double short_wave = 0.7; ///< of short waves, and of what comes from sun and sky; in (0, 1]
+    double long_wave = 0.97; ///< of heat radiation, which is its emissivity; in (0, 1]
+};
+/// Exitance of black surroundings that would heat a body as much as what its six planes receive, short waves
+/// by their absorptance over the emissivity: the planes of person_radiant_temperature(), W/m². In one grey
+/// band short waves are what comes from sun and sky straight; their reflections count as heat radiation.
+/// @param values  with planes
+/// @param point   index
+/// @param body    that receives
+[[nodiscard]] std::array<double, 6> plane_exitances(const PointValues& values, std::size_t point,
+                                                    const BodyAbsorption& body = {});
+
 /// Mean radiant temperature of a person by six plane radiant temperatures, each weighted with the projected
 /// area of its direction. Source: ISO 7726:1998, annex B.
-/// @param planes   PointValues::planes of one point, W/m²
+/// @param planes   see plane_exitances(), W/m²
 /// @param posture  standing or seated
 /// @param faces    whether the person faces front; else sides, front and back count alike
 /// @return K; not a number where a plane sees nothing

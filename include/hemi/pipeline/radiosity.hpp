@@ -23,6 +23,7 @@ struct PatchValues {
     std::vector<double> direct{};    ///< irradiance from sun and sky, N·channels, >= 0; empty: neither
     std::optional<Sun> sun{};        ///< for points beside the patches, which have no `direct`
     std::optional<Sky> sky{};        ///< likewise
+    UpAxis up = UpAxis::z;           ///< of the sky
 };
 /// Those of a scene, without what sun and sky give patches; see direct_irradiance().
 [[nodiscard]] PatchValues patch_values(const Scene& scene, const PatchMesh& mesh);

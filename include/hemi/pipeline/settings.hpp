@@ -70,6 +70,7 @@ struct RowPlan {
 /// The same from points, see make_point_visibility_engine().
 [[nodiscard]] std::unique_ptr<VisibilityProvider>
 make_point_visibility_provider(const PatchMesh& mesh, std::span<const SurfacePoint> points,
-                               const HemicubeSettings& hemicube, const FactorSettings& settings);
+                               const HemicubeSettings& hemicube, const FactorSettings& settings,
+                               DirectionMeasure measure = DirectionMeasure::projected_solid_angle);
 
 } // namespace hemi

@@ -82,10 +82,11 @@ struct Camera {
     bool orthographic = false;  ///< else perspective
 };
 
-/// Parallel light from afar. It is not seen itself.
+/// Light from afar: parallel, or from an evenly bright disc. It is not seen itself.
 struct Sun {
-    Vec3 direction{0.0, 0.0, 1.0};  ///< towards it, of unit length
+    Vec3 direction{0.0, 0.0, 1.0};  ///< towards its middle, of unit length
     std::vector<double> irradiance; ///< of an area normal to the beam, W/m² (or lx), one value per channel
+    double diameter = 0.0;          ///< of the disc, degrees, in [0, 90]; 0: parallel light
 
     bool operator==(const Sun&) const = default; ///< member by member
 };
@@ -105,7 +106,7 @@ struct Names<SkyDistribution> {
 };
 
 /// What comes from above and below the horizon, beside what Scene::environment sends from everywhere.
-/// Upwards is +z.
+/// Upwards is Scene::up.
 struct Sky {
     SkyDistribution distribution = SkyDistribution::uniform; ///< above the horizon
     std::vector<double>
@@ -116,8 +117,8 @@ struct Sky {
     bool operator==(const Sky&) const = default; ///< member by member
 };
 
-/// The axis that points upwards in a scene. Coordinates are the file's, whatever it is: only cameras that are
-/// chosen for a scene depend on it.
+/// The axis that points upwards in a scene. Coordinates are the file's, whatever it is: cameras that are
+/// chosen for a scene, the sky and its horizon, and where an azimuth counts from depend on it.
 enum class UpAxis { y, z };
 
 /// The words of UpAxis.
@@ -134,6 +135,10 @@ struct Names<UpAxis> {
 [[nodiscard]] inline Vec3 turned_upright(const Vec3& direction, UpAxis up) {
     return up == UpAxis::z ? direction : Vec3(direction.x, direction.z, -direction.y);
 }
+/// The direction upwards, of unit length.
+[[nodiscard]] inline Vec3 upwards(UpAxis up) {
+    return turned_upright({0.0, 0.0, 1.0}, up);
+}
 
 /// A scene as its file tells it: plain data, in the file's order and units.
 struct Scene {
@@ -146,7 +151,7 @@ struct Scene {
     Enclosure enclosure = Enclosure::automatic; ///< What the file says about it.
     std::vector<double> environment; ///< Exitance of the environment (pi times its radiance), per channel.
     std::optional<Camera> camera;    ///< None: see default_camera().
-    UpAxis up = UpAxis::z;           ///< for cameras that are chosen for the scene
+    UpAxis up = UpAxis::z;           ///< for the sky, and for cameras that are chosen for the scene
     std::optional<double> unit;      ///< Metres in a scene unit; none: 1.
     /// What it says of heat. Reflectances of 1 are allowed where there is some: such surfaces are adiabatic.
     std::optional<Thermal> thermal;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/geometry.hpp"
+#include "hemi/scene/scene.hpp"
 
 #include <string>
 
@@ -21,10 +22,11 @@ struct SunPosition {
 /// @throws InvalidArgument for a place or a time that is none
 [[nodiscard]] SunPosition sun_position(double latitude, double longitude, const std::string& time);
 
-/// Unit vector to a place in the sky. Upwards is +z; north is +y, turned clockwise by `north`.
+/// Unit vector to a place in the sky. North is +y, or, where y is upwards, -z, turned clockwise by `north`.
 /// @param azimuth    degrees clockwise from north
 /// @param elevation  degrees above the horizon
-/// @param north      direction of north, degrees clockwise from +y
-[[nodiscard]] Vec3 sky_direction(double azimuth, double elevation, double north = 0.0);
+/// @param north      direction of north, degrees clockwise from +y or -z
+/// @param up         axis upwards
+[[nodiscard]] Vec3 sky_direction(double azimuth, double elevation, double north = 0.0, UpAxis up = UpAxis::z);
 
 } // namespace hemi

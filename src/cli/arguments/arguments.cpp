@@ -281,7 +281,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     output.path("--radiosity", "FILE.csv", a.radiosity,
                 "exitance, irradiance, radiosity and its error of every patch");
     output.path("--patches", "FILE.csv", a.patches, "area, centre, normal, environment share of every patch");
-    add_picture(app, a.picture, picture, true);
+    add_picture(app, a.picture, picture, true, &a.scene);
     add_gather(app, a.gather);
     add_common(app, a.common);
     app.footer("Examples:\n"
@@ -361,6 +361,7 @@ void add_trade(CLI::App& app, TradeArguments& a) {
     add_drawing(app, a.rows);
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
+    add_up(app, a.scene, "axis that points upwards in the sky (z, or what the scene says)");
     Options(app, "Output")
         .path("-o,--output", "PLOT.svg", a.output, "errors against seconds as a drawing; - for stdout");
     Options(app, "Computing")
@@ -421,6 +422,7 @@ void add_solved_scene(CLI::App& app, A& a) {
     add_repair(app, a.rows.factors.repair);
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
+    add_up(app, a.scene, "axis that points upwards in the sky (z, or what the scene says)");
     add_solver(app, a.solver);
 }
 
@@ -436,7 +438,7 @@ void add_render(CLI::App& app, RenderArguments& a) {
     Options output(app, "Output");
     output.path("-o,--output", "PICTURE", a.picture.output,
                 "picture: .png or .hdr (RESULT's name with .png, here); - for .png on stdout");
-    add_picture(app, a.picture, nullptr, true);
+    add_picture(app, a.picture, nullptr, true, nullptr);
     add_device(app, a.device, false);
     add_common(app, a.common);
     app.footer("Examples:\n"
@@ -457,7 +459,7 @@ void add_view(CLI::App& app, ViewArguments& a) {
     add_environment(app, a.scene);
     add_solver(app, a.solver);
     a.picture.size = {1280, 720};
-    add_picture(app, a.picture, nullptr, false);
+    add_picture(app, a.picture, nullptr, false, &a.scene);
     add_gather(app, a.gather);
     auto* factors = Options(app, "Form factors")
                         .path("--factors", "FILE.hff", a.factors, "use these form factors, with no new row");

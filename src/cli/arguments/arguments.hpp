@@ -46,7 +46,8 @@ struct SceneOptions {
     std::vector<double>
         environment; ///< `--environment`: one value for all channels or one for each; empty: the scene's
     io::SceneReaderOptions reader;
-    bool imprint = true; ///< cut faces where they touch
+    bool imprint = true;        ///< cut faces where they touch
+    bool up_is_visible = false; ///< results depend on the axis upwards even without a sky
 };
 
 struct RowOptions {
@@ -200,10 +201,12 @@ struct PointsArguments {
     bool daylight = false; ///< factors by the sky alone
     std::optional<Posture> posture;
     std::optional<double> facing; ///< degrees
+    BodyAbsorption body;          ///< of the person
     std::optional<std::filesystem::path> output;
     bool by_group = false;
     std::string show;                           ///< column of the map; empty: the first irradiance
     std::optional<std::array<double, 2>> range; ///< of the map
+    bool legend = true;                         ///< below the map
     std::optional<std::filesystem::path> factors;
 };
 

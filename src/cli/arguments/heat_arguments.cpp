@@ -106,7 +106,9 @@ void add_heat_output(CLI::App& app, HeatArguments& a) {
     output.path("--series", "FILE.csv", a.series,
                 "solve for every line of this table: a time, and a column of temperatures (or fluxes, or "
                 "powers, where the scene has these) for every group named in its first line");
-    a.picture.options = add_heat_picture(app, a.picture, file);
+    a.picture.options = add_heat_picture(app, a.picture, file, a.scene);
+    app.parse_complete_callback(
+        [&a] { a.scene.up_is_visible = a.output && a.output->extension() == ".png"; });
 }
 
 void add_exchange_output(CLI::App& app, ExchangeArguments& a) {

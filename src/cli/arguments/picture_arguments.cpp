@@ -12,8 +12,10 @@ namespace hemi::cli {
 
 namespace {
 
-/// Size, camera and what is drawn beside the patches. @return all of them
-std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture) {
+/// Size, camera and what is drawn beside the patches.
+/// @param scene  whose sky `--up` is of, too; may be none
+/// @return all of them, but for `--up` of a scene, which does without a picture
+std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture, SceneOptions* scene) {
     std::vector<CLI::Option*> added;
     Options options(app, "Picture");
     added.push_back(options.value(
@@ -22,9 +24,19 @@ std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture) {
     added.push_back(options.value(
         "--camera", "EYE:TARGET[:UP][:FOV]", "camera, such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
         [&picture](const std::string& text) { picture.camera = parse_camera("--camera", text); }));
-    added.push_back(options.choice<UpAxis>(
-        "--up", "y|z", "axis that points upwards in the picture (glTF: y; OBJ: by its faces; others: z)",
-        [&picture](UpAxis up) { picture.up = up; }));
+    CLI::Option* const up = options.choice<UpAxis>(
+        "--up", "y|z",
+        fmt::format("axis that points upwards {}(glTF: y; OBJ: by its faces; others: z)",
+                    scene != nullptr ? "in the picture and the sky " : "in the picture "),
+        [&picture, scene](UpAxis axis) {
+            picture.up = axis;
+            if (scene != nullptr) {
+                scene->reader.up = axis;
+            }
+        });
+    if (scene == nullptr) {
+        added.push_back(up);
+    }
     options.flag("--orthographic", picture.orthographic, "parallel rays, at the scale of the target's depth");
     options.flag("--outlines", picture.outlines, "draw outlines of patches");
     options.flag("--backs", picture.backs, "show the backs of one-sided surfaces, striped");
@@ -114,9 +126,10 @@ void add_gather(CLI::App& app, Gather& gather) {
                         "radiosity at vertices by rows of their own: crisp shadows", gather);
 }
 
-void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bool quantities) {
+void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bool quantities,
+                 SceneOptions* scene) {
     std::vector<CLI::Option*> added = add_shown(app, picture, quantities);
-    const std::vector<CLI::Option*> drawn = add_drawn(app, picture);
+    const std::vector<CLI::Option*> drawn = add_drawn(app, picture, scene);
     added.insert(added.end(), drawn.begin(), drawn.end());
     if (quantities) {
         const std::vector<CLI::Option*> of_them = add_quantities(app, picture);
@@ -133,11 +146,17 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bo
             option->needs(output);
         }
     }
+    if (scene != nullptr) {
+        app.parse_complete_callback([&picture, scene, output] {
+            scene->up_is_visible = output == nullptr || picture.output.has_value();
+        });
+    }
 }
 
-std::vector<std::string> add_heat_picture(CLI::App& app, HeatPicture& picture, CLI::Option* output) {
+std::vector<std::string> add_heat_picture(CLI::App& app, HeatPicture& picture, CLI::Option* output,
+                                          SceneOptions& scene) {
     Options options(app, "Picture");
-    std::vector<CLI::Option*> added = add_drawn(app, picture.picture);
+    std::vector<CLI::Option*> added = add_drawn(app, picture.picture, &scene);
     added.push_back(options.choice<HeatShown>(
         "--show", "NAME", "temperature (the default) or flux, the net flux leaving positive",
         [&picture](HeatShown value) { picture.shown = value; }));

@@ -12,6 +12,7 @@ namespace hemi::cli {
 
 struct HeatPicture;
 struct PictureOptions;
+struct SceneOptions;
 
 /// Channels, shading and exposure of a solution that is shown. @return all of them
 /// @param quantities  whether a quantity may be shown instead
@@ -21,10 +22,14 @@ void add_gather(CLI::App& app, Gather& gather);
 /// All of a picture of light.
 /// @param output      the option without which these make no sense; may be none.
 /// @param quantities  whether quantities can be shown in false colours instead
-void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bool quantities);
+/// @param scene       that is read for it, none: a stored result
+void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bool quantities,
+                 SceneOptions* scene);
 /// All of a picture of heat.
 /// @param output  the option without which these make no sense
-/// @return their names
-std::vector<std::string> add_heat_picture(CLI::App& app, HeatPicture& picture, CLI::Option* output);
+/// @param scene   that is read for it
+/// @return their names, but for `--up`
+std::vector<std::string> add_heat_picture(CLI::App& app, HeatPicture& picture, CLI::Option* output,
+                                          SceneOptions& scene);
 
 } // namespace hemi::cli

@@ -5,8 +5,21 @@
 
 namespace hemi::cli {
 
+namespace {
+
+double parse_absorptance(const std::string& text) {
+    const double value = parse_positive("--absorptance", text);
+    if (value > 1.0) {
+        throw InvalidArgument(fmt::format("--absorptance {}: must be at most 1", text));
+    }
+    return value;
+}
+
+} // namespace
+
 void add_point_options(CLI::App& app, PointsArguments& a) {
     a.rows.factors.estimate_error = false;
+    a.scene.up_is_visible = true; // in the horizon
     Options points(app, "Points");
     auto* file = points.path("--points", "FILE.csv", a.points,
                              "columns x, y, z, and nx, ny, nz of planes; without a normal it is a sphere");
@@ -24,13 +37,26 @@ void add_point_options(CLI::App& app, PointsArguments& a) {
     points.flag("--spheres", a.spheres, "leave normals out: what small spheres get");
     points.flag("--daylight", a.daylight,
                 "daylight factors, %: what the sky alone gives, over the horizontal illuminance outside");
-    auto* person =
-        points.choice<Posture>("--person", "standing|seated",
-                               "mean radiant temperature of a person, by six planes (ISO 7726)", a.posture);
+    auto* person = points.choice<Posture>(
+        "--person", "standing|seated",
+        "mean radiant temperature of a person, by six planes (ISO 7726), in sun and sky, too", a.posture);
     points
         .value("--facing", "A",
                "azimuth that the person faces, degrees from +y towards +x (none: all sides alike)",
                [&a](const std::string& text) { a.facing = parse_number("--facing", text); })
+        ->needs(person);
+    points
+        .value("--absorptance", "SHORT[,LONG]",
+               "what a person absorbs of sun and sky, and of heat radiation (0.7,0.97)",
+               [&a](const std::string& text) {
+                   const std::vector<std::string> words = parse_list(text);
+                   if (words.size() > 2) {
+                       throw InvalidArgument(fmt::format(
+                           "--absorptance {}: must be one number or two, such as 0.7,0.97", text));
+                   }
+                   a.body.short_wave = parse_absorptance(words[0]);
+                   a.body.long_wave = words.size() > 1 ? parse_absorptance(words[1]) : a.body.long_wave;
+               })
         ->needs(person);
     Options output(app, "Output");
     auto* out = output.path("-o,--output", "FILE", a.output,
@@ -56,6 +82,7 @@ void add_point_options(CLI::App& app, PointsArguments& a) {
                    }
                })
         ->needs(out);
+    output.flag("--no-legend", a.legend, "no legend below the .png", false);
     output.path("--factors", "FILE.hff", a.factors,
                 "use these form factors if the file exists, else write them there");
     app.footer(

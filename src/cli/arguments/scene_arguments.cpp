@@ -54,6 +54,10 @@ void add_scene_options(CLI::App& app, SceneOptions& scene) {
         ->excludes(app.get_option("--flip-group"));
 }
 
+void add_up(CLI::App& app, SceneOptions& scene, const std::string& help) {
+    Options(app, "Scene").choice<UpAxis>("--up", "y|z", help, [&scene](UpAxis up) { scene.reader.up = up; });
+}
+
 void check_files(const SceneOptions& scene) {
     std::vector<std::filesystem::path> files = scene.also;
     files.insert(files.begin(), scene.path);

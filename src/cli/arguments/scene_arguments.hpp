@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <string>
+
 /// How the command line says that a scene is read and cut into patches.
 namespace hemi::cli {
 
@@ -9,6 +11,9 @@ struct SceneOptions;
 
 /// Subdivision, what is done to faces as people have them, and which way they look.
 void add_scene_options(CLI::App& app, SceneOptions& scene);
+
+/// `--up`, of scenes without a picture.
+void add_up(CLI::App& app, SceneOptions& scene, const std::string& help);
 
 /// Several files make up one scene, of meshes alone.
 /// @throws InvalidArgument for others among them

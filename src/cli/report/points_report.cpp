@@ -33,8 +33,7 @@ double mean_radiant_temperature(const Receiver& point, const PointValues& values
     if (!asked.posture) {
         return kelvin(values.surroundings[k]);
     }
-    return person_radiant_temperature(std::span<const double, planes>(&values.planes[k * planes], planes),
-                                      *asked.posture, asked.faces);
+    return person_radiant_temperature(plane_exitances(values, k, asked.body), *asked.posture, asked.faces);
 }
 
 /// Every so many-th value.
@@ -94,8 +93,10 @@ PointColumns point_columns(std::span<const Receiver> points, const PointValues& 
         add("plane_radiant_temperature", std::move(temperatures));
     }
     for (std::size_t d = 0; asked.posture && d < planes; ++d) {
-        std::vector<double> temperatures = every(values.planes, d, planes);
-        std::transform(temperatures.begin(), temperatures.end(), temperatures.begin(), kelvin);
+        std::vector<double> temperatures;
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            temperatures.push_back(kelvin(plane_exitances(values, k, asked.body)[d]));
+        }
         add(plane_names[d], std::move(temperatures));
     }
     for (std::size_t g = 0; g < asked.groups.size(); ++g) {
@@ -141,11 +142,13 @@ Json points_json(std::span<const Receiver> points, const PointValues& values, co
         normals.push_back(points[k].normal ? vector_json(*points[k].normal) : Json());
         temperatures.push_back(mean_radiant_temperature(points[k], values, k, asked)); // null of planes
         plane_temperatures.push_back(points[k].normal ? kelvin(values.surroundings[k]) : not_there);
-        Json of_point = Json::array();
-        for (std::size_t d = 0; d < planes; ++d) {
-            of_point.push_back(kelvin(values.planes[k * planes + d]));
+        if (asked.posture) {
+            Json of_point = Json::array();
+            for (const double exitance : plane_exitances(values, k, asked.body)) {
+                of_point.push_back(kelvin(exitance));
+            }
+            six.push_back(std::move(of_point));
         }
-        six.push_back(std::move(of_point));
     }
     Json json{{"points", std::move(positions)},
               {"normals", std::move(normals)},
@@ -172,6 +175,7 @@ Json points_json(std::span<const Receiver> points, const PointValues& values, co
     }
     if (asked.posture) {
         json["posture"] = to_word(*asked.posture);
+        json["absorptance"] = {{"short_wave", asked.body.short_wave}, {"long_wave", asked.body.long_wave}};
         json["planes"] = std::move(six);
     }
     return json;

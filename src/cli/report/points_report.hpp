@@ -25,6 +25,7 @@ struct PointsAsked {
     bool heat = false;                 ///< whether the radiation is that of temperatures
     std::optional<Posture> posture;
     bool faces = false;             ///< whether the person faces front
+    BodyAbsorption body{};          ///< of the person
     std::vector<double> horizontal; ///< irradiance outside, channels; empty: no daylight factors are wanted
 };
 

@@ -165,11 +165,15 @@ Report contents_report(const Scene& scene, const PatchMesh& mesh, std::span<cons
     report.add("environment", values_text(scene.environment), {{"environment", scene.environment}});
     if (scene.sun) {
         report.add("sun",
-                   fmt::format("{} {}, towards {}", values_text(scene.sun->irradiance),
-                               irradiance_unit(scene), point_text(scene.sun->direction)),
+                   fmt::format("{} {}, towards {}{}", values_text(scene.sun->irradiance),
+                               irradiance_unit(scene), point_text(scene.sun->direction),
+                               scene.sun->diameter > 0.0
+                                   ? fmt::format(", {} degrees wide", number_text(scene.sun->diameter))
+                                   : ""),
                    {{"sun",
                      {{"direction", point_json(scene.sun->direction)},
-                      {"normal_irradiance", scene.sun->irradiance}}}});
+                      {"normal_irradiance", scene.sun->irradiance},
+                      {"diameter", scene.sun->diameter}}}});
     }
     if (scene.sky) {
         report.add("sky",

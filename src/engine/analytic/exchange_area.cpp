@@ -266,11 +266,26 @@ double ExchangeAreas::at_point(const Vec3& at, const Vec3& normal, std::uint32_t
         }
         return sum * in_front / std::numbers::pi;
     }
+    const std::array<Vec3, 4> corners = corners_of(patch);
+    return point_factor(eye, normal, std::span(corners).first(patch.corners));
+}
+
+double ExchangeAreas::solid_angle_at(const Vec3& at, std::uint32_t j) const {
+    const Patch& patch = patches_[j];
+    const Vec3 eye = at - origin_;
+    if (glm::dot(eye - patch.centre, patch.normal) <= rounding_) {
+        return 0.0;
+    }
+    const std::array<Vec3, 4> corners = corners_of(patch);
+    return solid_angle(eye, std::span(corners).first(patch.corners));
+}
+
+std::array<Vec3, 4> ExchangeAreas::corners_of(const Patch& patch) {
     std::array<Vec3, 4> corners;
     for (std::size_t k = 0; k < patch.corners; ++k) {
         corners[k] = Vec3(patch.corner_x[k], patch.corner_y[k], patch.corner_z[k]);
     }
-    return point_factor(eye, normal, std::span(corners).first(patch.corners));
+    return corners;
 }
 
 double ExchangeAreas::near_area(const Patch& a, const Patch& b, bool clipped, double distance) const {

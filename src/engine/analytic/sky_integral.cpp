@@ -12,10 +12,9 @@ namespace hemi {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-const Vec3 up(0.0, 0.0, 1.0);
 
 /// Integral of (n·w)(u·w) / pi over the directions w to a polygon that lies in front of both planes.
-double double_moment(const Vec3& at, const Vec3& normal, std::span<const Vec3> polygon) {
+double double_moment(const Vec3& at, const Vec3& normal, std::span<const Vec3> polygon, const Vec3& up) {
     double boundary = 0.0;
     for (std::size_t k = 0; k < polygon.size(); ++k) {
         const Vec3 a = glm::normalize(polygon[k] - at);
@@ -38,8 +37,8 @@ double double_moment(const Vec3& at, const Vec3& normal, std::span<const Vec3> p
 
 } // namespace
 
-SkyMoments open_sky(const Vec3& normal) {
-    const double cosine = std::clamp(normal.z, -1.0, 1.0);
+SkyMoments open_sky(const Vec3& normal, const Vec3& up) {
+    const double cosine = std::clamp(glm::dot(normal, up), -1.0, 1.0);
     const double sine = std::sqrt(1.0 - cosine * cosine);
     return {0.5 * (1.0 + cosine), 2.0 * (cosine * (pi - std::acos(cosine)) + sine) / (3.0 * pi)};
 }
@@ -48,7 +47,7 @@ SkyMoments open_sky() {
     return {0.5, 0.25};
 }
 
-SkyMoments sky_behind(const Vec3& at, const Vec3& normal, std::span<const Vec3> polygon) {
+SkyMoments sky_behind(const Vec3& at, const Vec3& normal, std::span<const Vec3> polygon, const Vec3& up) {
     SkyMoments moments;
     const ConvexPolygon above = clip(polygon, {at, up});
     for (std::size_t k = 0; above.count >= 3 && k < above.pieces(); ++k) {
@@ -61,13 +60,13 @@ SkyMoments sky_behind(const Vec3& at, const Vec3& normal, std::span<const Vec3> 
         const ConvexPolygon front = clip(piece.span(), {at, normal});
         for (std::size_t l = 0; front.count >= 3 && l < front.pieces(); ++l) {
             const ConvexPolygon part = front.piece(l);
-            moments.elevation += std::clamp(double_moment(at, normal, part.span()), 0.0, share);
+            moments.elevation += std::clamp(double_moment(at, normal, part.span(), up), 0.0, share);
         }
     }
     return moments;
 }
 
-SkyMoments sky_behind(const Vec3& at, std::span<const Vec3> polygon) {
+SkyMoments sky_behind(const Vec3& at, std::span<const Vec3> polygon, const Vec3& up) {
     SkyMoments moments;
     const ConvexPolygon above = clip(polygon, {at, up});
     for (std::size_t k = 0; above.count >= 3 && k < above.pieces(); ++k) {

@@ -25,7 +25,8 @@ struct SkyMoments {
 
 /// Those of all directions in front of an area.
 /// @param normal  of unit length
-[[nodiscard]] SkyMoments open_sky(const Vec3& normal);
+/// @param up      likewise
+[[nodiscard]] SkyMoments open_sky(const Vec3& normal, const Vec3& up);
 /// Those of a small sphere.
 [[nodiscard]] SkyMoments open_sky();
 
@@ -33,9 +34,11 @@ struct SkyMoments {
 /// "Applications of irradiance tensors to the simulation of non-Lambertian phenomena", SIGGRAPH 1995.
 /// @param normal   at the point, of unit length
 /// @param polygon  planar and convex, of three or four corners
-[[nodiscard]] SkyMoments sky_behind(const Vec3& at, const Vec3& normal, std::span<const Vec3> polygon);
+/// @param up       of unit length
+[[nodiscard]] SkyMoments sky_behind(const Vec3& at, const Vec3& normal, std::span<const Vec3> polygon,
+                                    const Vec3& up);
 /// Those of a small sphere.
-[[nodiscard]] SkyMoments sky_behind(const Vec3& at, std::span<const Vec3> polygon);
+[[nodiscard]] SkyMoments sky_behind(const Vec3& at, std::span<const Vec3> polygon, const Vec3& up);
 
 /// Irradiance by an unobstructed horizontal area's of 1.
 [[nodiscard]] double sky_irradiance(SkyDistribution distribution, const SkyMoments& moments);

@@ -55,6 +55,23 @@ private:
     std::vector<double> values_;
 };
 
+/// The same for solid angles: a rectangle [0, x] x [0, y] at distance 1 is seen under
+/// atan(x y / √(1+x²+y²)), of 2π in front of the plane.
+class CornerAngles {
+public:
+    explicit CornerAngles(int half) : half_(half) {}
+
+    [[nodiscard]] double top(int x, int y) const {
+        const double u = static_cast<double>(x) / half_;
+        const double v = static_cast<double>(y) / half_;
+        return std::atan(u * v / std::sqrt(1.0 + u * u + v * v)) * (0.5 * std::numbers::inv_pi);
+    }
+    [[nodiscard]] double side(int y, int z) const { return top(y, z); }
+
+private:
+    int half_;
+};
+
 } // namespace
 
 void DeltaFormFactors::check_resolution(std::uint32_t resolution) {
@@ -64,11 +81,21 @@ void DeltaFormFactors::check_resolution(std::uint32_t resolution) {
     }
 }
 
-DeltaFormFactors::DeltaFormFactors(std::uint32_t resolution) : resolution_(resolution) {
+DeltaFormFactors::DeltaFormFactors(std::uint32_t resolution, DirectionMeasure measure)
+    : resolution_(resolution) {
     check_resolution(resolution);
     const int half = static_cast<int>(resolution / 2);
-    const CornerFunctions corners(half);
-    prefix_.resize(std::size_t{rows()} * (resolution + 1));
+    if (measure == DirectionMeasure::projected_solid_angle) {
+        sum_up(CornerFunctions(half));
+    } else {
+        sum_up(CornerAngles(half));
+    }
+}
+
+template <class Corners>
+void DeltaFormFactors::sum_up(const Corners& corners) {
+    const int half = static_cast<int>(resolution_ / 2);
+    prefix_.resize(std::size_t{rows()} * (resolution_ + 1));
 
     // One running sum over all texels in layout order, rounded where it is stored: every weight is then right
     // to one unit, and nothing is lost between rows and faces.

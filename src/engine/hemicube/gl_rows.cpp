@@ -69,8 +69,9 @@ struct GlRows::State {
 
     State(const EngineGeometry& the_geometry, const HemicubeSettings& the_settings, RowQuantity quantity,
           std::unique_ptr<gl::Context> own, gl::Context& the_context)
-        : geometry(the_geometry), settings(the_settings), weights(the_settings.resolution),
-          own_context(std::move(own)), context(&the_context), on_gpu(transforms_on_gpu(context->software())),
+        : geometry(the_geometry), settings(the_settings),
+          weights(the_settings.resolution, the_geometry.measure), own_context(std::move(own)),
+          context(&the_context), on_gpu(transforms_on_gpu(context->software())),
           counts(on_gpu && quantity == RowQuantity::visibility),
           buffers(*context, settings.resolution, batch_slots(settings.resolution, context->software()),
                   counts ? geometry.list.item_of_id.size() : 0) {

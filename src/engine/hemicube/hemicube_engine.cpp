@@ -101,8 +101,8 @@ std::unique_ptr<RawRowProvider> make_raw_engine(const PatchMesh& mesh, const Hem
                            settings, quantity, engine);
 }
 
-/// One eye point a row.
-EyePoints eyes_at(std::span<const SurfacePoint> points, const PatchMesh& mesh) {
+/// One eye point a row; of spheres two, which look up and down.
+EyePoints eyes_at(std::span<const SurfacePoint> points, const PatchMesh& mesh, DirectionMeasure measure) {
     EyePoints eyes;
     for (const SurfacePoint& point : points) {
         if (point.surface != no_surface && point.surface >= mesh.surfaces().size()) {
@@ -110,7 +110,12 @@ EyePoints eyes_at(std::span<const SurfacePoint> points, const PatchMesh& mesh) {
                                               point.surface, mesh.surfaces().size()));
         }
         eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
-        eyes.points.push_back({point.position, point.normal, 1.0, point.surface, 0});
+        if (measure == DirectionMeasure::projected_solid_angle) {
+            eyes.points.push_back({point.position, point.normal, 1.0, point.surface, 0});
+            continue;
+        }
+        eyes.points.push_back({point.position, {0.0, 0.0, 1.0}, 0.5, point.surface, 0});
+        eyes.points.push_back({point.position, {0.0, 0.0, -1.0}, 0.5, point.surface, 1});
     }
     eyes.first.push_back(static_cast<std::uint32_t>(eyes.points.size()));
     return eyes;
@@ -133,12 +138,14 @@ std::unique_ptr<VisibilityProvider> make_visibility_engine(const PatchMesh& mesh
 std::unique_ptr<VisibilityProvider> make_point_visibility_engine(const PatchMesh& mesh,
                                                                  std::span<const SurfacePoint> points,
                                                                  const HemicubeSettings& settings,
-                                                                 const EngineSettings& engine) {
+                                                                 const EngineSettings& engine,
+                                                                 DirectionMeasure measure) {
     DeltaFormFactors::check_resolution(settings.resolution);
     auto geometry = std::make_unique<EngineGeometry>();
     geometry->list = make_draw_list(mesh, settings.merge_lattices);
-    geometry->eyes = eyes_at(points, mesh);
+    geometry->eyes = eyes_at(points, mesh, measure);
     geometry->patches = mesh.size();
+    geometry->measure = measure;
     return std::make_unique<VisibilityEngine>(
         make_raw_engine(std::move(geometry), settings, RowQuantity::visibility, engine));
 }

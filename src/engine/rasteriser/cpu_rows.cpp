@@ -13,8 +13,9 @@ namespace hemi {
 struct CpuRows::State {
     State(const EngineGeometry& the_geometry, const RasterScene& scene, const HemicubeSettings& the_settings,
           RowQuantity quantity)
-        : geometry(the_geometry), settings(the_settings), delta(the_settings.resolution),
-          tiles(the_settings.resolution), rasteriser(make_rasteriser(scene, tiles)) {
+        : geometry(the_geometry), settings(the_settings),
+          delta(the_settings.resolution, the_geometry.measure), tiles(the_settings.resolution),
+          rasteriser(make_rasteriser(scene, tiles)) {
         if (quantity == RowQuantity::visibility) {
             visibility.emplace(geometry.list, geometry.patches);
             coverage.emplace(geometry.list.item_of_id.size());

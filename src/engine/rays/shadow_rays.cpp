@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
@@ -176,8 +177,9 @@ ShadowRays::Estimate ShadowRays::visibility(std::uint32_t i, std::uint32_t j, st
     return sum.finish();
 }
 
-ShadowRays::Estimate ShadowRays::visibility_from(const Vec3& at, const Vec3& normal, std::uint32_t j,
-                                                 std::uint32_t rays, std::uint64_t key) const {
+ShadowRays::Estimate ShadowRays::visibility_from(const Vec3& at, const std::optional<Vec3>& normal,
+                                                 std::uint32_t j, std::uint32_t rays,
+                                                 std::uint64_t key) const {
     const Vec3 normal_j = mesh_.normal(j);
     const PatchCorners corners = mesh_.corners(j);
     const BilinearMap to(corners.polygon(), normal_j);
@@ -185,37 +187,130 @@ ShadowRays::Estimate ShadowRays::visibility_from(const Vec3& at, const Vec3& nor
     Sum sum(*this);
     for (std::uint32_t ray = 0; ray < rays; ++ray) {
         const auto even = points[ray];
-        sum.add(at, normal, to.point(even[0], even[1]), normal_j, to.jacobian_at(even[0], even[1]));
+        const Vec3 end = to.point(even[0], even[1]);
+        const double area = to.jacobian_at(even[0], even[1]);
+        if (normal) {
+            sum.add(at, *normal, end, normal_j, area);
+        } else {
+            const Vec3 way = end - at;
+            const double length = glm::length(way);
+            const double arriving = -glm::dot(way, normal_j);
+            if (arriving > 0.0) {
+                sum.add(at, end, area * arriving / (length * length * length));
+            }
+        }
     }
     return sum.finish();
 }
+
+namespace {
+
+/// Directions to the disc of a sun.
+class SunDisc {
+public:
+    explicit SunDisc(const Sun& sun)
+        : towards_(sun.direction), radius_(std::sin(sun.diameter * std::numbers::pi / 360.0)) {
+        const int axis = std::abs(towards_.x) < 0.6 ? 0 : 1;
+        Vec3 other(0.0);
+        other[axis] = 1.0;
+        u_ = glm::normalize(glm::cross(towards_, other));
+        v_ = glm::cross(towards_, u_);
+    }
+    /// Evenly by what an area normal to the beam receives.
+    /// @param s  and t: in [-1, 1]
+    [[nodiscard]] Vec3 direction(double s, double t) const {
+        const double radius = radius_ * std::sqrt(0.5 * (1.0 + s));
+        const double angle = std::numbers::pi * t;
+        return std::sqrt(1.0 - radius * radius) * towards_ +
+               radius * (std::cos(angle) * u_ + std::sin(angle) * v_);
+    }
+    /// Of an area with this normal, by its like normal to the beam: of light from one direction.
+    [[nodiscard]] double cosine(const Vec3& normal, const Vec3& direction) const {
+        return std::max(0.0, glm::dot(normal, direction) / glm::dot(towards_, direction));
+    }
+    /// Whether some of it is in front of a plane.
+    [[nodiscard]] bool rises(const Vec3& normal) const { return glm::dot(normal, towards_) > -radius_; }
+    [[nodiscard]] bool is_point() const { return radius_ == 0.0; }
+
+private:
+    Vec3 towards_;
+    double radius_; ///< sine of half the diameter
+    Vec3 u_{0.0};
+    Vec3 v_{0.0};
+};
+
+/// Rays from a point to a disc that are enough where all or none are blocked, and where some are.
+constexpr std::uint32_t disc_rays = 512;
+constexpr std::uint32_t disc_edge_rays = 4096;
+
+} // namespace
 
 Vec3 ShadowRays::beyond(const Vec3& at, const Vec3& towards) const {
     const Bounds& bounds = mesh_.bounds();
     return at + (glm::length(at - bounds.centre()) + bounds.diagonal()) * towards;
 }
 
-double ShadowRays::lit_share(std::uint32_t i, const Vec3& towards, std::uint32_t rays) const {
+ShadowRays::Lit ShadowRays::sun_by_rays(std::uint32_t i, const Sun& sun, std::uint32_t rays) const {
     const Vec3 normal = mesh_.normal(i);
-    if (!(glm::dot(normal, towards) > 0.0)) {
-        return 0.0;
-    }
+    const SunDisc disc(sun);
     const PatchCorners corners = mesh_.corners(i);
     const BilinearMap from(corners.polygon(), normal);
     const EvenPoints points(i);
     Sum sum(*this);
+    double all = 0.0;
+    double unblocked = 0.0;
     for (std::uint32_t ray = 0; ray < rays; ++ray) {
         const auto even = points[ray];
-        const Vec3 at = from.point(even[0], even[1]);
-        sum.add(at, beyond(at, towards), from.jacobian_at(even[0], even[1]));
+        const Vec3 direction = disc.is_point() ? sun.direction : disc.direction(even[2], even[3]);
+        const double area = from.jacobian_at(even[0], even[1]);
+        const double weight = area * disc.cosine(normal, direction);
+        all += area;
+        unblocked += weight;
+        if (weight > 0.0) {
+            const Vec3 at = from.point(even[0], even[1]);
+            sum.add(at, beyond(at, direction), weight);
+        }
     }
-    return sum.finish().visibility;
+    const double lit = unblocked > 0.0 ? sum.finish().visibility : 0.0;
+    return {lit * unblocked / all, lit > 0.0 && lit < 1.0};
 }
 
-bool ShadowRays::is_lit(const Vec3& at, const Vec3& towards) const {
-    Sum sum(*this);
-    sum.add(at, beyond(at, towards), 1.0);
-    return sum.finish().visibility > 0.5;
+double ShadowRays::sun_share(std::uint32_t i, const Sun& sun, std::uint32_t rays,
+                             std::uint32_t edge_rays) const {
+    if (!SunDisc(sun).rises(mesh_.normal(i))) {
+        return 0.0;
+    }
+    const Lit lit = sun_by_rays(i, sun, rays);
+    return lit.partly ? sun_by_rays(i, sun, edge_rays).share : lit.share;
+}
+
+double ShadowRays::sun_share_at(const Vec3& at, const std::optional<Vec3>& normal, const Sun& sun) const {
+    constexpr double cross_section = 0.25;
+    const SunDisc disc(sun);
+    if (normal && !disc.rises(*normal)) {
+        return 0.0;
+    }
+    const EvenPoints points(0);
+    const auto by_rays = [&](std::uint32_t rays) {
+        Sum sum(*this);
+        double unblocked = 0.0;
+        for (std::uint32_t ray = 0; ray < rays; ++ray) {
+            const auto even = points[ray];
+            const Vec3 direction = disc.is_point() ? sun.direction : disc.direction(even[0], even[1]);
+            const double weight = disc.cosine(normal.value_or(direction), direction);
+            unblocked += weight / rays;
+            if (weight > 0.0) {
+                sum.add(at, beyond(at, direction), weight);
+            }
+        }
+        const double lit = unblocked > 0.0 ? sum.finish().visibility : 0.0;
+        return Lit{lit * unblocked * (normal ? 1.0 : cross_section), lit > 0.0 && lit < 1.0};
+    };
+    if (disc.is_point()) {
+        return by_rays(1).share;
+    }
+    const Lit lit = by_rays(disc_rays);
+    return lit.partly ? by_rays(disc_edge_rays).share : lit.share;
 }
 
 } // namespace hemi

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "hemi/scene/patch_mesh.hpp"
+#include "hemi/scene/scene.hpp"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace hemi {
 
@@ -31,23 +33,34 @@ public:
     [[nodiscard]] Estimate visibility(std::uint32_t i, std::uint32_t j, std::uint32_t rays) const;
     /// The same from a point to patch j.
     /// @param at      position of the point, scene units
-    /// @param normal  of the point, of unit length
+    /// @param normal  of the point, of unit length; none: of a small sphere, by solid angles
     /// @param key     shifts the rays' ends on the patch
-    [[nodiscard]] Estimate visibility_from(const Vec3& at, const Vec3& normal, std::uint32_t j,
+    [[nodiscard]] Estimate visibility_from(const Vec3& at, const std::optional<Vec3>& normal, std::uint32_t j,
                                            std::uint32_t rays, std::uint64_t key) const;
-    /// Share of a patch that parallel light reaches, by rays from Sobol points on it. Backs get none.
-    /// @param towards  direction of the light, of unit length
-    /// @param rays     to trace; powers of two are spread best
-    [[nodiscard]] double lit_share(std::uint32_t i, const Vec3& towards, std::uint32_t rays) const;
-    /// Whether parallel light reaches a point; its own surface hides nothing.
-    [[nodiscard]] bool is_lit(const Vec3& at, const Vec3& towards) const;
+    /// Irradiance of a patch by the sun, as a share of that normal to the beam: the cosine times the share
+    /// that is lit, over patch and disc, by rays from Sobol points. Backs get none.
+    /// @param rays  to trace; powers of two are spread best; where some are blocked, `edge_rays` are traced
+    [[nodiscard]] double sun_share(std::uint32_t i, const Sun& sun, std::uint32_t rays,
+                                   std::uint32_t edge_rays) const;
+    /// The same of a point, whose own surface hides nothing; few rays where the sun is a point.
+    /// @param normal  of unit length; none: of a small sphere, whose cross-section is a quarter of its
+    /// surface
+    [[nodiscard]] double sun_share_at(const Vec3& at, const std::optional<Vec3>& normal,
+                                      const Sun& sun) const;
 
 private:
     struct Packet;
     class Sum;
+    /// What rays found of the sun.
+    struct Lit {
+        double share;
+        bool partly; ///< some rays were blocked and some were not
+    };
 
     /// A point in that direction beyond all surfaces.
     [[nodiscard]] Vec3 beyond(const Vec3& at, const Vec3& towards) const;
+    /// As sun_share(), by so many rays.
+    [[nodiscard]] Lit sun_by_rays(std::uint32_t i, const Sun& sun, std::uint32_t rays) const;
 
     const PatchMesh& mesh_;
     double rounding_;

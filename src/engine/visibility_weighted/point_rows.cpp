@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -27,6 +28,9 @@ constexpr std::size_t batch_rows = 128;
 constexpr std::size_t max_traced = 48;
 /// … and no more than have this share of the variance of the row's light.
 constexpr double traced_share = 0.95;
+/// A sphere sees twice as much as a plane, from everywhere alike: so many times the patches, and the rays
+/// that are shared out. Chosen, not fitted.
+constexpr std::size_t sphere_factor = 4;
 
 /// Where a few patches make most of the variance, as lamps of few patches do, they get more rays: so many
 /// times the usual number are shared out by standard deviation, in powers of two, which are spread best; a
@@ -59,9 +63,9 @@ class PointRows {
 public:
     PointRows(const PatchMesh& mesh, std::span<const SurfacePoint> points,
               const VisibilityWeightedSettings& settings, Enclosure enclosure,
-              std::span<const double> weights)
+              std::span<const double> weights, DirectionMeasure measure)
         : points_(points), rays_a_pair_(settings.shadow_rays), enclosure_(enclosure), weights_(weights),
-          areas_(mesh, settings.rule), neighbours_(mesh) {
+          spheres_(measure == DirectionMeasure::solid_angle), areas_(mesh, settings.rule), neighbours_(mesh) {
         if (rays_a_pair_ > 0) {
             rays_.emplace(mesh);
         }
@@ -78,7 +82,9 @@ public:
             if (known && sample.share() == 0.0 && !rays_) {
                 continue;
             }
-            const double unoccluded = areas_.at_point(point.position, point.normal, j);
+            const double unoccluded =
+                spheres_ ? areas_.solid_angle_at(point.position, j) / (4.0 * std::numbers::pi)
+                         : areas_.at_point(point.position, point.normal, j);
             if (unoccluded <= 0.0) {
                 continue;
             }
@@ -126,7 +132,8 @@ private:
         const double total =
             std::accumulate(doubts.begin(), doubts.end(), 0.0,
                             [](double sum, const Doubt& doubt) { return sum + doubt.variance; });
-        const std::size_t most = std::min(max_traced, doubts.size());
+        const std::size_t times_more = spheres_ ? sphere_factor : 1;
+        const std::size_t most = std::min(times_more * max_traced, doubts.size());
         std::partial_sort(doubts.begin(), doubts.begin() + static_cast<std::ptrdiff_t>(most), doubts.end(),
                           [](const Doubt& a, const Doubt& b) {
                               return a.variance != b.variance ? a.variance > b.variance : a.entry < b.entry;
@@ -141,11 +148,12 @@ private:
         for (std::size_t k = 0; k < count; ++k) {
             const Doubt& doubt = doubts[k];
             Entry& entry = entries[doubt.entry];
-            const double times =
-                std::clamp(shared_rays * std::sqrt(doubt.variance) / deviations, 1.0, most_rays);
+            const double times = std::clamp(static_cast<double>(times_more) * shared_rays *
+                                                std::sqrt(doubt.variance) / deviations,
+                                            1.0, most_rays);
             const ShadowRays::Estimate estimate = rays_->visibility_from(
-                points_[index].position, points_[index].normal, entry.column,
-                std::bit_floor(static_cast<std::uint32_t>(times)) * rays_a_pair_, index);
+                points_[index].position, spheres_ ? std::nullopt : std::optional(points_[index].normal),
+                entry.column, std::bit_floor(static_cast<std::uint32_t>(times)) * rays_a_pair_, index);
             if (const double sum = doubt.texels + estimate.rays; estimate.rays > 0.0) {
                 entry.visibility =
                     (doubt.texels * entry.visibility + estimate.rays * estimate.visibility) / sum;
@@ -180,6 +188,7 @@ private:
     std::uint32_t rays_a_pair_;
     Enclosure enclosure_;
     std::span<const double> weights_;
+    bool spheres_;
     ExchangeAreas areas_;
     CoplanarNeighbours neighbours_;
     std::optional<ShadowRays> rays_;
@@ -190,12 +199,12 @@ private:
 void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
                         std::span<const SurfacePoint> points, const VisibilityWeightedSettings& settings,
                         Enclosure enclosure, std::span<const double> weights, const PointRowSink& sink,
-                        const Progress& progress) {
+                        const Progress& progress, DirectionMeasure measure) {
     if (visibility.size() != points.size() || (!weights.empty() && weights.size() != mesh.size())) {
         throw InvalidArgument(fmt::format("point rows: {} rows for {} points, {} weights for {} patches",
                                           visibility.size(), points.size(), weights.size(), mesh.size()));
     }
-    const PointRows rows(mesh, points, settings, enclosure, weights);
+    const PointRows rows(mesh, points, settings, enclosure, weights, measure);
     std::vector<SampledPoint> batch;
     std::size_t done = 0;
     const auto finish_batch = [&] {

@@ -20,10 +20,11 @@ constexpr std::string_view refusal_magic = "HEMIREFU";
 
 /// Of the sizes of all that travels, and what else both sides must agree on. FNV-1a.
 constexpr std::uint32_t layout_hash() {
-    constexpr std::array<std::size_t, 12> sizes{
-        sizeof(ToWorker),    sizeof(FromWorker), sizeof(RowHead),     sizeof(HemicubeSettings),
-        sizeof(RowQuantity), sizeof(Vec3),       sizeof(DrawPolygon), sizeof(OutlineCorner),
-        sizeof(EyePoint),    sizeof(double),     result_slots,        FormFactorMatrix::block_rows};
+    constexpr std::array<std::size_t, 13> sizes{
+        sizeof(ToWorker),        sizeof(FromWorker), sizeof(RowHead),     sizeof(HemicubeSettings),
+        sizeof(RowQuantity),     sizeof(Vec3),       sizeof(DrawPolygon), sizeof(OutlineCorner),
+        sizeof(EyePoint),        sizeof(double),     result_slots,        FormFactorMatrix::block_rows,
+        sizeof(DirectionMeasure)};
     std::uint32_t hash = 2166136261u;
     for (const std::size_t size : sizes) {
         hash = (hash ^ static_cast<std::uint32_t>(size)) * 16777619u;
@@ -59,6 +60,9 @@ public:
         std::vector<T> values(count);
         copy(values.data(), count * sizeof(T));
         at_ = (at_ + 7) / 8 * 8;
+        if (at_ > bytes_.size()) {
+            throw Error("worker: the geometry is cut off");
+        }
         return values;
     }
     template <typename T>
@@ -152,6 +156,7 @@ std::string pack(const EngineGeometry& geometry, const HemicubeSettings& setting
     append(bytes, std::span<const EyePoint>(geometry.eyes.points));
     append(bytes, std::span<const std::uint32_t>(geometry.eyes.first));
     append(bytes, geometry.patches);
+    append(bytes, geometry.measure);
     return bytes;
 }
 
@@ -182,6 +187,7 @@ UnpackedGeometry unpack(std::span<const std::byte> bytes) {
     result.geometry.eyes.points = from.array<EyePoint>();
     result.geometry.eyes.first = from.array<std::uint32_t>();
     result.geometry.patches = from.value<std::uint32_t>();
+    result.geometry.measure = from.value<DirectionMeasure>();
     return result;
 }
 

@@ -89,6 +89,9 @@ Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional
     }
     if (scene.sun) {
         head["sun"] = {{"direction", point(scene.sun->direction)}, {"irradiance", scene.sun->irradiance}};
+        if (scene.sun->diameter > 0.0) {
+            head["sun"]["diameter"] = scene.sun->diameter;
+        }
     }
     if (scene.sky) {
         head["sky"] = {{"distribution", to_word(scene.sky->distribution)},
@@ -240,7 +243,8 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     scene.photometric = head.has("photometric") && head.member("photometric").boolean();
     if (head.has("sun")) {
         const JsonNode sun = head.member("sun");
-        scene.sun = Sun{sun.member("direction").point(), sun.member("irradiance").numbers()};
+        scene.sun = Sun{sun.member("direction").point(), sun.member("irradiance").numbers(),
+                        sun.has("diameter") ? sun.member("diameter").number() : 0.0};
     }
     if (head.has("sky")) {
         scene.sky = read_sky(head.member("sky"));

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace hemi::io {
 
@@ -88,7 +89,7 @@ std::vector<double> read_flux(const JsonNode& node, const std::vector<std::strin
 
 void read_sun(const JsonNode& node, Scene& scene, Diagnostics& diagnostics) {
     node.check_keys({"direction", "azimuth", "elevation", "north", "latitude", "longitude", "time",
-                     "normal_irradiance", "normal_illuminance"});
+                     "diameter", "normal_irradiance", "normal_illuminance"});
     const std::string way = way_of(node);
     if (way == "direction" && node.has("north")) {
         node.fail("\"north\" turns an azimuth, and a direction has none; leave it out");
@@ -98,6 +99,14 @@ void read_sun(const JsonNode& node, Scene& scene, Diagnostics& diagnostics) {
     const double north = node.has("north") ? read_angle(node.member("north"), whole) : 0.0;
     Sun sun;
     sun.irradiance = read_light(node, "normal", scene);
+    if (node.has("diameter")) {
+        const JsonNode diameter = node.member("diameter");
+        sun.diameter = diameter.number();
+        if (!(sun.diameter >= 0.0 && sun.diameter <= quarter)) {
+            diameter.fail(
+                fmt::format("{}; must be in [0, {}] degrees (the sun's is 0.53)", sun.diameter, quarter));
+        }
+    }
     if (way == "direction") {
         const JsonNode direction = node.member("direction");
         const Vec3 towards = direction.point();
@@ -108,7 +117,8 @@ void read_sun(const JsonNode& node, Scene& scene, Diagnostics& diagnostics) {
         sun.direction = glm::normalize(towards / largest);
     } else if (way == "azimuth") {
         const double azimuth = read_angle(node.member("azimuth"), whole);
-        sun.direction = sky_direction(azimuth, read_angle(node.member("elevation"), quarter), north);
+        sun.direction =
+            sky_direction(azimuth, read_angle(node.member("elevation"), quarter), north, scene.up);
     } else {
         SunPosition position;
         const JsonNode time = node.member("time");
@@ -124,7 +134,7 @@ void read_sun(const JsonNode& node, Scene& scene, Diagnostics& diagnostics) {
                                          time.path(), number_text(-position.elevation)));
             return;
         }
-        sun.direction = sky_direction(position.azimuth, position.elevation, north);
+        sun.direction = sky_direction(position.azimuth, position.elevation, north, scene.up);
     }
     scene.sun = std::move(sun);
 }
@@ -172,18 +182,35 @@ void read_luminous_flux(const JsonNode& node, const std::vector<std::uint32_t>& 
     if (!(area > 0.0)) {
         value.fail("no area that could radiate; must be on surfaces");
     }
+    // Materials that other surfaces have, too, stay dark for these.
+    std::vector<bool> lit(scene.surfaces.size(), false);
+    for (const std::uint32_t s : surfaces) {
+        lit[s] = true;
+    }
+    std::set<std::uint32_t> shared;
+    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+        if (!lit[s]) {
+            shared.insert(scene.surfaces[s].material);
+        }
+    }
+    const auto shine = [&](Material& material) {
+        for (std::size_t c = 0; c < flux.size(); ++c) {
+            material.exitance[c] = flux[c] / area;
+        }
+    };
     std::map<std::uint32_t, std::uint32_t> shining; // by material
     for (const std::uint32_t s : surfaces) {
         Surface& surface = scene.surfaces[s];
-        const auto [entry, is_new] =
-            shining.try_emplace(surface.material, static_cast<std::uint32_t>(scene.materials.size()));
-        if (is_new) {
+        const bool copy = shared.contains(surface.material);
+        const auto [entry, is_new] = shining.try_emplace(
+            surface.material, copy ? static_cast<std::uint32_t>(scene.materials.size()) : surface.material);
+        if (is_new && copy) {
             Material material = scene.materials[surface.material];
             material.name += fmt::format(" with {} lm", fmt::join(flux, ", "));
-            for (std::size_t c = 0; c < flux.size(); ++c) {
-                material.exitance[c] = flux[c] / area;
-            }
             scene.materials.push_back(std::move(material));
+        }
+        if (is_new) {
+            shine(scene.materials[entry->second]);
         }
         surface.material = entry->second;
     }

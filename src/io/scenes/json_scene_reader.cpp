@@ -104,6 +104,15 @@ Enclosure read_enclosure(const JsonNode& node) {
     return Enclosure::open;
 }
 
+UpAxis read_up(const JsonNode& node) {
+    const std::string name = node.text();
+    const std::optional<UpAxis> up = from_word<UpAxis>(name);
+    if (!up) {
+        node.fail(fmt::format("{}; must be \"y\" or \"z\"", in_quotes(name)));
+    }
+    return *up;
+}
+
 bool has_three(const Json& material) {
     return material.is_object() && std::any_of(material.begin(), material.end(), [](const Json& value) {
                return value.is_array() && value.size() == 3 && !is_emissivity_table(value);
@@ -147,7 +156,7 @@ public:
 private:
     void check_version() {
         root_.check_keys({"hemi", "name", "channels", "materials", "surfaces", "patch_size", "enclosure",
-                          "environment", "camera", "groups", "bands", "unit", "sun"});
+                          "environment", "camera", "groups", "bands", "unit", "sun", "up"});
         if (!root_.has("hemi")) {
             root_.fail("\"hemi\": 1 is missing, the version of the format");
         }
@@ -414,6 +423,10 @@ private:
         if (root_.has("enclosure")) {
             scene_.enclosure = read_enclosure(root_.member("enclosure"));
         }
+        if (root_.has("up")) {
+            scene_.up = read_up(root_.member("up"));
+        }
+        scene_.up = options_.up.value_or(scene_.up);
         scene_.environment.assign(scene_.channels.size(), 0.0);
         if (root_.has("environment")) {
             const JsonNode environment = root_.member("environment");

@@ -66,6 +66,7 @@ Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& op
                                           in_quotes(options.zone)));
     }
     Scene scene = reader->read(path, options, diagnostics);
+    scene.up = options.up.value_or(scene.up);
     try {
         validate(scene);
     } catch (const InputError& error) {
