@@ -34,6 +34,12 @@ const std::vector<std::string>& window_options() {
     return names;
 }
 
+/// Options that `hemi heat` does not have.
+const std::vector<std::string>& of_light_alone() {
+    static const std::vector<std::string> names{"--solver", "--tolerance", "--gather"};
+    return names;
+}
+
 void check_display() {
     const auto is_set = [](const char* variable) {
         const char* value = std::getenv(variable);
@@ -46,10 +52,12 @@ void check_display() {
 }
 
 /// The options that were given, as words of a command line; without those of the window.
-std::string given_options(const CommonOptions& common) {
+/// @param also  more that are left out
+std::string given_options(const CommonOptions& common, const std::vector<std::string>& also = {}) {
     std::string text;
     for (const auto& [name, values] : common.words) {
-        if (std::find(window_options().begin(), window_options().end(), name) != window_options().end()) {
+        if (std::find(window_options().begin(), window_options().end(), name) != window_options().end() ||
+            std::find(also.begin(), also.end(), name) != also.end()) {
             continue;
         }
         text += ' ';
@@ -88,7 +96,7 @@ private:
         const PictureOptions& options = arguments_.picture;
         viewer::ViewerInput input;
         input.file = path;
-        input.show = channels_to_show(scene->channels, options.show);
+        input.show = channels_to_show(scene->channels, options.show, false);
         if (!options.show.empty()) {
             input.show_option = " --show " + viewer::quoted(fmt::format("{}", fmt::join(options.show, ",")));
         }
@@ -128,7 +136,28 @@ private:
         input.solver = arguments_.solver;
         input.gather = arguments_.gather;
         input.observer = std::make_shared<TerminalObserver>(terminal_);
+        if (loaded->thermal) {
+            add_heat(options, input);
+        }
         return input;
+    }
+
+    /// What the scene says of heat; where that cannot be solved for, the window shows light alone.
+    void add_heat(SceneOptions options, viewer::ViewerInput& input) const {
+        options.reader.adiabatic = true;
+        const LoadedScene thermal =
+            load_scene(options, Terminal(true)); // which has told what there is to tell
+        try {
+            input.heat = std::make_shared<const HeatProblem>(
+                heat_problem(thermal.scene, thermal.mesh, *input.observer));
+        } catch (const InputError& error) {
+            terminal_.warn(fmt::format("no temperatures in the window: {}", error.what()));
+        }
+        input.heat_command = "hemi heat " + viewer::quoted(options.path.string());
+        for (const std::filesystem::path& more : options.also) {
+            input.heat_command += " " + viewer::quoted(more.string());
+        }
+        input.heat_command += given_options(arguments_.common, of_light_alone());
     }
 
     [[nodiscard]] viewer::ViewerInput result(const std::filesystem::path& path) const {

@@ -11,6 +11,7 @@ std::string quantity_options(const Look& look, const FalseColours& drawn) {
                                    quoted(look.channel), to_word(look.map));
     text += look.range ? fmt::format(" --range {},{}", (*drawn.range)[0], (*drawn.range)[1]) : "";
     text += drawn.logarithmic ? " --log" : "";
+    text += look.celsius && look.shown.quantity == Quantity::temperature ? " --celsius" : "";
     return text;
 }
 

@@ -53,6 +53,7 @@ struct Look {
     std::optional<std::array<double, 2>> range; ///< of quantities' scales; none: as values ask for
     bool logarithmic = false;                   ///< false colours of quantities
     bool logarithmic_factors = true;            ///< false colours of form factors
+    bool celsius = false;                       ///< temperatures in °C, else in K
     Shading shading = Shading::gouraud;
     ToneMapping tone_mapping = ToneMapping::filmic;
     double stops = 0.0; ///< exposure over the one at the start, powers of two

@@ -2,6 +2,7 @@
 
 #include "hemi/display/picture.hpp"
 #include "hemi/matrix/form_factors.hpp"
+#include "hemi/pipeline/heat.hpp"
 #include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/settings.hpp"
 #include "hemi/pipeline/vertex_gather.hpp"
@@ -40,6 +41,9 @@ struct ViewerInput {
     /// known of rows.
     Solution solution;
     std::shared_ptr<const FormFactors> factors; ///< prepared; null until they are found
+    /// What the scene says of heat, of these patches, without sun and sky; null: nothing.
+    std::shared_ptr<const HeatProblem> heat;
+    std::string heat_command; ///< as `command`, of pictures of heat
     /// Command line that draws this file without a window, up to the picture's own options:
     /// "hemi render room.hres".
     std::string command;

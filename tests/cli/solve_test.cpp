@@ -310,7 +310,15 @@ TEST_CASE("render: draws a stored solution as solve drew it", "[cli]") {
         CHECK(run_hemi(words).status == 2);
     }
     CHECK_FALSE(directory.has("g.png"));
-    CHECK(run_hemi({"render", result, "-o", "-", "--show", "gren"}).err_has("did you mean"));
+    CHECK(run_hemi({"render", result, "-o", "-", "--show", "gren"}).err_has("did you mean \"green\""));
+    for (const Words& more : {Words{}, Words{"--range", "0,1"}}) {
+        Words words{"render", result, "-o", "-", "--show", "irradience"};
+        words.insert(words.end(), more.begin(), more.end());
+        CHECK(run_hemi(words).err_has("did you mean \"irradiance\""));
+    }
+    CHECK_FALSE(run_hemi({"bake", result, "-o", "-", "--show", "irradience"}).err_has("did you mean"));
+    CHECK(run_hemi({"render", result, "-o", "-", "--show", "irradiance", "--channel", "luminence"})
+              .err_has("did you mean \"luminance\""));
     CHECK(run_hemi({"render", scene, "-o", "-"}).status == 2);
 
     const Json info = run_hemi({"info", result, "--json"}).json();
@@ -609,4 +617,52 @@ TEST_CASE("solve --refine: rows of cut patches are stored, lit again, and cut fu
     const std::string other = directory.write("other.json", fewer);
     CHECK(refused({"solve", other, "--factors", rows, "--refine", "200"}).find("another geometry") !=
           std::string::npos);
+}
+
+TEST_CASE("solve: a scene that nothing lights is drawn evenly lit, and its numbers stay zero", "[cli][gl]") {
+    const Directory directory;
+    Json dark = cube(3, "open");
+    dark["materials"]["lamp"]["exitance"] = 0;
+    const std::string scene = directory.write("dark.json", dark);
+    const std::string result = directory.path("dark.hres");
+    const Words look{"--size", "64x48", "--camera", "0.5,0.1,0.5:0.5,1,0.5:70"};
+    const auto with = [&look](Words words) {
+        words.insert(words.end(), look.begin(), look.end());
+        return words;
+    };
+    const Outcome solved = run_hemi(quick(with({"solve", scene, "--result", result, "--radiosity",
+                                                directory.path("a.csv"), "-o", directory.path("a.png")})));
+    REQUIRE(solved.status == 0);
+    CHECK(solved.out_has("evenly lit"));
+    const Outcome drawn =
+        run_hemi(with({"render", result, "-o", directory.path("b.png"), "--device", "osmesa"}));
+    CHECK(drawn.out_has("evenly lit"));
+    CHECK(directory.read("a.png") == directory.read("b.png"));
+    const hemi::test::SrgbPicture picture = hemi::test::read_png(directory.path("a.png"));
+    const auto [low, high] = std::minmax_element(picture.pixels.begin(), picture.pixels.end());
+    CHECK(*low + 40 < *high);
+
+    const Outcome raw =
+        run_hemi(with({"render", result, "-o", directory.path("a.hdr"), "--device", "osmesa"}));
+    CHECK_FALSE(raw.out_has("evenly lit"));
+    const std::string hdr = directory.read("a.hdr");
+    std::string black;
+    for (int row = 0; row < 48; ++row) {
+        black += std::string("\x02\x02\x00\x40", 4); // a line of 64 pixels, each of four bytes a run of zeros
+        for (int byte = 0; byte < 4; ++byte) {
+            black += std::string("\xC0\x00", 2);
+        }
+    }
+    CHECK(hdr.ends_with("+X 64\n" + black));
+    REQUIRE(run_hemi({"convert", result, directory.path("b.csv")}).status == 0);
+    CHECK(directory.read("a.csv") == directory.read("b.csv"));
+    CHECK(directory.read("a.csv").find(",0,0,0,0\n") != std::string::npos);
+
+    Json furnace = cube(3);
+    furnace["materials"]["white"]["exitance"] = 1;
+    furnace["materials"]["lamp"] = furnace["materials"]["white"];
+    const std::string glow = directory.write("glow.json", furnace);
+    const Outcome uniform =
+        run_hemi(quick(with({"solve", glow, "-o", directory.path("c.png"), "--repair", "closure"})));
+    CHECK(uniform.out_has("the radiosity is the same everywhere: 2 W/m²"));
 }

@@ -72,6 +72,17 @@ struct PictureMesh {
                                             std::array<std::uint32_t, 3> show,
                                             std::span<const float> vertices = {});
 
+/// A radiosity for pictures of scenes that nothing lights: as if light came from everywhere, a little more of
+/// it from one side, so that shapes can be told; black surfaces are dark grey. It is no result, and of the
+/// order of 1.
+/// @param mesh         its patches
+/// @param reflectance  channel c of patch i at [i·channels + c]
+/// @param channels     of the reflectance and of the radiosity
+/// @param up           Scene::up; more comes from above
+/// @throws InvalidArgument for another number of values
+[[nodiscard]] std::vector<double> even_light(const PatchMesh& mesh, std::span<const double> reflectance,
+                                             std::uint32_t channels, UpAxis up = UpAxis::z);
+
 /// Exposure that suits a scene: from the area-weighted distribution of luminance over patches that are not
 /// lamps and not covered. Deterministic. 1 if all is dark.
 [[nodiscard]] double automatic_exposure(const PatchMesh& mesh, const PictureMesh& picture,

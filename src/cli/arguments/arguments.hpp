@@ -74,6 +74,7 @@ struct PictureOptions {
     std::optional<std::array<double, 2>> range;
     ColourMap map = ColourMap::viridis;
     bool logarithmic = false;
+    bool celsius = false; ///< of temperatures
     bool legend = true;
     std::vector<std::string> of_quantities; ///< options given that only they have
     std::optional<CameraOption> camera;
@@ -130,24 +131,9 @@ struct TradeArguments {
     double budget = 60.0; ///< seconds
 };
 
-/// What a picture of heat shows.
-enum class HeatShown { temperature, flux };
-} // namespace hemi::cli
-
-/// Words of HeatShown.
-template <>
-struct hemi::Names<hemi::cli::HeatShown> {
-    static constexpr NamedValue<cli::HeatShown> table[] = {{cli::HeatShown::temperature, "temperature"},
-                                                           {cli::HeatShown::flux, "flux"}};
-};
-
-namespace hemi::cli {
-
 /// In false colours; the picture's path is that of the command's output.
 struct HeatPicture {
     PictureOptions picture;
-    HeatShown shown = HeatShown::temperature;
-    bool celsius = false;
     std::vector<std::string> options; ///< names of all that only pictures have
 };
 
@@ -204,6 +190,15 @@ struct RenderArguments {
     std::string device = "auto";
 };
 
+struct DiffArguments {
+    CommonOptions common;
+    std::filesystem::path first;  ///< .hres
+    std::filesystem::path second; ///< .hres
+    PictureOptions picture;       ///< of a quantity
+    std::optional<std::filesystem::path> csv;
+    std::string device = "auto";
+};
+
 struct ViewArguments {
     CommonOptions common;
     SceneOptions scene;
@@ -243,12 +238,13 @@ struct DevicesArguments {
     CommonOptions common;
 };
 
-using Arguments = std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments,
-                               HeatArguments, ExchangeArguments, PointsArguments, RenderArguments,
+using Arguments =
+    std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments, HeatArguments,
+                 ExchangeArguments, PointsArguments, RenderArguments, DiffArguments,
 #ifdef HEMI_WITH_VIEWER
-                               ViewArguments,
+                 ViewArguments,
 #endif
-                               BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+                 BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
 
 /// Text that was asked for instead of work: help or the version.
 struct Answer {

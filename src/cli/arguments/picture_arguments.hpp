@@ -22,6 +22,9 @@ void add_gather(CLI::App& app, Gather& gather);
 /// @param output      the option without which these make no sense; may be none.
 /// @param quantities  whether quantities can be shown in false colours instead
 void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bool quantities);
+/// The quantity that is compared, and all of a picture of its difference.
+/// @param output  the option without which a picture's make no sense
+void add_difference_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output);
 /// All of a picture of heat.
 /// @param output  the option without which these make no sense
 /// @return their names
