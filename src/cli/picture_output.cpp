@@ -52,9 +52,10 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options) {
     }
     if (options.output) {
         outputs.add("-o", *options.output, {".png", ".hdr"}, true);
-        if (extension_of(*options.output) == ".hdr" && (options.exposure || options.tone_mapping_given)) {
-            throw InvalidArgument(
-                "--exposure and --tone-mapping do not apply to .hdr, which holds the radiosity as it is");
+        if (extension_of(*options.output) == ".hdr" &&
+            (options.exposure || options.tone_mapping_given || options.background)) {
+            throw InvalidArgument("--exposure, --tone-mapping and --background do not apply to .hdr, which "
+                                  "holds the radiosity as it is");
         }
     }
 }
@@ -124,6 +125,7 @@ PictureSettings picture_settings(const PictureOptions& options) {
     settings.tone_mapping = options.tone_mapping;
     settings.outlines = options.outlines;
     settings.backs = options.backs;
+    settings.background = options.background;
     settings.exposure = options.exposure.value_or(settings.exposure);
     return settings;
 }

@@ -28,9 +28,10 @@ namespace {
 
 /// Options that say how to begin: a command line that draws what the window shows has its own.
 const std::vector<std::string>& window_options() {
-    static const std::vector<std::string> names{
-        "--size",     "--camera",  "--flat",   "--exposure", "--tone-mapping", "--orthographic", "--backs",
-        "--outlines", "--samples", "--script", "--controls", "--up",           "--show"};
+    static const std::vector<std::string> names{"--size",         "--camera",       "--flat",   "--exposure",
+                                                "--tone-mapping", "--orthographic", "--backs",  "--outlines",
+                                                "--samples",      "--background",   "--script", "--controls",
+                                                "--up",           "--show"};
     return names;
 }
 

@@ -27,6 +27,10 @@ std::string picture_options(const PictureSettings& settings, const Camera& camer
     text += camera.orthographic ? " --orthographic" : "";
     text += settings.outlines ? " --outlines" : "";
     text += settings.backs ? " --backs" : "";
+    if (settings.background) {
+        const auto& [red, green, blue] = *settings.background;
+        text += fmt::format(" --background '#{:02x}{:02x}{:02x}'", red, green, blue);
+    }
     text +=
         settings.samples != PictureSettings{}.samples ? fmt::format(" --samples {}", settings.samples) : "";
     return text;

@@ -234,7 +234,7 @@ TEST_CASE("solve: a dash writes to stdout and the summary goes to stderr", "[cli
 
     const Outcome table = run_hemi(quick({"solve", scene, "--radiosity", "-", "-q"}));
     CHECK(table.out.rfind("index,group,area,cx,cy,cz,nx,ny,nz,exitance_red", 0) == 0);
-    CHECK(table.out_has("radiosity_blue,error_red,error_green,error_blue\n0,floor,"));
+    CHECK(table.out_has("radiosity_blue,error_red,error_green,error_blue,reflectance_red,"));
     CHECK(std::count(table.out.begin(), table.out.end(), '\n') == 55);
 }
 
@@ -252,7 +252,7 @@ TEST_CASE("solve: a named pipe gets its table once", "[cli]") {
     reader.join();
     CHECK(solved.status == 0);
     CHECK(std::count(table.begin(), table.end(), '\n') == 55);
-    CHECK(table.find("error_blue\n") != std::string::npos);
+    CHECK(table.find("error_blue,") != std::string::npos);
 }
 
 TEST_CASE("convert: a csv keeps the number of patches", "[cli]") {
@@ -656,7 +656,9 @@ TEST_CASE("solve: a scene that nothing lights is drawn evenly lit, and its numbe
     CHECK(hdr.ends_with("+X 64\n" + black));
     REQUIRE(run_hemi({"convert", result, directory.path("b.csv")}).status == 0);
     CHECK(directory.read("a.csv") == directory.read("b.csv"));
-    CHECK(directory.read("a.csv").find(",0,0,0,0\n") != std::string::npos);
+    CHECK(directory.read("a.csv").find(",radiosity_grey,error_grey,reflectance_grey,emissivity_grey,"
+                                       "environment,blocked,row_sum") != std::string::npos);
+    CHECK(directory.read("a.csv").find(",0,0,0,0,0.5,0.5,") != std::string::npos); // no light
 
     Json furnace = cube(3);
     furnace["materials"]["white"]["exitance"] = 1;
@@ -665,4 +667,33 @@ TEST_CASE("solve: a scene that nothing lights is drawn evenly lit, and its numbe
     const Outcome uniform =
         run_hemi(quick(with({"solve", glow, "-o", directory.path("c.png"), "--repair", "closure"})));
     CHECK(uniform.out_has("the radiosity is the same everywhere: 2 W/m²"));
+}
+
+TEST_CASE("render: the background is what is asked for, in light and in false colours", "[cli][gl]") {
+    const Directory directory;
+    const std::string scene = directory.write("open.json", open_cube(2, "open"));
+    const std::string result = directory.path("a.hres");
+    REQUIRE(run_hemi(quick({"solve", scene, "--result", result, "--environment", "1"})).status == 0);
+    const auto corner = [&](const Words& more) {
+        Words words{"render",   result,   "-o",       directory.path("a.png"),  "--size", "64x48",
+                    "--device", "osmesa", "--camera", "0.5,-5,0.5:0.5,0,0.5:60"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome run = run_hemi(words);
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        const hemi::test::SrgbPicture picture = hemi::test::read_png(directory.path("a.png"));
+        return std::vector<int>(picture.pixels.begin(), picture.pixels.begin() + 3);
+    };
+    CHECK(corner({"--background", "#10a0ff"}) == std::vector<int>{0x10, 0xa0, 0xff});
+    CHECK(corner({"--background", "white", "--exposure", "0.01"}) == std::vector<int>{255, 255, 255});
+    CHECK(corner({"--background", "#10a0ff", "--show", "environment"}) == std::vector<int>{0x10, 0xa0, 0xff});
+    CHECK(corner({"--background", "environment"}) == corner({}));
+    CHECK(corner({})[0] > 100); // as bright as the environment
+    for (const char* wrong : {"#10a0f", "#10a0fg", "10a0ff", "blue", "#10a0ff0", "# 0a0ff"}) {
+        CHECK(run_hemi({"render", result, "-o", "-", "--background", wrong}).err_has("#RRGGBB"));
+    }
+    CHECK(run_hemi({"render", result, "-o", directory.path("a.hdr"), "--background", "white"}).status == 2);
+    CHECK(run_hemi({"render", result, "-o", directory.path("b.png"), "--size", "4K", "--samples", "1",
+                    "--device", "osmesa"})
+              .out_has("3840 x 2160"));
 }

@@ -46,6 +46,8 @@ struct PictureSettings {
     /// Show the backs of one-sided surfaces, striped; else one looks through them. Nothing radiates from
     /// them.
     bool backs = false;
+    /// Shown where no surface is, sRGB; none: the environment, or a dark neutral grey where there is none.
+    std::optional<std::array<std::uint8_t, 3>> background;
 };
 
 /// Radiosity prepared for drawing: three linear sRGB channels a patch corner and a patch.

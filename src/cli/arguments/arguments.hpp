@@ -68,6 +68,7 @@ struct PictureOptions {
     bool backs = false;
     bool orthographic = false;
     std::uint32_t samples = 4;
+    std::optional<std::array<std::uint8_t, 3>> background; ///< sRGB; none: the environment
     std::vector<std::string> show;    ///< channel names; empty: all of one or three channels
     std::optional<Quantity> quantity; ///< is shown in false colours instead of light
     std::string channel = "mean";     ///< of the quantity

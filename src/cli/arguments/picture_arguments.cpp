@@ -19,7 +19,8 @@ std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture) {
     std::vector<CLI::Option*> added;
     Options options(app, "Picture");
     added.push_back(options.value(
-        "--size", "WxH", fmt::format("size in pixels ({}x{})", picture.size[0], picture.size[1]),
+        "--size", "WxH",
+        fmt::format("size in pixels, or HD, or 4K ({}x{})", picture.size[0], picture.size[1]),
         [&picture](const std::string& text) { picture.size = parse_picture_size("--size", text); }));
     added.push_back(options.value(
         "--camera", "EYE:TARGET[:UP][:FOV]", "camera, such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
@@ -33,6 +34,15 @@ std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture) {
     for (const char* name : {"--orthographic", "--outlines", "--backs"}) {
         added.push_back(app.get_option(name));
     }
+    added.push_back(
+        options.value("--background", "COLOUR",
+                      "where no surface is: environment (the default), black, white, grey or #RRGGBB",
+                      [&picture](const std::string& text) {
+                          picture.background.reset();
+                          if (text != "environment") {
+                              picture.background = parse_colour("--background", text);
+                          }
+                      }));
     added.push_back(options.value("--samples", "N", "supersamples along each edge of a pixel, 1 to 8 (4)",
                                   [&picture](const std::string& text) {
                                       picture.samples =
