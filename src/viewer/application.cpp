@@ -66,6 +66,7 @@ void Application::exchange(ViewerInput input) {
     }
     choices_.pointed_at.reset();
     choices_.materials = input.scene->materials;
+    choices_.conditions = input.heat ? input.heat->conditions : std::vector<HeatCondition>();
     inset_.reset();
     document_.reset(); // whose threads end first
     document_ = std::make_unique<Document>(std::move(input), factor_cache_, Window::wake);
@@ -316,7 +317,7 @@ void Application::settle() {
     if (shown_look_ && shown_look_->shown != choices_.look.shown) {
         choices_.look.range.reset(); // it was of another quantity
     }
-    document_->set_materials(choices_.materials);
+    document_->set_materials(choices_.materials, choices_.conditions);
     const bool other_patch = shown_pick_ != choices_.picked;
     const bool other_look = shown_look_ != choices_.look;
     const HemicubeChoice hemicube{choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};

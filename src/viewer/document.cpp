@@ -18,8 +18,10 @@ namespace hemi::viewer {
 
 Document::Document(ViewerInput input, std::shared_ptr<FactorCache> cache, std::function<void()> wake)
     : input_(std::move(input)), wake_(std::move(wake)), surfaces_(*input_.mesh),
-      materials_(input_.scene->materials), light_(of_materials()), blocked_(input_.solution.back_face_share),
-      exposure_(input_.picture.exposure), exposure_settled_(!input_.automatic_exposure) {
+      materials_(input_.scene->materials),
+      conditions_(input_.heat ? input_.heat->conditions : std::vector<HeatCondition>()),
+      light_(of_materials()), blocked_(input_.solution.back_face_share), exposure_(input_.picture.exposure),
+      exposure_settled_(!input_.automatic_exposure) {
     show_light(input_.solution.radiosity, input_.factor_settings ? State::lamps : State::solved,
                input_.solution.vertex_radiosity);
     if (input_.factor_settings) {
@@ -230,18 +232,25 @@ void Document::cancel() {
 }
 
 Light Document::of_materials() const {
-    return {patch_values(*input_.mesh, materials_, &Material::reflectance),
-            patch_values(*input_.mesh, materials_, &Material::exitance),
-            {},
-            {},
-            {}};
+    Light light{patch_values(*input_.mesh, materials_, &Material::reflectance),
+                patch_values(*input_.mesh, materials_, &Material::exitance),
+                {},
+                {},
+                {},
+                conditions_};
+    if (input_.heat) {
+        radiate_by_conditions(input_, light);
+    }
+    return light;
 }
 
-void Document::set_materials(const std::vector<Material>& materials) {
-    if (materials == materials_ || !relighter_) {
+void Document::set_materials(const std::vector<Material>& materials,
+                             const std::vector<HeatCondition>& conditions) {
+    if ((materials == materials_ && conditions == conditions_) || !relighter_) {
         return;
     }
     materials_ = materials;
+    conditions_ = conditions;
     Light wanted = of_materials();
     wanted.radiosity = light_.radiosity;
     relighter_->ask(std::move(wanted));
@@ -283,6 +292,9 @@ void Document::run_on() {
 const char* Document::unsavable_reason() const {
     if (!input_.factor_settings) {
         return "a stored solution is stored already";
+    }
+    if (has_other_temperatures()) {
+        return "temperatures are no longer those of the scene, whose materials a result holds";
     }
     return solved_ ? nullptr : "the light is not solved yet";
 }

@@ -68,7 +68,8 @@ public:
     void cancel();
 
     /// Asks for the light of other materials, from the light that is there on.
-    void set_materials(const std::vector<Material>& materials);
+    /// @param conditions  of heat
+    void set_materials(const std::vector<Material>& materials, const std::vector<HeatCondition>& conditions);
     /// Back to the light of the lamps, and a sweep at a time from there. Needs rows.
     void start_over();
     /// The next sweep; starts over where nothing waits for one.
@@ -80,7 +81,12 @@ public:
     /// @throws InvalidArgument where unsavable_reason() has one; IoError
     void save_result(const std::filesystem::path& path);
     /// Whether the light is that of the file as it was opened.
-    [[nodiscard]] bool as_opened() const { return materials_ == input_.scene->materials; }
+    [[nodiscard]] bool as_opened() const {
+        return materials_ == input_.scene->materials && !has_other_temperatures();
+    }
+    [[nodiscard]] bool has_other_temperatures() const {
+        return input_.heat != nullptr && conditions_ != input_.heat->conditions;
+    }
 
 private:
     enum class State { lamps, preview, converging, solved };
@@ -100,6 +106,7 @@ private:
     std::function<void()> wake_;
     SmoothSurfaces surfaces_;
     std::vector<Material> materials_;
+    std::vector<HeatCondition> conditions_; ///< none where the scene has none
     Light light_;
     std::shared_ptr<const Heat> heat_;
     std::vector<double> blocked_; ///< b_i as far as they are known, N; empty: none

@@ -16,6 +16,13 @@ struct Heat {
     std::string problem;           ///< why there is none
 };
 
+/// Of every condition of the scene's heat the group that has it, "walls" or "walls, ..." where several have.
+[[nodiscard]] std::vector<std::string> condition_names(const ViewerInput& input);
+
+/// Gives patches whose temperature is no longer that of the scene the exitance of the new one.
+/// @param light  of the materials, with conditions; is changed
+void radiate_by_conditions(const ViewerInput& input, Light& light);
+
 /// Solves for heat with materials as they are: emissivities are what is not reflected.
 /// @param input     with form factors and heat
 /// @param light     of the materials

@@ -70,6 +70,7 @@ struct Light {
     std::vector<double> radiosity;
     std::vector<float> vertices;     ///< as Solution::vertex_radiosity; empty: means over the patches
     std::vector<std::uint8_t> known; ///< whether a patch's radiosity is more than a beginning, N; empty: all
+    std::vector<HeatCondition> conditions{}; ///< as HeatProblem::conditions; empty: those of the scene
 
     [[nodiscard]] bool knows(std::uint32_t patch) const { return known.empty() || known[patch] != 0; }
 };

@@ -55,7 +55,8 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
     for (const double mark : told.marks()) {
         const float x = left + (right - left) * static_cast<float>(told.position(mark));
         list->AddLine({x, bottom}, {x, bottom + 4.0F}, ink);
-        const std::string words = fmt::format("{:.3g}", mark);
+        const bool whole = std::abs(mark) >= 1000.0 && std::abs(mark) < 10000.0;
+        const std::string words = whole ? fmt::format("{:.0f}", mark) : fmt::format("{:.3g}", mark);
         const float half = 0.5F * ImGui::CalcTextSize(words.c_str()).x;
         list->AddText({x - half, bottom + 4.0F}, ink, words.c_str());
     }

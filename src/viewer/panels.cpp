@@ -245,8 +245,35 @@ void patch_lines(const PanelContent& content, std::uint32_t i) {
     }
 }
 
+/// A slider for every temperature that is given.
+void temperature_sliders(const ViewerInput& input, Choices& choices) {
+    constexpr double above = 1.5;
+    double hottest = 0.0;
+    for (const HeatCondition& condition : input.heat->conditions) {
+        hottest = std::max(hottest, condition.temperature.value_or(0.0));
+    }
+    const auto most = static_cast<float>(hottest > 0.0 ? above * hottest : 1000.0);
+    const std::vector<std::string> names = condition_names(input);
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        std::optional<double>& kelvin = choices.conditions[c].temperature;
+        if (!kelvin || names[c].empty()) {
+            continue;
+        }
+        ImGui::PushID(static_cast<int>(c));
+        auto shown = static_cast<float>(*kelvin);
+        ImGui::SetNextItemWidth(-120.0F);
+        if (ImGui::SliderFloat(names[c].c_str(), &shown, 0.0F, most, "%.0f K", ImGuiSliderFlags_NoInput)) {
+            kelvin = static_cast<double>(shown);
+        }
+        ImGui::PopID();
+    }
+    if (choices.conditions != input.heat->conditions && ImGui::Button("Temperatures as in the scene")) {
+        choices.conditions = input.heat->conditions;
+    }
+}
+
 /// Temperatures and net powers of groups.
-void heat_section(const PanelContent& content) {
+void heat_section(const PanelContent& content, Choices& choices) {
     if (content.document.input().heat == nullptr || !heading("Heat")) {
         return;
     }
@@ -255,6 +282,7 @@ void heat_section(const PanelContent& content) {
         faint(heat == nullptr ? "Found once there are form factors." : heat->problem);
         return;
     }
+    temperature_sliders(content.document.input(), choices);
     if (!ImGui::BeginTable("heat", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) {
         return;
     }
@@ -560,8 +588,8 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     }
     ImGui::BeginChild("sections", {0.0F, -foot});
     show_section(content, choices);
+    heat_section(content, choices);
     patch_section(content, choices);
-    heat_section(content);
     solution_section(content, choices);
     material_section(content, choices);
     camera_section(content, choices);

@@ -189,11 +189,12 @@ TEST_CASE("Viewer: a scene that nothing lights is shown evenly lit, as hemi rend
     place.write("room.json", dark);
     const int status = place.view("screenshot window.png\nreport dark.json\nsave-result dark.hres\n"
                                   "command command.txt\nset exitance 1 lamp\nreport lit.json\n",
-                                  small);
+                                  small + " --background '#304050'");
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
     CHECK(place.json("dark.json")["light_note"].get<std::string>().find("evenly lit") != std::string::npos);
     CHECK(place.json("dark.json")["radiosity"][0][0] == 0.0);
+    CHECK(place.read("command.txt").find("--background '#304050'") != std::string::npos);
     CHECK(place.json("lit.json")["light_note"] == "");
     place.write("draw.sh", place.read("command.txt"));
     REQUIRE(run_in_shell(place, "draw.sh") == 0);
@@ -215,7 +216,9 @@ TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat dr
     const int status = place.view(
         "show temperature\nreport kelvin.json\nscreenshot temperature.png\ncommand temperature.txt\n"
         "show flux\nreport flux.json\nscreenshot flux.png\ncommand flux.txt\n"
-        "set reflectance 0.5 lamp at 700 K\nshow temperature\nreport other.json\n",
+        "set reflectance 0.5 lamp at 700 K\nshow temperature\nreport other.json\n"
+        "set temperature 400 ceiling\nreport cool.json\nset reflectance 0.1 lamp at 700 K\n"
+        "show flux\nreport cool_flux.json\n",
         options);
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
@@ -236,6 +239,21 @@ TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat dr
               Approx(table["net_flux"][wall].get<double>()).margin(1e-6));
     }
     CHECK(place.json("kelvin.json")["unit"] == "K");
+    CHECK(place.json("cool.json")["values"][40] == 400.0);
+    REQUIRE(place.run(fmt::format("'{}' heat room.json --device osmesa --preset fast --resolution 32 --json "
+                                  "--temperature ceiling=400",
+                                  HEMI_PROGRAM)) == 0);
+    const auto cool = place.json("out.txt");
+    for (std::size_t wall = 0; wall < 5; ++wall) {
+        CHECK(mean(place.json("cool_flux.json"), wall, 1.0) ==
+              Approx(cool["net_flux"][wall].get<double>()).margin(1e-6));
+    }
+    for (std::size_t i = 36; i < 72; ++i) { // the ceiling's light follows, too; it is warmed by nothing but
+        CHECK(place.json("cool_flux.json")["radiosity"][i][0].get<double>() >= // itself and its reflection
+              Approx(0.9 * 5.670374419e-8 * std::pow(400.0, 4.0)));
+    }
+    CHECK(place.view("set temperature 400 left\n", options) == 2);
+    CHECK(place.view("set temperature 400 ceiling\nsave-result a.hres\n", options) == 2);
     // A ceiling that emits less warms the walls less.
     CHECK(place.json("other.json")["values"][80].get<double>() <
           place.json("kelvin.json")["values"][80].get<double>() - 10.0);
