@@ -7,8 +7,8 @@ layout(location = 2) uniform ivec2 target_origin; // pixel of the target that ho
 layout(location = 3) uniform float exposure;
 layout(location = 4) uniform bool filmic;
 layout(location = 5) uniform vec3 environment;     // radiosity of what lies behind all surfaces
-layout(location = 6) uniform bool has_environment; // or nothing does, shown in a grey that stands for no light
-layout(location = 7) uniform float nothing;        // display linear
+layout(location = 6) uniform bool has_environment; // or it is not shown
+layout(location = 7) uniform vec3 nothing;         // in its place, display linear
 
 layout(location = 0) out vec4 srgb;
 layout(location = 1) out vec4 linear_radiosity;
@@ -27,7 +27,7 @@ vec3 display(vec4 surface) {
         return surface.rgb;
     }
     if (surface.a == 0.0 && !has_environment) {
-        return vec3(nothing);
+        return nothing;
     }
     // The curve is flat long before; larger values would overflow its squares.
     vec3 exposed = clamp(surface.rgb * exposure, 0.0, 1e6);

@@ -34,7 +34,7 @@ void write_baked(const BakeArguments& arguments, const Outputs& outputs, const S
                  const PatchMesh& mesh, const Solution& solution, const Terminal& terminal) {
     const PictureMesh picture = make_picture_mesh(
         mesh, solution.channels, solution.radiosity, solution.back_face_share,
-        channels_to_show(scene.channels, arguments.picture.show), solution.vertex_radiosity);
+        channels_to_show(scene.channels, arguments.picture.show, false), solution.vertex_radiosity);
     const double exposure = arguments.picture.exposure
                                 ? *arguments.picture.exposure
                                 : automatic_exposure(mesh, picture, solution.back_face_share,
@@ -57,7 +57,7 @@ void write_baked(const BakeArguments& arguments, const Outputs& outputs, const S
 ExitStatus bake_scene(const BakeArguments& arguments, const Outputs& outputs, const Terminal& terminal) {
     TerminalObserver observer(terminal);
     const auto loaded = load_scene(arguments.scene, terminal);
-    (void)channels_to_show(loaded.scene.channels, arguments.picture.show);
+    (void)channels_to_show(loaded.scene.channels, arguments.picture.show, false);
     FactorSettings settings = arguments.rows.factors;
     settings.estimate_error = false;
     FormFactors factors = compute_raw_form_factors(

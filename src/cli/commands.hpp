@@ -15,6 +15,7 @@ namespace hemi::cli {
 [[nodiscard]] ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const PointsArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const RenderArguments& arguments, const Terminal& terminal);
+[[nodiscard]] ExitStatus run(const DiffArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ViewArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const BakeArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal);

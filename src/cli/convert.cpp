@@ -74,9 +74,8 @@ void convert_result(const ConvertArguments& arguments, const Terminal& terminal)
         report(arguments, {{"patches", result.parts.any() ? result.parts.patches() : mesh.size()},
                            {"parts", mesh.size()}});
     }
-    terminal.note(fmt::format(
-        "not in {}: names of materials, subdivision, environment, camera, solver{}", output_name(arguments),
-        to_paraview ? "" : ", corners, reflectance, row balance and the parts of the errors"));
+    terminal.note(fmt::format("not in {}: names of materials, subdivision, environment, camera, solver{}",
+                              output_name(arguments), to_paraview ? "" : " and corners"));
 }
 
 /// Whether IN and OUT go together.

@@ -10,11 +10,9 @@
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
-#include "hemi/display/false_colours.hpp"
 #include "hemi/io/table_file.hpp"
 #include "hemi/io/vtp_file.hpp"
 #include "hemi/pipeline/daylight.hpp"
-#include "hemi/pipeline/picture.hpp"
 
 #include <fmt/format.h>
 
@@ -105,8 +103,10 @@ Outputs check_outputs(const HeatArguments& arguments) {
                                                       option, arguments.output->string()));
                 }
             }
-        } else if (arguments.picture.celsius && arguments.picture.shown == HeatShown::flux) {
-            throw InvalidArgument("--celsius is for temperatures, and --show is flux");
+        } else if (arguments.picture.picture.celsius &&
+                   arguments.picture.picture.quantity != Quantity::temperature) {
+            throw InvalidArgument(fmt::format("--celsius is for temperatures, and --show is {}",
+                                              to_word(*arguments.picture.picture.quantity)));
         }
     }
     if (arguments.fluxes) {
@@ -170,40 +170,14 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
     }
 }
 
-/// In false colours, with a legend. @return what `heat` reports of it
-Report draw_heat(const HeatArguments& arguments, const LoadedScene& loaded, const HeatSolution& solution) {
-    constexpr double zero_celsius = 273.15;
-    FalseColours shown;
-    if (arguments.picture.shown == HeatShown::flux) {
-        shown = {solution.net_flux, "Net flux", "W/m²"};
-        const auto is_long = [](double flux) { return std::abs(flux) >= 1e4; };
-        if (std::any_of(shown.values.begin(), shown.values.end(), is_long)) {
-            shown.unit = "kW/m²"; // the legend has room for short numbers
-            for (double& value : shown.values) {
-                value /= 1000.0;
-            }
-        }
-    } else {
-        shown = {solution.temperature, "Temperature", arguments.picture.celsius ? "°C" : "K"};
-        for (double& value : shown.values) {
-            value -= arguments.picture.celsius ? zero_celsius : 0.0;
-        }
-    }
-    for (std::size_t i = 0; i < shown.values.size(); ++i) {
-        if (solution.buried[i] != 0) {
-            shown.values[i] = std::numeric_limits<double>::quiet_NaN();
-        }
-    }
-    const PictureOptions& options = arguments.picture.picture;
-    const std::string& device = arguments.rows.factors.engine.device;
-    const Picture picture =
-        draw_false_colours(loaded.mesh, shown, choose_camera(loaded.scene, loaded.mesh, options),
-                           picture_settings(options), device == "cpu" ? "auto" : device);
-    hemi::write_picture(*arguments.output, picture);
-    Report report;
-    report.add("picture", fmt::format("{} ({} x {}, {})", arguments.output->string(), picture.width,
-                                      picture.height, to_word(arguments.picture.shown)));
-    return report;
+/// In false colours. @return what `heat` reports of it
+Report draw_heat(const HeatArguments& arguments, const LoadedScene& loaded, const FormFactors& factors,
+                 const HeatProblem& problem, const HeatSolution& solution) {
+    const auto channels = static_cast<std::uint32_t>(loaded.scene.channels.size());
+    PictureOptions options = arguments.picture.picture;
+    options.output = arguments.output;
+    return write_picture(loaded.scene, loaded.mesh, heat_as_solution(factors, problem, solution, channels),
+                         options, arguments.rows.factors.engine.device);
 }
 
 } // namespace
@@ -249,7 +223,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     write_patches(arguments, loaded, problem, solution);
     Report picture;
     if (arguments.output && is_picture(*arguments.output)) {
-        picture = draw_heat(arguments, loaded, solution);
+        picture = draw_heat(arguments, loaded, factors, problem, solution);
     }
     std::vector<double> errors(factors.groups.size(), std::numeric_limits<double>::quiet_NaN());
     if (arguments.rows.factors.estimate_error && factors.error) {

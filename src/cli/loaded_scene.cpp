@@ -94,6 +94,8 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     std::vector<std::filesystem::path> paths{options.path};
     paths.insert(paths.end(), options.also.begin(), options.also.end());
     Scene scene = io::read_scenes(paths, options.reader, diagnostics);
+    const bool thermal = scene.thermal && (!scene.thermal->conditions.empty() ||
+                                           scene.thermal->environment_temperature.has_value());
     if (!options.reader.adiabatic) {
         radiate_by_temperature(scene, diagnostics);
     }
@@ -127,8 +129,9 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
         group_of[i] = mesh.group(i);
     }
     stop_if_interrupted();
-    return {std::move(scene),   std::move(mesh),     std::move(subdivision),
-            std::move(as_read), std::move(group_of), watch.seconds()};
+    return {
+        std::move(scene), std::move(mesh), std::move(subdivision), std::move(as_read), std::move(group_of),
+        watch.seconds(),  thermal};
 }
 
 void LoadedScene::adopt(PatchMesh other, const CoarseMesh& begin, bool parts) {

@@ -37,6 +37,8 @@ struct LoadedScene {
     std::optional<SceneAsRead> as_read;  ///< where its faces were cut
     std::vector<std::uint32_t> group_of; ///< group of every patch of the mesh
     double seconds = 0.0;
+    bool thermal = false; ///< the file says something of heat; without SceneReaderOptions::adiabatic the
+                          ///< scene has it as exitance
 
     /// Takes a mesh of the scene whose patches were cut further. Results stay about the scene's own patches
     /// where these are whole faces.

@@ -12,30 +12,56 @@
 
 namespace hemi::cli {
 
+namespace {
+
+/// A word of `--show` that means nothing.
+[[noreturn]] void refuse_shown(const std::string& word, const std::vector<std::string>& channels,
+                               bool quantities) {
+    if (!quantities) {
+        throw InvalidArgument(fmt::format("--show: there is no channel '{}' among {}{}", word,
+                                          fmt::join(channels, ", "), did_you_mean(word, channels)));
+    }
+    const std::vector<std::string> of_quantities = words<Quantity>();
+    std::vector<std::string> known = channels;
+    known.insert(known.end(), of_quantities.begin(), of_quantities.end());
+    throw InvalidArgument(fmt::format("--show {}: is neither a channel ({}) nor a quantity ({}){}", word,
+                                      fmt::join(channels, ", "), fmt::join(of_quantities, ", "),
+                                      did_you_mean(word, known)));
+}
+
+} // namespace
+
 void add_picture_output(Outputs& outputs, const PictureOptions& options) {
     if (!options.quantity && (!options.of_quantities.empty() || options.logarithmic || !options.legend)) {
-        throw InvalidArgument(fmt::format("{} needs --show with a quantity, such as irradiance",
-                                          !options.of_quantities.empty() ? options.of_quantities[0]
-                                          : options.logarithmic          ? "--log"
-                                                                         : "--no-legend"));
+        throw InvalidArgument(
+            fmt::format("{} needs --show with a quantity, such as irradiance{}",
+                        !options.of_quantities.empty() ? options.of_quantities[0]
+                        : options.logarithmic          ? "--log"
+                                                       : "--no-legend",
+                        options.show.size() == 1 ? did_you_mean(options.show[0], words<Quantity>()) : ""));
     }
     if (options.quantity && (options.exposure || options.tone_mapping_given)) {
         throw InvalidArgument("--exposure and --tone-mapping do not apply to quantities; --range does");
+    }
+    if (options.quantity && is_of_heat(*options.quantity)) {
+        throw InvalidArgument(fmt::format("--show {}: `hemi heat SCENE -o FILE.png --show {}` finds it",
+                                          to_word(*options.quantity), to_word(*options.quantity)));
     }
     if (options.quantity && options.output && extension_of(*options.output) == ".hdr") {
         throw InvalidArgument("a quantity is drawn as .png: .hdr holds light");
     }
     if (options.output) {
         outputs.add("-o", *options.output, {".png", ".hdr"}, true);
-        if (extension_of(*options.output) == ".hdr" && (options.exposure || options.tone_mapping_given)) {
-            throw InvalidArgument(
-                "--exposure and --tone-mapping do not apply to .hdr, which holds the radiosity as it is");
+        if (extension_of(*options.output) == ".hdr" &&
+            (options.exposure || options.tone_mapping_given || options.background)) {
+            throw InvalidArgument("--exposure, --tone-mapping and --background do not apply to .hdr, which "
+                                  "holds the radiosity as it is");
         }
     }
 }
 
 std::array<std::uint32_t, 3> channels_to_show(const std::vector<std::string>& channels,
-                                              const std::vector<std::string>& show) {
+                                              const std::vector<std::string>& show, bool quantities) {
     if (show.empty()) {
         if (channels.size() == 1) {
             return {0, 0, 0};
@@ -54,8 +80,7 @@ std::array<std::uint32_t, 3> channels_to_show(const std::vector<std::string>& ch
         const std::string& name = show[show.size() == 1 ? 0 : k];
         const auto found = std::find(channels.begin(), channels.end(), name);
         if (found == channels.end()) {
-            throw InvalidArgument(fmt::format("--show: there is no channel '{}' among {}{}", name,
-                                              fmt::join(channels, ", "), did_you_mean(name, channels)));
+            refuse_shown(name, channels, quantities && show.size() == 1);
         }
         indices[k] = static_cast<std::uint32_t>(found - channels.begin());
     }
@@ -101,19 +126,20 @@ PictureSettings picture_settings(const PictureOptions& options) {
     settings.tone_mapping = options.tone_mapping;
     settings.outlines = options.outlines;
     settings.backs = options.backs;
+    settings.background = options.background;
     settings.exposure = options.exposure.value_or(settings.exposure);
     return settings;
 }
 
-namespace {
-
-/// A quantity in false colours. @return as write_picture()
-Report write_quantity(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
-                      const PictureOptions& options, const std::string& device) {
-    FalseColours shown = patch_quantity(*options.quantity, scene, mesh, solution, options.channel);
-    shown.range = options.range                                                ? options.range
-                  : options.logarithmic || options.map == ColourMap::cool_warm ? std::nullopt
-                                                                               : shown.range;
+Report write_false_colours(const Scene& scene, const PatchMesh& mesh, FalseColours shown,
+                           const PictureOptions& options, const std::string& device, std::string_view word) {
+    if (options.celsius) {
+        show_in_celsius(shown);
+    }
+    const bool centred = shown.range && (*shown.range)[0] == -(*shown.range)[1];
+    shown.range = options.range                                                              ? options.range
+                  : options.logarithmic || (options.map == ColourMap::cool_warm && !centred) ? std::nullopt
+                                                                                             : shown.range;
     shown.map = options.map;
     shown.logarithmic = options.logarithmic;
     shown.legend = options.legend;
@@ -121,25 +147,28 @@ Report write_quantity(const Scene& scene, const PatchMesh& mesh, const Solution&
                                                picture_settings(options), device == "cpu" ? "auto" : device);
     hemi::write_picture(*options.output, picture);
     const std::string path = options.output->string();
-    const std::string_view quantity = to_word(*options.quantity);
     Report report;
     report.add("picture",
                fmt::format("{} ({} x {}, {})", is_standard_output(*options.output) ? "standard output" : path,
-                           picture.width, picture.height, quantity),
+                           picture.width, picture.height, word),
                {{"picture", path},
                 {"width", picture.width},
                 {"height", picture.height},
                 {"exposure", nullptr},
-                {"quantity", quantity}});
+                {"quantity", word}});
     return report;
 }
-
-} // namespace
 
 Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
                      const PictureOptions& options, const std::string& device) {
     if (options.quantity) {
-        return write_quantity(scene, mesh, solution, options, device);
+        Report report = write_false_colours(
+            scene, mesh, patch_quantity(*options.quantity, scene, mesh, solution, options.channel), options,
+            device, to_word(*options.quantity));
+        if (*options.quantity == Quantity::radiosity && is_uniform(solution)) {
+            report.add("light", light_note(scene, solution));
+        }
+        return report;
     }
     DrawSettings settings;
     settings.picture = picture_settings(options);
@@ -161,6 +190,9 @@ Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& 
                 {"height", drawn.picture.height},
                 {"exposure", drawn.exposure},
                 {"quantity", nullptr}});
+    if (const std::string note = light_note(scene, solution); !note.empty() && extension_of(path) != ".hdr") {
+        report.add("light", note);
+    }
     return report;
 }
 

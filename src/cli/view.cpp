@@ -30,9 +30,16 @@ namespace {
 
 /// Options that say how to begin: a command line that draws what the window shows has its own.
 const std::vector<std::string>& window_options() {
-    static const std::vector<std::string> names{
-        "--size",     "--camera",  "--flat",   "--exposure", "--tone-mapping", "--orthographic", "--backs",
-        "--outlines", "--samples", "--script", "--controls", "--up",           "--show"};
+    static const std::vector<std::string> names{"--size",         "--camera",       "--flat",   "--exposure",
+                                                "--tone-mapping", "--orthographic", "--backs",  "--outlines",
+                                                "--samples",      "--background",   "--script", "--controls",
+                                                "--up",           "--show"};
+    return names;
+}
+
+/// Options that `hemi heat` does not have.
+const std::vector<std::string>& of_light_alone() {
+    static const std::vector<std::string> names{"--solver", "--tolerance", "--gather"};
     return names;
 }
 
@@ -48,11 +55,13 @@ void check_display() {
 }
 
 /// The options that were given, as words of a command line; without those of the window.
-std::string given_options(const CommonOptions& common) {
+/// @param also  more that are left out
+std::string given_options(const CommonOptions& common, const std::vector<std::string>& also = {}) {
     std::string text;
     for (const auto& [name, values] : common.words) {
         if (name == "--factors" || // which a dropped file replaces
-            std::find(window_options().begin(), window_options().end(), name) != window_options().end()) {
+            std::find(window_options().begin(), window_options().end(), name) != window_options().end() ||
+            std::find(also.begin(), also.end(), name) != also.end()) {
             continue;
         }
         text += ' ';
@@ -97,7 +106,7 @@ private:
         const PictureOptions& options = arguments_.picture;
         viewer::ViewerInput input;
         input.file = path;
-        input.show = channels_to_show(scene->channels, options.show);
+        input.show = channels_to_show(scene->channels, options.show, false);
         if (!options.show.empty()) {
             input.show_option = " --show " + viewer::quoted(fmt::format("{}", fmt::join(options.show, ",")));
         }
@@ -163,6 +172,13 @@ private:
             input.refinement = arguments_.refinement.goal(arguments_.rows, arguments_.gather);
         }
         input.observer = std::make_shared<TerminalObserver>(terminal_);
+        if (loaded->thermal && input.adopt) {
+            terminal_.warn(
+                "no temperatures in the window while it cuts patches; store the rows by `hemi solve "
+                "--factors FILE.hff` with the same options, and give the window that file");
+        } else if (loaded->thermal) {
+            add_heat(options, input);
+        }
         return input;
     }
 
@@ -186,6 +202,29 @@ private:
         input.subdivision = loaded->subdivision;
         input.surfaces_as_read = std::move(stored.surfaces_as_read);
         input.parts = std::move(stored.parts);
+    }
+
+    /// What the scene says of heat; where that cannot be solved for, the window shows light alone.
+    void add_heat(SceneOptions options, viewer::ViewerInput& input) const {
+        options.reader.adiabatic = true;
+        LoadedScene thermal = load_scene(options, Terminal(true)); // which has told what there is to tell
+        if (!input.factor_file.empty()) {
+            adopt_mesh_of_rows(thermal, options, input.factor_file);
+        }
+        try {
+            input.heat = std::make_shared<const HeatProblem>(
+                heat_problem(thermal.scene, thermal.mesh, *input.observer));
+        } catch (const InputError& error) {
+            terminal_.warn(fmt::format("no temperatures in the window: {}", error.what()));
+        }
+        input.heat_command = "hemi heat " + viewer::quoted(options.path.string());
+        for (const std::filesystem::path& more : options.also) {
+            input.heat_command += " " + viewer::quoted(more.string());
+        }
+        input.heat_command += given_options(arguments_.common, of_light_alone());
+        if (!input.factor_file.empty()) {
+            input.heat_command += " --factors " + viewer::quoted(input.factor_file.string());
+        }
     }
 
     [[nodiscard]] viewer::ViewerInput result(const std::filesystem::path& path) const {

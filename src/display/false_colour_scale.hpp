@@ -12,9 +12,12 @@ namespace hemi {
 /// @throws InvalidArgument for infinite values and a range that cannot be
 [[nodiscard]] ColourScale scale_of(const FalseColours& shown);
 
-/// What stands over it: title, unit, and what grey is where some patch has no value.
+/// What stands over it: title, unit of legend_scale(), and what grey is where some patch has no value.
 /// @param grey  "not known"
-[[nodiscard]] std::string legend_title(const FalseColours& shown, const char* grey);
+[[nodiscard]] std::string legend_title(const FalseColours& shown, const ColourScale& scale, const char* grey);
+
+/// The scale as its legend tells it: in kW/m² where there are 10,000 W/m² or more, so that numbers are short.
+[[nodiscard]] ColourScale legend_scale(const FalseColours& shown, ColourScale scale);
 
 /// Whether values lie below and above the scale.
 [[nodiscard]] std::array<bool, 2> values_beyond(const FalseColours& shown, const ColourScale& scale);

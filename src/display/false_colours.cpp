@@ -33,6 +33,11 @@ std::optional<std::array<double, 2>> extent_of(const std::vector<double>& values
     return low <= high ? std::optional(std::array{low, high}) : std::nullopt;
 }
 
+bool is_in_thousands(const FalseColours& shown, const ColourScale& scale) {
+    constexpr double long_number = 1e4;
+    return shown.unit == "W/m²" && std::max(std::abs(scale.low), std::abs(scale.high)) >= long_number;
+}
+
 } // namespace
 
 ColourScale scale_of(const FalseColours& shown) {
@@ -76,11 +81,20 @@ ColourScale scale_of(const FalseColours& shown) {
     return scale;
 }
 
-std::string legend_title(const FalseColours& shown, const char* grey) {
+std::string legend_title(const FalseColours& shown, const ColourScale& scale, const char* grey) {
     const bool has_none =
         std::any_of(shown.values.begin(), shown.values.end(), [](double value) { return std::isnan(value); });
-    return shown.title + (shown.unit.empty() ? "" : "  [" + shown.unit + "]") +
+    const std::string unit = (is_in_thousands(shown, scale) ? "k" : "") + shown.unit;
+    return shown.title + (unit.empty() ? "" : "  [" + unit + "]") +
            (has_none ? fmt::format("; grey: {}", grey) : "");
+}
+
+ColourScale legend_scale(const FalseColours& shown, ColourScale scale) {
+    if (is_in_thousands(shown, scale)) {
+        scale.low /= 1000.0;
+        scale.high /= 1000.0;
+    }
+    return scale;
 }
 
 std::array<bool, 2> values_beyond(const FalseColours& shown, const ColourScale& scale) {
@@ -106,7 +120,8 @@ Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, con
         painted(make_picture_mesh(mesh, 1, dark, {}, {0, 0, 0}), value_colours(shown.values, scale, mesh)),
         camera, plain, device);
     if (shown.legend) {
-        draw_legend(picture, scale, legend_title(shown, "not known"), values_beyond(shown, scale));
+        draw_legend(picture, legend_scale(shown, scale), legend_title(shown, scale, "not known"),
+                    values_beyond(shown, scale));
     }
     return picture;
 }

@@ -120,6 +120,24 @@ PictureMesh make_picture_mesh(const PatchMesh& mesh, const SmoothSurfaces& surfa
     return picture;
 }
 
+std::vector<double> even_light(const PatchMesh& mesh, std::span<const double> reflectance,
+                               std::uint32_t channels, UpAxis up) {
+    constexpr double darkest = 0.2; // of surfaces that reflect nothing
+    constexpr double least = 0.1;   // of those that face away from the brighter side
+    if (reflectance.size() != std::size_t{mesh.size()} * channels) {
+        throw InvalidArgument(fmt::format("even_light: {} reflectances for {} patches of {} channels",
+                                          reflectance.size(), mesh.size(), channels));
+    }
+    const Vec3 from = glm::normalize(turned_upright({0.35, -0.5, 0.8}, up));
+    std::vector<double> light(reflectance.begin(), reflectance.end());
+    for (std::size_t k = 0; k < light.size(); ++k) {
+        const double turned =
+            0.5 + 0.5 * glm::dot(mesh.normal(static_cast<std::uint32_t>(k / channels)), from);
+        light[k] = (darkest + (1.0 - darkest) * light[k]) * (least + (1.0 - least) * turned * turned);
+    }
+    return light;
+}
+
 double automatic_exposure(const PatchMesh& mesh, const PictureMesh& picture, std::span<const double> blocked,
                           std::span<const double> exitance, std::uint32_t channels) {
     std::vector<std::pair<double, double>> lit; // surfaces that only reflect

@@ -30,6 +30,11 @@ constexpr GLsizei many_indices = 12 * 20000;
 constexpr double near_share = 1e-5;
 /// Where neither surface nor environment is seen; display linear.
 constexpr float nothing_level = 0.025F;
+
+float linear_of(std::uint8_t srgb) {
+    const float value = static_cast<float>(srgb) / 255.0F;
+    return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
+}
 /// Patch outlines, pixels.
 constexpr float outline_pixels = 0.75F;
 /// Stripes on the backs of surfaces, pixels.
@@ -310,8 +315,12 @@ void PictureRenderer::resolve(const PictureSettings& settings, const Tile& tile,
     glUniform1f(resolve_uniforms::exposure, static_cast<float>(settings.exposure));
     glUniform1i(resolve_uniforms::filmic, settings.tone_mapping == ToneMapping::filmic ? 1 : 0);
     glUniform3f(resolve_uniforms::environment, environment_[0], environment_[1], environment_[2]);
-    glUniform1i(resolve_uniforms::has_environment, environment_ == std::array<float, 3>{} ? 0 : 1);
-    glUniform1f(resolve_uniforms::nothing, nothing_level);
+    const bool shows_environment = !settings.background && environment_ != std::array<float, 3>{};
+    glUniform1i(resolve_uniforms::has_environment, shows_environment ? 1 : 0);
+    const auto behind = [&settings](std::size_t c) {
+        return settings.background ? linear_of((*settings.background)[c]) : nothing_level;
+    };
+    glUniform3f(resolve_uniforms::nothing, behind(0), behind(1), behind(2));
     glBindVertexArray(no_vertices_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glEnable(GL_DITHER);

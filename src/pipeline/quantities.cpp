@@ -49,8 +49,10 @@ std::vector<double> channel_weights(const std::vector<std::string>& channels, co
         }
         return weights;
     }
+    std::vector<std::string> known = channels;
+    known.insert(known.end(), {"mean", "sum", "luminance"});
     throw InvalidArgument(fmt::format("there is no channel '{}' among {}, mean, sum and luminance{}", wanted,
-                                      fmt::join(channels, ", "), did_you_mean(wanted, channels)),
+                                      fmt::join(channels, ", "), did_you_mean(wanted, known)),
                           {"channel"});
 }
 
@@ -95,6 +97,19 @@ std::optional<std::array<double, 2>> range_of_lit(const std::vector<double>& rad
     return low < high && brightest > high ? std::optional(std::array{low, high}) : std::nullopt;
 }
 
+/// About values that differ by no more than a solver leaves, which would else be shown as if it were more.
+std::optional<std::array<double, 2>> range_about_one(const std::vector<double>& values) {
+    constexpr double same = 1e-4;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const double value : values) {
+        low = std::isnan(value) ? low : std::min(low, value);
+        high = std::isnan(value) ? high : std::max(high, value);
+    }
+    return low > 0.0 && high - low <= same * high ? std::optional(std::array{0.99 * low, 1.01 * high})
+                                                  : std::nullopt;
+}
+
 } // namespace
 
 const char* title_of(Quantity quantity) {
@@ -125,6 +140,10 @@ const char* title_of(Quantity quantity) {
         return "Error by patch size";
     case Quantity::area:
         return "Area";
+    case Quantity::temperature:
+        return "Temperature";
+    case Quantity::net_flux:
+        return "Net flux";
     }
     return "";
 }
@@ -137,6 +156,21 @@ bool needs_all_rows(Quantity quantity) {
 bool is_error(Quantity quantity) {
     return quantity == Quantity::error || quantity == Quantity::error_factors ||
            quantity == Quantity::error_patch_size;
+}
+
+bool is_of_heat(Quantity quantity) {
+    return quantity == Quantity::temperature || quantity == Quantity::net_flux;
+}
+
+void show_in_celsius(FalseColours& shown) {
+    constexpr double zero_celsius = 273.15;
+    if (shown.unit != "K") {
+        return;
+    }
+    shown.unit = "°C";
+    for (double& value : shown.values) {
+        value -= zero_celsius;
+    }
 }
 
 void check_channel(const std::vector<std::string>& channels, const std::string& channel) {
@@ -220,16 +254,28 @@ FalseColours patch_quantity(Quantity quantity, const Scene& scene, const PatchMe
     case Quantity::area:
         shown = {{mesh.areas().begin(), mesh.areas().end()}, title, "units²"};
         break;
+    case Quantity::temperature:
+    case Quantity::net_flux:
+        shown = quantity == Quantity::temperature ? FalseColours{solution.temperature, title, "K"}
+                                                  : FalseColours{solution.net_flux, title, "W/m²"};
+        if (shown.values.size() != mesh.size()) {
+            missing(std::string(to_word(quantity)).c_str(), "`hemi heat` finds it");
+        }
+        break;
     }
     if (shown.values.size() != mesh.size()) {
         missing("error", "was not estimated");
     }
-    for (std::uint32_t i = 0; i < mesh.size() && !solution.back_face_share.empty(); ++i) {
+    const bool covers = !solution.back_face_share.empty() && !is_of_heat(quantity);
+    for (std::uint32_t i = 0; i < mesh.size() && covers; ++i) {
         if (solution.back_face_share[i] > buried_above && quantity != Quantity::blocked) {
             shown.values[i] = none;
         }
     }
-    if (quantity == Quantity::radiosity) {
+    if (quantity == Quantity::radiosity || quantity == Quantity::irradiance) {
+        shown.range = range_about_one(shown.values);
+    }
+    if (quantity == Quantity::radiosity && !shown.range) {
         shown.range = range_of_lit(shown.values, one_value(solution.exitance, weights));
     }
     return shown;

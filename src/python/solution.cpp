@@ -172,8 +172,10 @@ py::array_t<std::uint8_t> draw(const SolutionOfScene& self, const py::object& pa
         Scene scene;
         scene.channels = channels_of(self);
         scene.camera = known.scene.camera;
+        scene.up = known.scene.up;
         if (known.scene.channels.size() == scene.channels.size()) {
             scene.environment = known.scene.environment;
+            scene.materials = known.scene.materials;
         }
         Camera camera = eye ? scene.camera.value_or(default_camera(known.mesh.bounds(), known.scene.up))
                             : scene_camera(known.scene, known.mesh);

@@ -66,6 +66,7 @@ void Application::exchange(ViewerInput input) {
     }
     choices_.pointed_at.reset();
     choices_.materials = input.scene->materials;
+    choices_.conditions = input.heat ? input.heat->conditions : std::vector<HeatCondition>();
     inset_.reset();
     document_.reset(); // whose threads end first
     document_ = std::make_unique<Document>(std::move(input), factor_cache_, Window::wake);
@@ -324,7 +325,7 @@ void Application::settle() {
     if (shown_look_ && shown_look_->shown != choices_.look.shown) {
         choices_.look.range.reset(); // it was of another quantity
     }
-    document_->set_materials(choices_.materials);
+    document_->set_materials(choices_.materials, choices_.conditions);
     const bool other_patch = shown_pick_ != choices_.picked;
     const bool other_look = shown_look_ != choices_.look;
     const HemicubeChoice hemicube{choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
@@ -377,7 +378,8 @@ void Application::draw_hemicube() {
 
 void Application::update_title() {
     const std::string title = fmt::format(
-        "{} - exposure {:.3g}, {} - {}", document_->input().title(),
+        "{} - {}exposure {:.3g}, {} - {}", document_->input().title(),
+        document_->evenly_lit() ? "no light: shown evenly lit, " : "",
         document_->exposure() * std::exp2(choices_.look.stops),
         choices_.look.tone_mapping == ToneMapping::filmic ? "filmic" : "linear", window_.renderer());
     if (title != title_) {
@@ -552,8 +554,12 @@ std::string Application::command_line() const {
     if (look.shown.view != View::picture && look.shown.view != View::quantity) {
         throw InvalidArgument("a command line draws the light or a quantity: choose one first (V)");
     }
-    std::string command = document_->input().command;
-    if (!saved_result_.empty()) {
+    const bool heat = look.shown.view == View::quantity && is_of_heat(look.shown.quantity);
+    std::string command = heat ? document_->input().heat_command : document_->input().command;
+    if (heat && !document_->as_opened()) {
+        throw InvalidArgument("the materials are no longer those of the file, which `hemi heat` reads");
+    }
+    if (!heat && !saved_result_.empty()) {
         command = "hemi render " + quoted(saved_result_.string());
     } else if (!document_->as_opened()) {
         throw InvalidArgument(

@@ -11,6 +11,7 @@ std::string quantity_options(const Look& look, const FalseColours& drawn) {
                                    quoted(look.channel), to_word(look.map));
     text += look.range ? fmt::format(" --range {},{}", (*drawn.range)[0], (*drawn.range)[1]) : "";
     text += drawn.logarithmic ? " --log" : "";
+    text += look.celsius && look.shown.quantity == Quantity::temperature ? " --celsius" : "";
     return text;
 }
 
@@ -26,6 +27,10 @@ std::string picture_options(const PictureSettings& settings, const Camera& camer
     text += camera.orthographic ? " --orthographic" : "";
     text += settings.outlines ? " --outlines" : "";
     text += settings.backs ? " --backs" : "";
+    if (settings.background) {
+        const auto& [red, green, blue] = *settings.background;
+        text += fmt::format(" --background '#{:02x}{:02x}{:02x}'", red, green, blue);
+    }
     text +=
         settings.samples != PictureSettings{}.samples ? fmt::format(" --samples {}", settings.samples) : "";
     return text;

@@ -11,14 +11,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
 #include <utility>
 
 namespace hemi::viewer {
 
 Document::Document(ViewerInput input, std::shared_ptr<FactorCache> cache, std::function<void()> wake)
     : input_(std::move(input)), wake_(std::move(wake)), surfaces_(*input_.mesh),
-      materials_(input_.scene->materials), light_(of_materials()), blocked_(input_.solution.back_face_share),
-      exposure_(input_.picture.exposure), exposure_settled_(!input_.automatic_exposure) {
+      materials_(input_.scene->materials),
+      conditions_(input_.heat ? input_.heat->conditions : std::vector<HeatCondition>()),
+      light_(of_materials()), blocked_(input_.solution.back_face_share), exposure_(input_.picture.exposure),
+      exposure_settled_(!input_.automatic_exposure) {
     const bool solved = !input_.factor_settings || !input_.of_solution.empty();
     show_light(input_.solution.radiosity,
                !solved             ? State::lamps
@@ -65,6 +69,15 @@ void Document::show_light(std::vector<double> radiosity, State state, std::vecto
     make_light_mesh();
 }
 
+bool Document::stays_dark() const {
+    const auto is_zero = [](double value) { return value == 0.0; };
+    const Scene& scene = *input_.scene;
+    return is_dark(light_.radiosity, scene.environment) &&
+           (state_ == State::solved ||
+            (std::all_of(light_.exitance.begin(), light_.exitance.end(), is_zero) && !scene.sun &&
+             !scene.sky));
+}
+
 /// After the radiosity has changed.
 void Document::make_light_mesh() {
     std::vector<double> left_out = blocked_; // what is not known must not darken what is
@@ -74,12 +87,21 @@ void Document::make_light_mesh() {
             left_out[i] = light_.knows(i) ? left_out[i] : 1.0;
         }
     }
-    light_mesh_ = make_picture_mesh(*input_.mesh, surfaces_, input_.channels(), light_.radiosity, left_out,
-                                    input_.show, light_.vertices);
+    evenly_lit_ = stays_dark();
+    light_mesh_ = evenly_lit_ ? make_picture_mesh(*input_.mesh, surfaces_, input_.channels(),
+                                                  even_light(*input_.mesh, light_.reflectance,
+                                                             input_.channels(), input_.scene->up),
+                                                  input_.solution.back_face_share, input_.show)
+                              : make_picture_mesh(*input_.mesh, surfaces_, input_.channels(),
+                                                  light_.radiosity, left_out, input_.show, light_.vertices);
+    light_note_ =
+        evenly_lit_ || state_ == State::solved ? hemi::light_note(*input_.scene, lit(false).solution) : "";
     light_mesh_.environment = shown_environment(*input_.scene, input_.show);
     if (!exposure_settled_ && !(state_ == State::preview && gathered_ > 0)) {
-        exposure_ = automatic_exposure(*input_.mesh, light_mesh_, left_out, input_.solution.exitance,
-                                       input_.channels());
+        exposure_ = automatic_exposure(*input_.mesh, light_mesh_,
+                                       evenly_lit_ ? std::span<const double>(input_.solution.back_face_share)
+                                                   : std::span<const double>(left_out),
+                                       input_.solution.exitance, input_.channels());
         exposure_settled_ = state_ == State::solved;
     }
     changed_ = true;
@@ -232,6 +254,14 @@ void Document::take_light() {
     light_.reflectance = update->light.reflectance;
     light_.exitance = update->light.exitance;
     input_.solution.error = solution.error;
+    if (update->heat && update->heat != heat_) {
+        heat_ = update->heat;
+        input_.solution.temperature = heat_->solution.temperature;
+        input_.solution.net_flux = heat_->solution.net_flux;
+        if (!heat_->problem.empty() && input_.observer) {
+            input_.observer->warning(fmt::format("no temperatures: {}", heat_->problem), "");
+        }
+    }
     show_light(update->light.radiosity, update->converged ? State::solved : State::converging,
                update->light.vertices);
     solved_.reset();
@@ -254,18 +284,25 @@ void Document::cancel() {
 }
 
 Light Document::of_materials() const {
-    return {patch_values(*input_.mesh, materials_, &Material::reflectance),
-            patch_values(*input_.mesh, materials_, &Material::exitance),
-            {},
-            {},
-            {}};
+    Light light{patch_values(*input_.mesh, materials_, &Material::reflectance),
+                patch_values(*input_.mesh, materials_, &Material::exitance),
+                {},
+                {},
+                {},
+                conditions_};
+    if (input_.heat) {
+        radiate_by_conditions(input_, light);
+    }
+    return light;
 }
 
-void Document::set_materials(const std::vector<Material>& materials) {
-    if (materials == materials_ || !relighter_) {
+void Document::set_materials(const std::vector<Material>& materials,
+                             const std::vector<HeatCondition>& conditions) {
+    if ((materials == materials_ && conditions == conditions_) || !relighter_) {
         return;
     }
     materials_ = materials;
+    conditions_ = conditions;
     Light wanted = of_materials();
     wanted.radiosity = light_.radiosity;
     relighter_->ask(std::move(wanted));
@@ -307,6 +344,9 @@ void Document::run_on() {
 const char* Document::unsavable_reason() const {
     if (!input_.factor_settings) {
         return "a stored solution is stored already";
+    }
+    if (has_other_temperatures()) {
+        return "temperatures are no longer those of the scene, whose materials a result holds";
     }
     return solved_ ? nullptr : "the light is not solved yet";
 }

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ public:
 
     [[nodiscard]] const ViewerInput& input() const { return input_; }
     [[nodiscard]] const Light& light() const { return light_; }
+    /// Of scenes with temperatures, as soon as it is found; else null.
+    [[nodiscard]] const Heat* heat() const { return heat_.get(); }
     [[nodiscard]] const PictureMesh& light_mesh() const { return light_mesh_; }
     /// Where stops count from.
     [[nodiscard]] double exposure() const { return exposure_; }
@@ -41,6 +44,10 @@ public:
     [[nodiscard]] Lit lit(bool irradiance) const;
     /// Median of the rows' largest factors, see usual_largest_factor().
     [[nodiscard]] double usual_factor() const { return usual_factor_; }
+    /// Whether the picture shows even_light(), since there is no other.
+    [[nodiscard]] bool evenly_lit() const { return evenly_lit_; }
+    /// On light of which the picture shows little; see hemi::light_note().
+    [[nodiscard]] const std::string& light_note() const { return light_note_; }
     /// Whether there is no light yet but that of the lamps by themselves.
     [[nodiscard]] bool lamps_only() const { return state_ == State::lamps; }
     [[nodiscard]] const Work& work() const { return work_; }
@@ -64,7 +71,8 @@ public:
     [[nodiscard]] std::optional<ViewerInput> take_refined();
 
     /// Asks for the light of other materials, from the light that is there on.
-    void set_materials(const std::vector<Material>& materials);
+    /// @param conditions  of heat
+    void set_materials(const std::vector<Material>& materials, const std::vector<HeatCondition>& conditions);
     /// Back to the light of the lamps, and a sweep at a time from there. Needs rows.
     void start_over();
     /// The next sweep; starts over where nothing waits for one.
@@ -76,7 +84,12 @@ public:
     /// @throws InvalidArgument where unsavable_reason() has one; IoError
     void save_result(const std::filesystem::path& path);
     /// Whether the light is that of the file as it was opened.
-    [[nodiscard]] bool as_opened() const { return materials_ == input_.scene->materials; }
+    [[nodiscard]] bool as_opened() const {
+        return materials_ == input_.scene->materials && !has_other_temperatures();
+    }
+    [[nodiscard]] bool has_other_temperatures() const {
+        return input_.heat != nullptr && conditions_ != input_.heat->conditions;
+    }
 
 private:
     enum class State { lamps, preview, converging, solved };
@@ -89,6 +102,8 @@ private:
     void take_light();
     void show_light(std::vector<double> radiosity, State state, std::vector<float> vertices = {});
     void make_light_mesh();
+    /// Whether there is no light, and none is to come.
+    [[nodiscard]] bool stays_dark() const;
     [[nodiscard]] std::string gathered_text() const;
     [[nodiscard]] Light of_materials() const;
 
@@ -96,10 +111,14 @@ private:
     std::function<void()> wake_;
     SmoothSurfaces surfaces_;
     std::vector<Material> materials_;
+    std::vector<HeatCondition> conditions_; ///< none where the scene has none
     Light light_;
+    std::shared_ptr<const Heat> heat_;
     std::vector<double> blocked_; ///< b_i as far as they are known, N; empty: none
     std::size_t gathered_ = 0;    ///< patches that have light by their own row
     PictureMesh light_mesh_;
+    bool evenly_lit_ = false;
+    std::string light_note_;
     double exposure_ = 1.0;
     bool exposure_settled_ = false;
     double usual_factor_ = 0.0;

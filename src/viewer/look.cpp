@@ -93,6 +93,11 @@ const char* why_not(const Shown& shown, const ViewerInput& input, std::optional<
         return input.factors == nullptr && solution.irradiance.empty() ? "needs form factors" : nullptr;
     case Quantity::direct:
         return solution.direct.empty() ? "there is neither sun nor sky" : nullptr;
+    case Quantity::temperature:
+    case Quantity::net_flux:
+        return !solution.temperature.empty() ? nullptr
+               : input.heat != nullptr       ? "not solved for yet"
+                                             : "needs a scene with temperatures";
     case Quantity::radiosity:
     case Quantity::exitance:
     case Quantity::reflectance:
@@ -126,6 +131,9 @@ Field quantity_field(const Look& look, const PatchMesh& mesh, const Lit& lit, co
         for (std::uint32_t i = 0; i < mesh.size(); ++i) {
             field.shown.values[i] = light.knows(i) ? field.shown.values[i] : none;
         }
+    }
+    if (look.celsius) {
+        show_in_celsius(field.shown);
     }
     field.shown.map = look.map;
     field.shown.logarithmic = look.logarithmic;

@@ -53,6 +53,7 @@ struct Look {
     std::optional<std::array<double, 2>> range; ///< of quantities' scales; none: as values ask for
     bool logarithmic = false;                   ///< false colours of quantities
     bool logarithmic_factors = true;            ///< false colours of form factors
+    bool celsius = false;                       ///< temperatures in °C, else in K
     Shading shading = Shading::gouraud;
     ToneMapping tone_mapping = ToneMapping::filmic;
     double stops = 0.0; ///< exposure over the one at the start, powers of two
@@ -69,6 +70,7 @@ struct Light {
     std::vector<double> radiosity;
     std::vector<float> vertices;     ///< as Solution::vertex_radiosity; empty: means over the patches
     std::vector<std::uint8_t> known; ///< whether a patch's radiosity is more than a beginning, N; empty: all
+    std::vector<HeatCondition> conditions{}; ///< as HeatProblem::conditions; empty: those of the scene
 
     [[nodiscard]] bool knows(std::uint32_t patch) const { return known.empty() || known[patch] != 0; }
 };

@@ -8,17 +8,43 @@
 
 namespace hemi::viewer {
 
+namespace {
+
+/// Of all conditions of a group that have a temperature.
+void set_temperature(const SetCommand& set, const ViewerInput& input, Choices& choices) {
+    const PatchMesh& mesh = *input.mesh;
+    bool found = false;
+    for (std::uint32_t i = 0; i < mesh.size() && input.heat != nullptr; ++i) {
+        const std::uint32_t condition = input.heat->condition_of[i];
+        if (mesh.groups()[mesh.group(i)] == set.name && condition != no_heat &&
+            choices.conditions[condition].temperature) {
+            choices.conditions[condition].temperature = set.values[0];
+            found = true;
+        }
+    }
+    if (!found || set.values.size() != 1) {
+        throw InvalidArgument(found ? fmt::format("set: {} temperatures; must be one", set.values.size())
+                                    : fmt::format("set: no group \"{}\" has a temperature", set.name));
+    }
+}
+
+} // namespace
+
 void apply_set(const SetCommand& set, const ViewerInput& input, Choices& choices) {
     if (input.factors == nullptr) {
         throw InvalidArgument("set: there are no form factors; open the scene, and let it be solved");
     }
-    const auto found =
-        std::find_if(choices.materials.begin(), choices.materials.end(),
-                     [&set](const Material& material) { return material.name == set.material; });
-    if (found == choices.materials.end()) {
-        throw InvalidArgument(fmt::format("set: the scene has no material \"{}\"", set.material));
+    if (set.property == SetCommand::Property::temperature) {
+        set_temperature(set, input, choices);
+        return;
     }
-    std::vector<double>& values = set.exitance ? found->exitance : found->reflectance;
+    const auto found = std::find_if(choices.materials.begin(), choices.materials.end(),
+                                    [&set](const Material& material) { return material.name == set.name; });
+    if (found == choices.materials.end()) {
+        throw InvalidArgument(fmt::format("set: the scene has no material \"{}\"", set.name));
+    }
+    std::vector<double>& values =
+        set.property == SetCommand::Property::exitance ? found->exitance : found->reflectance;
     if (set.values.size() != 1 && set.values.size() != values.size()) {
         throw InvalidArgument(
             fmt::format("set: {} values for {} channels", set.values.size(), values.size()));

@@ -27,7 +27,7 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
     const ImVec2 origin{margin, static_cast<float>(view[1]) - margin - height};
     list->AddRectFilled(origin, {origin.x + width, origin.y + height}, IM_COL32(22, 24, 26, 225), 3.0F);
     const ImU32 ink = IM_COL32(235, 235, 235, 255);
-    const std::string title = legend_title(field.shown, field.grey);
+    const std::string title = legend_title(field.shown, field.scale, field.grey);
     list->AddText({origin.x + pad, origin.y + pad - 2.0F}, ink, title.c_str());
 
     const float left = origin.x + pad + 14.0F;
@@ -51,10 +51,12 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
         const ImU32 last = colour(static_cast<double>(k + 1) / steps);
         list->AddRectFilledMultiColor({from, top}, {to, bottom}, first, last, last, first);
     }
-    for (const double mark : field.scale.marks()) {
-        const float x = left + (right - left) * static_cast<float>(field.scale.position(mark));
+    const ColourScale told = legend_scale(field.shown, field.scale);
+    for (const double mark : told.marks()) {
+        const float x = left + (right - left) * static_cast<float>(told.position(mark));
         list->AddLine({x, bottom}, {x, bottom + 4.0F}, ink);
-        const std::string words = fmt::format("{:.3g}", mark);
+        const bool whole = std::abs(mark) >= 1000.0 && std::abs(mark) < 10000.0;
+        const std::string words = whole ? fmt::format("{:.0f}", mark) : fmt::format("{:.3g}", mark);
         const float half = 0.5F * ImGui::CalcTextSize(words.c_str()).x;
         list->AddText({x - half, bottom + 4.0F}, ink, words.c_str());
     }

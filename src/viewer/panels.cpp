@@ -75,6 +75,17 @@ void channel_choice(const ViewerInput& input, Look& look) {
     }
 }
 
+void celsius_choice(Look& look) {
+    bool celsius = look.celsius;
+    choice("K", false, celsius);
+    ImGui::SameLine();
+    choice("°C", true, celsius);
+    if (celsius != look.celsius) {
+        look.celsius = celsius;
+        look.range.reset(); // it was of the other unit
+    }
+}
+
 void map_choice(Look& look) {
     ImGui::SetNextItemWidth(-1.0F);
     if (ImGui::BeginCombo("##map", ("colours: " + std::string(to_word(look.map))).c_str())) {
@@ -115,7 +126,8 @@ void scale_choice(bool& logarithmic) {
     choice("logarithmic", true, logarithmic);
 }
 
-void picture_choices(Look& look) {
+/// @param note  on light of which the picture shows little
+void picture_choices(Look& look, const std::string& note) {
     choice("Gouraud", Shading::gouraud, look.shading);
     ImGui::SameLine();
     choice("flat", Shading::flat, look.shading);
@@ -128,6 +140,9 @@ void picture_choices(Look& look) {
     choice("filmic", ToneMapping::filmic, look.tone_mapping);
     ImGui::SameLine();
     choice("linear tone mapping", ToneMapping::linear, look.tone_mapping);
+    if (!note.empty()) {
+        faint(note);
+    }
 }
 
 void show_section(const PanelContent& content, Choices& choices) {
@@ -138,10 +153,16 @@ void show_section(const PanelContent& content, Choices& choices) {
     shown_combo(content, choices);
     switch (look.shown.view) {
     case View::picture:
-        picture_choices(look);
+        picture_choices(look, content.document.light_note());
         break;
     case View::quantity:
-        channel_choice(content.document.input(), look);
+        if (is_of_heat(look.shown.quantity)) {
+            if (look.shown.quantity == Quantity::temperature) {
+                celsius_choice(look);
+            }
+        } else {
+            channel_choice(content.document.input(), look);
+        }
         map_choice(look);
         scale_choice(look.logarithmic);
         if (content.field) {
@@ -182,6 +203,12 @@ std::string channels_text(std::span<const double> values, std::uint32_t channels
     return result;
 }
 
+std::string temperature_text(double kelvin) {
+    constexpr double zero_celsius = 273.15;
+    return std::isnan(kelvin) ? "not known"
+                              : fmt::format("{:.2f} K, {:.2f} °C", kelvin, kelvin - zero_celsius);
+}
+
 void patch_lines(const PanelContent& content, std::uint32_t i) {
     const ViewerInput& input = content.document.input();
     const Light& light = content.document.light();
@@ -198,6 +225,13 @@ void patch_lines(const PanelContent& content, std::uint32_t i) {
     line(("exitance " + unit).c_str(), channels_text(light.exitance, input.channels(), i));
     line(("radiosity " + unit).c_str(),
          light.knows(i) ? channels_text(light.radiosity, input.channels(), i) : "not known yet");
+    if (const Heat* heat = content.document.heat(); heat != nullptr && heat->problem.empty()) {
+        const std::uint32_t channels = input.channels();
+        line("T", temperature_text(heat->solution.temperature[i]));
+        line("net flux W/m²", number(heat->solution.net_flux[i]));
+        line("heat G W/m²", channels_text(heat->solution.irradiance, channels, i, 4));
+        line("heat J W/m²", channels_text(heat->solution.radiosity, channels, i, 4));
+    }
     if (!solution.row_sum.empty()) {
         const double defect =
             solution.row_sum[i] + solution.environment_share[i] + solution.back_face_share[i] - 1.0;
@@ -209,6 +243,67 @@ void patch_lines(const PanelContent& content, std::uint32_t i) {
         line(("est. error " + unit).c_str(),
              channels_text(input.solution.error->patches, input.channels(), i, 1));
     }
+}
+
+/// A slider for every temperature that is given.
+void temperature_sliders(const ViewerInput& input, Choices& choices) {
+    constexpr double above = 1.5;
+    double hottest = 0.0;
+    for (const HeatCondition& condition : input.heat->conditions) {
+        hottest = std::max(hottest, condition.temperature.value_or(0.0));
+    }
+    const auto most = static_cast<float>(hottest > 0.0 ? above * hottest : 1000.0);
+    const std::vector<std::string> names = condition_names(input);
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        std::optional<double>& kelvin = choices.conditions[c].temperature;
+        if (!kelvin || names[c].empty()) {
+            continue;
+        }
+        ImGui::PushID(static_cast<int>(c));
+        auto shown = static_cast<float>(*kelvin);
+        ImGui::SetNextItemWidth(-120.0F);
+        if (ImGui::SliderFloat(names[c].c_str(), &shown, 0.0F, most, "%.0f K", ImGuiSliderFlags_NoInput)) {
+            kelvin = static_cast<double>(shown);
+        }
+        ImGui::PopID();
+    }
+    if (choices.conditions != input.heat->conditions && ImGui::Button("Temperatures as in the scene")) {
+        choices.conditions = input.heat->conditions;
+    }
+}
+
+/// Temperatures and net powers of groups.
+void heat_section(const PanelContent& content, Choices& choices) {
+    if (content.document.input().heat == nullptr || !heading("Heat")) {
+        return;
+    }
+    const Heat* heat = content.document.heat();
+    if (heat == nullptr || !heat->problem.empty()) {
+        faint(heat == nullptr ? "Found once there are form factors." : heat->problem);
+        return;
+    }
+    temperature_sliders(content.document.input(), choices);
+    if (!ImGui::BeginTable("heat", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) {
+        return;
+    }
+    ImGui::TableSetupColumn("group", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("T K");
+    ImGui::TableSetupColumn("W/m²");
+    ImGui::TableSetupColumn("net W");
+    ImGui::TableHeadersRow();
+    const std::vector<std::string>& names = content.document.input().mesh->groups();
+    for (std::size_t g = 0; g < heat->groups.size(); ++g) {
+        const GroupHeat& group = heat->groups[g];
+        ImGui::TableNextRow();
+        for (const std::string& cell :
+             {g < names.size() ? names[g] : std::string("(all)"),
+              std::isnan(group.temperature) ? std::string("-") : fmt::format("{:.1f}", group.temperature),
+              fmt::format("{:.4g}", group.net_flux), fmt::format("{:.5g}", group.net_power)}) {
+            ImGui::TableNextColumn();
+            text(cell);
+        }
+    }
+    ImGui::EndTable();
 }
 
 void heat_map_choice(Look& look) {
@@ -493,6 +588,7 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     }
     ImGui::BeginChild("sections", {0.0F, -foot});
     show_section(content, choices);
+    heat_section(content, choices);
     patch_section(content, choices);
     solution_section(content, choices);
     material_section(content, choices);

@@ -48,7 +48,8 @@ struct Choices {
     bool hemicube = true;                    ///< as the picked patch sees it
     bool hemicube_ids = false;               ///< coloured by item, else as the scene is
     std::uint32_t hemicube_eye = 0;
-    std::vector<Material> materials; ///< as the light should be
+    std::vector<Material> materials;       ///< as the light should be
+    std::vector<HeatCondition> conditions; ///< as the heat should be; none: the scene has none
     bool panel = true;
     bool help = false;
     std::size_t picture_size = 0; ///< of screenshots, into picture_sizes()

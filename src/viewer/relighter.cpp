@@ -20,6 +20,23 @@ constexpr std::chrono::milliseconds interval{80};
 
 } // namespace
 
+/// Stops what is no longer wanted; what it warns of was told when the file was read.
+class Relighter::Wanted final : public Observer {
+public:
+    explicit Wanted(std::function<bool()> wanted) : wanted_(std::move(wanted)) {}
+    bool progress(Phase, std::size_t, std::size_t) override { return wanted_(); }
+
+private:
+    std::function<bool()> wanted_;
+};
+
+Relighter::Wanted Relighter::still_wanted(const std::stop_token& stop) {
+    return Wanted([this, &stop] {
+        const std::lock_guard lock(mutex_);
+        return !stop.stop_requested() && !wanted_;
+    });
+}
+
 Relighter::Relighter(const ViewerInput& input, std::function<void()> done)
     : input_(input), done_(std::move(done)), thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
@@ -144,17 +161,7 @@ void Relighter::try_to_gather(SolveUpdate& update, const std::stop_token& stop) 
         update.light.vertices = gather_->gather(values, solution.radiosity);
         return;
     }
-    class Wanted final : public Observer {
-    public:
-        explicit Wanted(std::function<bool()> wanted) : wanted_(std::move(wanted)) {}
-        bool progress(Phase, std::size_t, std::size_t) override { return wanted_(); }
-
-    private:
-        std::function<bool()> wanted_;
-    } wanted([this, &stop] {
-        const std::lock_guard lock(mutex_);
-        return !stop.stop_requested() && !wanted_;
-    });
+    Wanted wanted = still_wanted(stop);
     update.light.vertices =
         gather_->compute(values, solution.radiosity, *input_.factor_settings, input_.scene->enclosure,
                          input_.factors->matrix.memory_bytes(), wanted);
@@ -222,6 +229,11 @@ void Relighter::solve(Wish wish, const std::stop_token& stop) {
         update.solution.error = estimate_radiosity_error(
             factors.matrix, factors.reference, input_.mesh->areas(), input_.channels(),
             update.light.reflectance, update.light.exitance, update.light.radiosity);
+        publish(update);
+    }
+    if (update.converged && input_.heat) {
+        Wanted wanted = still_wanted(stop);
+        update.heat = std::make_shared<const Heat>(find_heat(input_, update.light, wanted));
         publish(update);
     }
     if (update.converged && update.light.vertices.empty()) {

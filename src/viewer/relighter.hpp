@@ -1,10 +1,12 @@
 #pragma once
 
 #include "hemi/pipeline/vertex_gather.hpp"
+#include "viewer/heat.hpp"
 #include "viewer/look.hpp"
 
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -21,6 +23,7 @@ struct SolveUpdate {
     Solution
         solution; ///< how the light was found; its radiosity is the light's. The error comes a little later
     std::string problem; ///< why there is no solution; then `light` is as it was asked for, not solved
+    std::shared_ptr<const Heat> heat; ///< where the scene has some; a little later, too
 };
 
 /// Solves beside the window, on a thread of its own. A wish that comes before the last is fulfilled replaces
@@ -57,7 +60,10 @@ private:
         bool stepwise = false;
     };
 
+    class Wanted;
+
     void work(const std::stop_token& stop);
+    [[nodiscard]] Wanted still_wanted(const std::stop_token& stop);
     void solve(Wish wish, const std::stop_token& stop);
     /// @throws Cancelled when the wish is no longer wanted
     void wait_for_step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);

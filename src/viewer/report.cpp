@@ -36,6 +36,7 @@ void write_report(const std::filesystem::path& path, const Report& report) {
               {"radiosity", Json::array()},
               {"residuals", report.document.work().residuals},
               {"light", report.document.work().light},
+              {"light_note", report.document.light_note()},
               {"camera",
                {{"eye", point(report.camera.eye)},
                 {"target", point(report.camera.target)},

@@ -30,7 +30,8 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
     }
     settings_ = picture_settings(look, input.picture, exposure, {1, 1});
     light_ = document.light_mesh();
-    if (look.shown.view == View::picture) {
+    evenly_lit_ = look.shown.view == View::picture && document.evenly_lit();
+    if (look.shown.view == View::picture && !evenly_lit_) {
         light_ = with_unknown_grey(std::move(light_), *input.mesh, document.light(), exposure);
     }
     renderer_.upload(colours_.empty() ? light_ : painted(light_, colours_));
@@ -54,8 +55,12 @@ void SceneView::draw(const Camera& camera, SceneTarget& target, std::uint32_t sa
 
 Picture SceneView::picture(const Camera& camera, std::array<std::uint32_t, 2> size, std::uint32_t samples) {
     Picture picture = renderer_.picture(camera, settings(size, samples));
+    if (evenly_lit_) { // which is no radiosity
+        std::fill(picture.linear.begin(), picture.linear.end(), 0.0F);
+    }
     if (field_) {
-        draw_legend(picture, field_->scale, legend_title(field_->shown, field_->grey),
+        draw_legend(picture, legend_scale(field_->shown, field_->scale),
+                    legend_title(field_->shown, field_->scale, field_->grey),
                     values_beyond(field_->shown, field_->scale));
     }
     return picture;

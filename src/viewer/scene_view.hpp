@@ -40,6 +40,7 @@ private:
     std::optional<Field> field_;
     std::vector<std::array<float, 3>> colours_; ///< what was painted
     PictureMesh light_;                         ///< where nothing was painted
+    bool evenly_lit_ = false;                   ///< that is even_light()
 };
 
 } // namespace hemi::viewer

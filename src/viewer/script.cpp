@@ -187,11 +187,16 @@ std::string parse_file(Line& line, std::string_view command, std::string_view ex
 
 SetCommand parse_set(Line& line) {
     const std::string_view property = line.word("a property");
-    if (property != "reflectance" && property != "exitance") {
-        line.fail(fmt::format("property \"{}\"; must be reflectance or exitance", property));
+    using Property = SetCommand::Property;
+    if (property != "reflectance" && property != "exitance" && property != "temperature") {
+        line.fail(fmt::format("property \"{}\"; must be reflectance, exitance or temperature", property));
     }
-    SetCommand set{property == "exitance", {}, {}};
-    const double most = set.exitance ? 1e30 : 0.999999;
+    SetCommand set{property == "exitance"      ? Property::exitance
+                   : property == "temperature" ? Property::temperature
+                                               : Property::reflectance,
+                   {},
+                   {}};
+    const double most = set.property == Property::reflectance ? 0.999999 : 1e30;
     std::string_view values = line.word("a value");
     while (true) {
         const std::size_t end = std::min(values.find(','), values.size());
@@ -207,7 +212,7 @@ SetCommand parse_set(Line& line) {
         }
         values.remove_prefix(end + 1);
     }
-    set.material = line.rest();
+    set.name = line.rest();
     return set;
 }
 

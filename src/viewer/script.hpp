@@ -51,11 +51,12 @@ struct MapCommand {
 struct RangeCommand {
     std::optional<std::array<double, 2>> range;
 };
-/// A material's values, one or one a channel.
+/// A material's values, one or one a channel, or the temperature of a group, K.
 struct SetCommand {
-    bool exitance; ///< else reflectance
+    enum class Property { reflectance, exitance, temperature };
+    Property property;
     std::vector<double> values;
-    std::string material;
+    std::string name; ///< of the material, or of the group
 };
 struct ResizeCommand {
     std::uint32_t width;
@@ -136,6 +137,7 @@ struct ScriptCommand {
 ///                        or column
 /// set reflectance|exitance VALUE[,VALUE ...] MATERIAL
 ///                        one value, or one a channel; waits until the light has followed
+/// set temperature KELVIN GROUP
 /// fov DEGREES            field of view
 /// resize WIDTH HEIGHT
 /// minimise, restore      the window

@@ -2,6 +2,7 @@
 
 #include "hemi/display/picture.hpp"
 #include "hemi/matrix/form_factors.hpp"
+#include "hemi/pipeline/heat.hpp"
 #include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/refinement.hpp"
 #include "hemi/pipeline/settings.hpp"
@@ -51,6 +52,9 @@ struct ViewerInput {
     Solution solution;
     std::shared_ptr<const FormFactors> factors; ///< prepared; null until they are found
     std::string of_solution;                    ///< what the window says of a solution that is there
+    /// What the scene says of heat, of these patches, without sun and sky; null: nothing.
+    std::shared_ptr<const HeatProblem> heat;
+    std::string heat_command; ///< as `command`, of pictures of heat
     /// Command line that draws this file without a window, up to the picture's own options:
     /// "hemi render room.hres".
     std::string command;

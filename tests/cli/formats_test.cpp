@@ -159,9 +159,9 @@ TEST_CASE("VTP: a solution with rows of F, and form factors of a scene", "[cli]"
     INFO(run.err);
     REQUIRE(run.status == 0);
     const Json arrays = run.json()["arrays"];
-    for (const char* name : {"radiosity", "irradiance", "exitance", "reflectance", "row_sum", "environment",
-                             "blocked", "row_error", "radiosity_error", "radiosity_error_factors",
-                             "radiosity_error_patch_size", "F_0", "F_23"}) {
+    for (const char* name :
+         {"radiosity", "irradiance", "exitance", "reflectance", "row_sum", "environment", "emissivity",
+          "blocked", "row_error", "error", "error_factors", "error_patch_size", "F_0", "F_23"}) {
         INFO(name);
         CHECK(std::count(arrays.begin(), arrays.end(), Json(name)) == 1);
         CHECK(directory.read("cube.vtp").find(std::string(" Name=\"") + name + "\" ") != std::string::npos);

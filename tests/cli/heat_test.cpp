@@ -741,6 +741,12 @@ TEST_CASE("hemi heat -o PICTURE.png: temperatures and fluxes in false colours", 
     CHECK(directory.read("flux.png") != directory.read("kelvin.png"));
     CHECK(draw(directory.path("flux.png"), {"--show", "flux", "--celsius"}).status == 2);
     CHECK(draw(directory.path("flux.png"), {"--show", "power"}).err_has("temperature"));
+    CHECK(draw(directory.path("flux.png"), {"--show", "temprature"}).err_has("did you mean temperature?"));
+    CHECK(draw(directory.path("flux.png"), {"--show", "error"}).status == 2);
+    CHECK(draw(directory.path("g.png"), {"--show", "irradiance", "--range", "0,2000", "--map", "inferno"})
+              .out_has("(240 x 200, irradiance)"));
+    CHECK(draw(directory.path("plain.png"), {"--no-legend"}).status == 0);
+    CHECK(directory.read("plain.png") != directory.read("kelvin.png"));
     const Outcome table = run_hemi({"heat", file, "-o", directory.path("box.vtp"), "--outlines"});
     CHECK(table.status == 2);
     CHECK(table.err_has("--outlines is for a picture"));

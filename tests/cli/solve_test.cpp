@@ -234,7 +234,7 @@ TEST_CASE("solve: a dash writes to stdout and the summary goes to stderr", "[cli
 
     const Outcome table = run_hemi(quick({"solve", scene, "--radiosity", "-", "-q"}));
     CHECK(table.out.rfind("index,group,area,cx,cy,cz,nx,ny,nz,exitance_red", 0) == 0);
-    CHECK(table.out_has("radiosity_blue,error_red,error_green,error_blue\n0,floor,"));
+    CHECK(table.out_has("radiosity_blue,error_red,error_green,error_blue,reflectance_red,"));
     CHECK(std::count(table.out.begin(), table.out.end(), '\n') == 55);
 }
 
@@ -252,7 +252,7 @@ TEST_CASE("solve: a named pipe gets its table once", "[cli]") {
     reader.join();
     CHECK(solved.status == 0);
     CHECK(std::count(table.begin(), table.end(), '\n') == 55);
-    CHECK(table.find("error_blue\n") != std::string::npos);
+    CHECK(table.find("error_blue,") != std::string::npos);
 }
 
 TEST_CASE("convert: a csv keeps the number of patches", "[cli]") {
@@ -310,7 +310,15 @@ TEST_CASE("render: draws a stored solution as solve drew it", "[cli]") {
         CHECK(run_hemi(words).status == 2);
     }
     CHECK_FALSE(directory.has("g.png"));
-    CHECK(run_hemi({"render", result, "-o", "-", "--show", "gren"}).err_has("did you mean"));
+    CHECK(run_hemi({"render", result, "-o", "-", "--show", "gren"}).err_has("did you mean \"green\""));
+    for (const Words& more : {Words{}, Words{"--range", "0,1"}}) {
+        Words words{"render", result, "-o", "-", "--show", "irradience"};
+        words.insert(words.end(), more.begin(), more.end());
+        CHECK(run_hemi(words).err_has("did you mean \"irradiance\""));
+    }
+    CHECK_FALSE(run_hemi({"bake", result, "-o", "-", "--show", "irradience"}).err_has("did you mean"));
+    CHECK(run_hemi({"render", result, "-o", "-", "--show", "irradiance", "--channel", "luminence"})
+              .err_has("did you mean \"luminance\""));
     CHECK(run_hemi({"render", scene, "-o", "-"}).status == 2);
 
     const Json info = run_hemi({"info", result, "--json"}).json();
@@ -609,4 +617,83 @@ TEST_CASE("solve --refine: rows of cut patches are stored, lit again, and cut fu
     const std::string other = directory.write("other.json", fewer);
     CHECK(refused({"solve", other, "--factors", rows, "--refine", "200"}).find("another geometry") !=
           std::string::npos);
+}
+
+TEST_CASE("solve: a scene that nothing lights is drawn evenly lit, and its numbers stay zero", "[cli][gl]") {
+    const Directory directory;
+    Json dark = cube(3, "open");
+    dark["materials"]["lamp"]["exitance"] = 0;
+    const std::string scene = directory.write("dark.json", dark);
+    const std::string result = directory.path("dark.hres");
+    const Words look{"--size", "64x48", "--camera", "0.5,0.1,0.5:0.5,1,0.5:70"};
+    const auto with = [&look](Words words) {
+        words.insert(words.end(), look.begin(), look.end());
+        return words;
+    };
+    const Outcome solved = run_hemi(quick(with({"solve", scene, "--result", result, "--radiosity",
+                                                directory.path("a.csv"), "-o", directory.path("a.png")})));
+    REQUIRE(solved.status == 0);
+    CHECK(solved.out_has("evenly lit"));
+    const Outcome drawn =
+        run_hemi(with({"render", result, "-o", directory.path("b.png"), "--device", "osmesa"}));
+    CHECK(drawn.out_has("evenly lit"));
+    CHECK(directory.read("a.png") == directory.read("b.png"));
+    const hemi::test::SrgbPicture picture = hemi::test::read_png(directory.path("a.png"));
+    const auto [low, high] = std::minmax_element(picture.pixels.begin(), picture.pixels.end());
+    CHECK(*low + 40 < *high);
+
+    const Outcome raw =
+        run_hemi(with({"render", result, "-o", directory.path("a.hdr"), "--device", "osmesa"}));
+    CHECK_FALSE(raw.out_has("evenly lit"));
+    const std::string hdr = directory.read("a.hdr");
+    std::string black;
+    for (int row = 0; row < 48; ++row) {
+        black += std::string("\x02\x02\x00\x40", 4); // a line of 64 pixels, each of four bytes a run of zeros
+        for (int byte = 0; byte < 4; ++byte) {
+            black += std::string("\xC0\x00", 2);
+        }
+    }
+    CHECK(hdr.ends_with("+X 64\n" + black));
+    REQUIRE(run_hemi({"convert", result, directory.path("b.csv")}).status == 0);
+    CHECK(directory.read("a.csv") == directory.read("b.csv"));
+    CHECK(directory.read("a.csv").find(",radiosity_grey,error_grey,reflectance_grey,emissivity_grey,"
+                                       "environment,blocked,row_sum") != std::string::npos);
+    CHECK(directory.read("a.csv").find(",0,0,0,0,0.5,0.5,") != std::string::npos); // no light
+
+    Json furnace = cube(3);
+    furnace["materials"]["white"]["exitance"] = 1;
+    furnace["materials"]["lamp"] = furnace["materials"]["white"];
+    const std::string glow = directory.write("glow.json", furnace);
+    const Outcome uniform =
+        run_hemi(quick(with({"solve", glow, "-o", directory.path("c.png"), "--repair", "closure"})));
+    CHECK(uniform.out_has("the radiosity is the same everywhere: 2 W/m²"));
+}
+
+TEST_CASE("render: the background is what is asked for, in light and in false colours", "[cli][gl]") {
+    const Directory directory;
+    const std::string scene = directory.write("open.json", open_cube(2, "open"));
+    const std::string result = directory.path("a.hres");
+    REQUIRE(run_hemi(quick({"solve", scene, "--result", result, "--environment", "1"})).status == 0);
+    const auto corner = [&](const Words& more) {
+        Words words{"render",   result,   "-o",       directory.path("a.png"),  "--size", "64x48",
+                    "--device", "osmesa", "--camera", "0.5,-5,0.5:0.5,0,0.5:60"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome run = run_hemi(words);
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        const hemi::test::SrgbPicture picture = hemi::test::read_png(directory.path("a.png"));
+        return std::vector<int>(picture.pixels.begin(), picture.pixels.begin() + 3);
+    };
+    CHECK(corner({"--background", "#10a0ff"}) == std::vector<int>{0x10, 0xa0, 0xff});
+    CHECK(corner({"--background", "white", "--exposure", "0.01"}) == std::vector<int>{255, 255, 255});
+    CHECK(corner({"--background", "#10a0ff", "--show", "environment"}) == std::vector<int>{0x10, 0xa0, 0xff});
+    CHECK(corner({"--background", "environment"}) == corner({}));
+    CHECK(corner({})[0] > 100); // as bright as the environment
+    for (const char* wrong : {"#10a0f", "#10a0fg", "10a0ff", "blue", "#10a0ff0", "# 0a0ff"}) {
+        CHECK(run_hemi({"render", result, "-o", "-", "--background", wrong}).err_has("#RRGGBB"));
+    }
+    CHECK(run_hemi({"render", result, "-o", directory.path("a.hdr"), "--background", "white"}).status == 2);
+    CHECK(run_hemi({"render", result, "-o", directory.path("b.png"), "--size", "4K", "--samples", "1",
+                    "--device", "osmesa"})
+              .out_has("3840 x 2160"));
 }

@@ -81,6 +81,7 @@ TEST_CASE("Command line: options that do not apply are refused", "[cli]") {
 
 TEST_CASE("Command line: bad values are named with what would be right", "[cli]") {
     refuses({}, "a command is missing");
+    refuses({}, "\n  diff      Two stored solutions compared");
     refuses({"solve"}, "SCENE");
     refuses({"solve", "x.json", "--resolution", "127"}, "must be even");
     refuses({"solve", "x.json", "--eye-points", "5"}, "1, 4, 9, 16");

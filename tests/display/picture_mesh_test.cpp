@@ -114,6 +114,22 @@ TEST_CASE("AutomaticExposure: where every surface glows, the glow is what is sho
     CHECK(automatic_exposure(mesh, picture, {}, std::vector<double>(4, 100.0), 1) == Approx(0.6 / 300.0));
 }
 
+TEST_CASE("EvenLight: goes with the reflectance, differs by direction, and shows black surfaces, too",
+          "[display]") {
+    SceneBuilder builder;
+    builder.floor("floor", 0.0, 0.0, 1.0, 1.0, {2, 1});
+    builder.add("wall", {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}});
+    const PatchMesh mesh = builder.mesh();
+    const std::vector<double> light = even_light(mesh, std::vector<double>{1.0, 0.0, 0.5, 0.5, 0.5, 0.5}, 2);
+    REQUIRE(light.size() == 6);
+    CHECK(light[1] == Approx(0.2 * light[0]));
+    CHECK(light[1] > 0.0);
+    CHECK(light[2] == Approx(0.6 * light[0]));
+    CHECK(light[3] == light[2]);
+    CHECK(light[2] > 1.2 * light[4]); // more comes from above
+    CHECK_THROWS_AS(even_light(mesh, std::vector<double>(5), 2), InvalidArgument);
+}
+
 TEST_CASE("DefaultCamera: has the whole scene in view", "[display]") {
     Bounds bounds;
     bounds.add({-3.0, 100.0, 5.0});

@@ -103,6 +103,12 @@ FormFactors duct() {
                         {1.0, 2.0, 1.0, 2.0}, {"bottom", "right", "top", "left"});
 }
 
+/// Rows of three patches that lack a little, of which the third is buried.
+FormFactors with_buried() {
+    return make_factors({{0.0, 0.75, 0.0}, {0.75, 0.0, 0.0}, {0.0, 0.0, 0.0}}, {1.0, 1.0, 1.0},
+                        {"hot", "cold", "under"}, {0.0, 0.0, 1.0});
+}
+
 FormFactors plates() {
     return make_factors({{0.0, 1.0}, {1.0, 0.0}}, {1.0, 1.0}, {"hot", "cold"});
 }
@@ -557,4 +563,28 @@ TEST_CASE("exchange: reciprocal, balanced, and what the fluxes are made of", "[h
     CHECK_THROWS_AS(
         heat_exchange(duct(), banded(problem, {3.0}, {{0.9, 0.9}, {0.5, 0.5}, {0.5, 0.5}, {0.5, 0.5}})),
         InputError);
+}
+
+TEST_CASE("heat_as_solution: what leaves a patch is exitance and reflection, and net flux the difference",
+          "[pipeline][heat]") {
+    const FormFactors factors = with_buried();
+    HeatProblem problem = grey({0.8, 0.4, 0.5}, {at(500.0), with_flux(-100.0), at(300.0)});
+    problem.environment_temperature = 280.0;
+    problem.environment.assign(1, 0.0);
+    const HeatSolution found = solve_heat(factors, problem);
+    const Solution solution = heat_as_solution(factors, problem, found, 3); // grey, of equal channels
+    REQUIRE(solution.radiosity.size() == 9);
+    for (std::size_t k = 0; k < 6; ++k) {
+        const std::size_t i = k / 3;
+        CHECK(solution.radiosity[k] - solution.irradiance[k] == Approx(found.net_flux[i]));
+        CHECK(solution.exitance[k] == Approx(found.emitted[i]));
+        CHECK(solution.temperature[i] == found.temperature[i]);
+    }
+    CHECK(solution.exitance[0] == Approx(0.8 * power_of(500.0)));
+    CHECK(solution.environment_share[1] == Approx(0.25));
+    CHECK(solution.row_sum[0] == Approx(0.75));
+    CHECK(std::isnan(solution.temperature[2]));
+    CHECK(std::isnan(solution.net_flux[2]));
+    CHECK(solution.back_face_share[2] == 1.0);
+    CHECK_THROWS_AS(heat_as_solution(plates(), problem, found, 1), InvalidArgument);
 }

@@ -70,10 +70,39 @@ TEST_CASE("quantities: the scale of radiosities is that of what lamps light", "[
     Known known;
     CHECK(known.shown(Quantity::radiosity, "red").range == std::array{1.0, 4.0});
     CHECK_FALSE(known.shown(Quantity::irradiance).range);
+    known.solution.irradiance.assign(9, 2.0); // as in a furnace, where a solver leaves some noise
+    known.solution.irradiance[3] = 2.0001;
+    REQUIRE(known.shown(Quantity::irradiance, "red").range);
+    CHECK(known.shown(Quantity::irradiance, "red").range->front() == Approx(1.98));
+    CHECK(known.shown(Quantity::irradiance, "red").range->back() == Approx(1.01 * 2.0001));
     known.solution.radiosity[3] = 10.0; // what is lit is brighter than the lamp
     CHECK_FALSE(known.shown(Quantity::radiosity, "red").range);
     known.solution.back_face_share[1] = 1.0; // buried: it has no value
     CHECK(std::isnan(known.shown(Quantity::radiosity, "red").values[1]));
+}
+
+TEST_CASE("quantities: temperatures and net fluxes are of heat", "[pipeline]") {
+    Known known;
+    CHECK_THROWS_WITH(known.shown(Quantity::temperature), Catch::Contains("hemi heat"));
+    CHECK_THROWS_WITH(known.shown(Quantity::net_flux), Catch::Contains("flux: `hemi heat"));
+    known.solution.temperature = {300.0, std::nan(""), 450.0};
+    known.solution.net_flux = {-40.0, 0.0, 25.0};
+    FalseColours shown = known.shown(Quantity::temperature, "red");
+    CHECK(shown.title == "Temperature"); // of no channel
+    CHECK(shown.unit == "K");
+    CHECK(shown.values[2] == 450.0);
+    CHECK(std::isnan(shown.values[1]));
+    show_in_celsius(shown);
+    CHECK(shown.unit == "°C");
+    CHECK(shown.values[0] == Approx(26.85));
+    shown = known.shown(Quantity::net_flux);
+    show_in_celsius(shown);
+    CHECK(shown.unit == "W/m²");
+    CHECK(shown.values == known.solution.net_flux);
+    for (const auto& [quantity, word] : Names<Quantity>::table) {
+        CHECK(is_of_heat(quantity) == (word == "temperature" || word == "flux"));
+        CHECK(std::string(title_of(quantity)) != "");
+    }
 }
 
 TEST_CASE("quantities: what is not there is refused by name", "[pipeline]") {

@@ -2,6 +2,8 @@
 
 #include "hemi/io/result_file.hpp"
 
+#include <cmath>
+
 using namespace hemi;
 using namespace hemi::viewer_test;
 
@@ -212,4 +214,91 @@ TEST_CASE("Viewer: stored rows of a scene are used, given or dropped, and no oth
     REQUIRE(place.view("live\ncancel\ndrop room.hff\nreport dropped.json\n",
                        "--size 300x200 --preset exact --patches-per-face 16") == 0);
     CHECK(place.json("dropped.json")["radiosity"] == place.json("given.json")["radiosity"]);
+}
+
+TEST_CASE("Viewer: a scene that nothing lights is shown evenly lit, as hemi render draws it",
+          "[viewer][gl]") {
+    const Workplace place;
+    std::string dark = place.read("room.json");
+    replace(dark, "[20, 18, 12]", "[0, 0, 0]");
+    place.write("room.json", dark);
+    const int status = place.view("screenshot window.png\nreport dark.json\nsave-result dark.hres\n"
+                                  "command command.txt\nset exitance 1 lamp\nreport lit.json\n",
+                                  small + " --background '#304050'");
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    CHECK(place.json("dark.json")["light_note"].get<std::string>().find("evenly lit") != std::string::npos);
+    CHECK(place.json("dark.json")["radiosity"][0][0] == 0.0);
+    CHECK(place.read("command.txt").find("--background '#304050'") != std::string::npos);
+    CHECK(place.json("lit.json")["light_note"] == "");
+    place.write("draw.sh", place.read("command.txt"));
+    REQUIRE(run_in_shell(place, "draw.sh") == 0);
+    CHECK(place.read("room.png") == place.read("window.png"));
+}
+
+TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat draws", "[viewer][gl][heat]") {
+    const Workplace place;
+    std::string hot = place.read("room.json");
+    replace(hot, R"("channels": ["red", "green", "blue"],)", "");
+    replace(hot, R"("red": {"reflectance": [0.6, 0.1, 0.1]})", R"("red": {"emissivity": 0.6})");
+    replace(hot, R"("lamp": {"reflectance": 0, "exitance": [20, 18, 12]})", R"("lamp": {"emissivity": 0.9})");
+    replace(hot, R"("camera")",
+            R"("groups": {"ceiling": {"temperature": 700}, "floor": {"temperature": 300},
+                          "left": {"heat_flux": 0}, "right": {"heat_flux": 0}, "back": {"heat_flux": 0}},
+               "environment": {"temperature": 280}, "camera")");
+    place.write("room.json", hot);
+    const std::string options = "--size 300x200 --preset fast --resolution 32";
+    const int status = place.view(
+        "show temperature\nreport kelvin.json\nscreenshot temperature.png\ncommand temperature.txt\n"
+        "show flux\nreport flux.json\nscreenshot flux.png\ncommand flux.txt\n"
+        "set reflectance 0.5 lamp at 700 K\nshow temperature\nreport other.json\n"
+        "set temperature 400 ceiling\nreport cool.json\nset reflectance 0.1 lamp at 700 K\n"
+        "show flux\nreport cool_flux.json\n",
+        options);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    REQUIRE(place.run(fmt::format("'{}' heat room.json --device osmesa --preset fast --resolution 32 --json",
+                                  HEMI_PROGRAM)) == 0);
+    const auto table = place.json("out.txt");
+    // Every wall has 36 patches of one area; of temperatures the mean is that of the fourth power.
+    const auto mean = [&](const nlohmann::json& report, std::size_t wall, double power) {
+        double sum = 0.0;
+        for (std::size_t i = 36 * wall; i < 36 * (wall + 1); ++i) {
+            sum += std::pow(report["values"][i].get<double>(), power) / 36.0;
+        }
+        return std::pow(sum, 1.0 / power);
+    };
+    for (std::size_t wall = 0; wall < 5; ++wall) {
+        CHECK(mean(place.json("kelvin.json"), wall, 4.0) == Approx(table["temperature"][wall].get<double>()));
+        CHECK(mean(place.json("flux.json"), wall, 1.0) ==
+              Approx(table["net_flux"][wall].get<double>()).margin(1e-6));
+    }
+    CHECK(place.json("kelvin.json")["unit"] == "K");
+    CHECK(place.json("cool.json")["values"][40] == 400.0);
+    REQUIRE(place.run(fmt::format("'{}' heat room.json --device osmesa --preset fast --resolution 32 --json "
+                                  "--temperature ceiling=400",
+                                  HEMI_PROGRAM)) == 0);
+    const auto cool = place.json("out.txt");
+    for (std::size_t wall = 0; wall < 5; ++wall) {
+        CHECK(mean(place.json("cool_flux.json"), wall, 1.0) ==
+              Approx(cool["net_flux"][wall].get<double>()).margin(1e-6));
+    }
+    for (std::size_t i = 36; i < 72; ++i) { // the ceiling's light follows, too; it is warmed by nothing but
+        CHECK(place.json("cool_flux.json")["radiosity"][i][0].get<double>() >= // itself and its reflection
+              Approx(0.9 * 5.670374419e-8 * std::pow(400.0, 4.0)));
+    }
+    CHECK(place.view("set temperature 400 left\n", options) == 2);
+    CHECK(place.view("set temperature 400 ceiling\nsave-result a.hres\n", options) == 2);
+    // A ceiling that emits less warms the walls less.
+    CHECK(place.json("other.json")["values"][80].get<double>() <
+          place.json("kelvin.json")["values"][80].get<double>() - 10.0);
+    for (const std::string name : {"temperature", "flux"}) {
+        const std::string command = place.read(name + ".txt");
+        INFO(command);
+        CHECK(command.starts_with("hemi heat room.json "));
+        place.write("draw.sh", command);
+        REQUIRE(run_in_shell(place, "draw.sh") == 0);
+        CHECK(place.read("room.png") == place.read(name + ".png"));
+    }
+    CHECK(place.view("set reflectance 0.1 red\nshow flux\ncommand a.txt\n", options) == 2);
 }

@@ -25,7 +25,8 @@ struct FalseColours {
 
 /// Draws values as draw_picture() draws light, in the colours of a map. The legend is in the lower left of
 /// `srgb` where there is room for it, from 200 pixels of width and 160 of height on; `linear` has the colours
-/// alone. < and > at its ends say that there are values beyond.
+/// alone. < and > at its ends say that there are values beyond. W/m² are told as kW/m² where there are 10,000
+/// or more.
 /// @param mesh      its patches
 /// @param shown     values of all of them
 /// @param camera    as in draw_picture()

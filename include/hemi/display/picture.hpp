@@ -46,6 +46,8 @@ struct PictureSettings {
     /// Show the backs of one-sided surfaces, striped; else one looks through them. Nothing radiates from
     /// them.
     bool backs = false;
+    /// Shown where no surface is, sRGB; none: the environment, or a dark neutral grey where there is none.
+    std::optional<std::array<std::uint8_t, 3>> background;
 };
 
 /// Radiosity prepared for drawing: three linear sRGB channels a patch corner and a patch.
@@ -71,6 +73,17 @@ struct PictureMesh {
                                             std::span<const double> blocked,
                                             std::array<std::uint32_t, 3> show,
                                             std::span<const float> vertices = {});
+
+/// A radiosity for pictures of scenes that nothing lights: as if light came from everywhere, a little more of
+/// it from one side, so that shapes can be told; black surfaces are dark grey. It is no result, and of the
+/// order of 1.
+/// @param mesh         its patches
+/// @param reflectance  channel c of patch i at [i·channels + c]
+/// @param channels     of the reflectance and of the radiosity
+/// @param up           Scene::up; more comes from above
+/// @throws InvalidArgument for another number of values
+[[nodiscard]] std::vector<double> even_light(const PatchMesh& mesh, std::span<const double> reflectance,
+                                             std::uint32_t channels, UpAxis up = UpAxis::z);
 
 /// Exposure that suits a scene: from the area-weighted distribution of luminance over patches that are not
 /// lamps and not covered. Deterministic. 1 if all is dark.

@@ -75,7 +75,8 @@ void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mes
                          std::span<const double> errors = {}, const PatchPlaces& left = {},
                          std::span<const double> direct = {});
 /// The same of a stored solution: one line a patch of the surfaces as they were read, with means over what is
-/// left of it.
+/// left of it; then reflectance_C and emissivity_C, environment, blocked and row_sum, and, where the error
+/// has parts, error_factors_C and error_patch_size_C.
 void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& result);
 
 } // namespace hemi::io

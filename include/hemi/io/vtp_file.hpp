@@ -44,8 +44,9 @@ void write_points_vtp(const std::filesystem::path& path, std::span<const Vec3> p
 void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
                        std::span<const CellArray> arrays, const PatchPlaces& left = {});
 
-/// What a stored solution knows of its patches: row balance, radiosity, irradiance, exitance, reflectance,
-/// and estimated errors where there are any.
+/// What a stored solution knows of its patches, by the words of Quantity ("_" for "-"): row balance,
+/// radiosity, irradiance, direct, exitance, reflectance, emissivity, and estimated errors where there are
+/// any; but "row_error" is the estimated error of the row.
 /// @param result  what is shown
 /// @param mesh    its patches
 [[nodiscard]] std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh& mesh);

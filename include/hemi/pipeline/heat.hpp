@@ -4,6 +4,7 @@
 #include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/settings.hpp"
 #include "hemi/scene/patch_mesh.hpp"
+#include "hemi/solver/solution.hpp"
 
 #include <array>
 #include <cstdint>
@@ -89,6 +90,15 @@ struct HeatSolution {
 ///   a power is that of buried patches only; NotConverged; Cancelled
 [[nodiscard]] HeatSolution solve_heat(const FormFactors& factors, const HeatProblem& problem,
                                       const HeatSettings& settings = {}, Observer& observer = no_observer());
+
+/// What solve_heat() found, as patch_quantity() takes it: radiosity J, irradiance G, exitance J - (1 - eps)
+/// G, temperature, net flux and the rows' balance. What buried patches have is not a number.
+/// @param factors   as in solve_heat()
+/// @param problem   as in solve_heat()
+/// @param solution  of the problem
+/// @param channels  of the scene: one for every band, or equal ones of a grey problem
+[[nodiscard]] Solution heat_as_solution(const FormFactors& factors, const HeatProblem& problem,
+                                        const HeatSolution& solution, std::uint32_t channels);
 
 /// What is known of a group: means over the area that is not buried; not a number where all is, but for the
 /// emissivity, which is none of a group without patches.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,18 @@ namespace hemi {
 [[nodiscard]] std::array<float, 3> shown_environment(const Scene& scene,
                                                      const std::array<std::uint32_t, 3>& show);
 
+/// Whether no light leaves any surface, nor comes from the environment. A picture of such a scene shows it by
+/// even_light().
+/// @param radiosity    of all patches and channels
+/// @param environment  Scene::environment
+[[nodiscard]] bool is_dark(std::span<const double> radiosity, std::span<const double> environment);
+
+/// Whether as much light leaves all surfaces, within 1e-4 of it and but for buried patches.
+[[nodiscard]] bool is_uniform(const Solution& solution);
+
+/// A sentence on light of which a picture shows little: is_dark(), or is_uniform(). Empty for others.
+[[nodiscard]] std::string light_note(const Scene& scene, const Solution& solution);
+
 /// How a solution is drawn.
 struct DrawSettings {
     PictureSettings picture;        ///< size, shading …; its exposure counts unless it is automatic
@@ -38,10 +51,11 @@ struct DrawSettings {
 
 /// A picture and the exposure that it was drawn with.
 struct DrawnPicture {
-    Picture picture;       ///< pixels
-    double exposure = 1.0; ///< that was used
+    Picture picture;         ///< pixels
+    double exposure = 1.0;   ///< that was used
+    bool evenly_lit = false; ///< `picture.srgb` shows even_light(), since there is no other
 };
-/// Draws a solution offscreen.
+/// Draws a solution offscreen; where is_dark(), by even_light().
 /// @param scene     channels, environment, camera
 /// @param mesh      its patches
 /// @param solution  radiosity, exitance and back-face shares are used

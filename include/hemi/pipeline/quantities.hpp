@@ -28,6 +28,8 @@ enum class Quantity {
     error_factors,    ///< the part of it that comes from the form factors
     error_patch_size, ///< the part that comes from the patches' size
     area,             ///< scene units squared
+    temperature,      ///< K, where heat was solved for
+    net_flux,         ///< of radiation, leaving positive, W/m², likewise
 };
 
 /// Words of Quantity.
@@ -46,7 +48,9 @@ struct Names<Quantity> {
                                                      {Quantity::error, "error"},
                                                      {Quantity::error_factors, "error-factors"},
                                                      {Quantity::error_patch_size, "error-patch-size"},
-                                                     {Quantity::area, "area"}};
+                                                     {Quantity::area, "area"},
+                                                     {Quantity::temperature, "temperature"},
+                                                     {Quantity::net_flux, "flux"}};
 };
 
 /// What a quantity is called.
@@ -58,6 +62,12 @@ struct Names<Quantity> {
 /// Whether a quantity is an estimated error.
 [[nodiscard]] bool is_error(Quantity quantity);
 
+/// Whether a quantity is found by solve_heat() alone.
+[[nodiscard]] bool is_of_heat(Quantity quantity);
+
+/// Temperatures in °C in place of K; other quantities stay as they are. Before a range is set.
+void show_in_celsius(FalseColours& shown);
+
 /// Refuses what patch_quantity() cannot take for a channel.
 /// @throws InvalidArgument
 void check_channel(const std::vector<std::string>& channels, const std::string& channel);
@@ -65,7 +75,8 @@ void check_channel(const std::vector<std::string>& channels, const std::string& 
 /// A quantity of every patch. Of several channels there is one value: that of a named channel, the "sum", the
 /// "luminance" (0.2126 red + 0.7152 green + 0.0722 blue, IEC 61966-2-1; of channels with these names), or, by
 /// "mean", the mean. Patches under other geometry, and such whose row was not computed, have none. The range
-/// of radiosities is that of surfaces without exitance, where there are such and any with one is brighter.
+/// of radiosities is that of surfaces without exitance, where there are such and any with one is brighter;
+/// that of radiosities and irradiances that are the same everywhere, within 1e-4, lies 1 % about them.
 /// @param quantity  which one
 /// @param scene     gives channels and materials
 /// @param mesh      N patches

@@ -71,6 +71,10 @@ struct Solution {
     std::vector<double> irradiance; ///< H = F B + e B_env + D, N·channels; empty where it was not asked for
     std::vector<double> direct;     ///< D, what comes straight from sun and sky, N·channels; empty: neither
 
+    /// K, N; not a number where it is not known. Empty but of heat_as_solution(), as the next; not stored.
+    std::vector<double> temperature;
+    std::vector<double> net_flux; ///< over all channels, leaving positive, W/m², N; likewise
+
     /// B at the corners of the patches, gathered by rows of their own (see VertexGather): channel c of corner
     /// k of patch i at [(i·4 + k)·channels + c]. Empty: corners have means over the patches that meet there.
     std::vector<float> vertex_radiosity;

@@ -447,6 +447,21 @@ void add_render(CLI::App& app, RenderArguments& a) {
                "  hemi render room.hres -o light.png --show irradiance --range 0,500");
 }
 
+void add_diff(CLI::App& app, DiffArguments& a) {
+    add_positional(app, "FIRST", a.first, "stored solution: .hres");
+    add_positional(app, "SECOND", a.second, "another: differences are SECOND less FIRST");
+    Options output(app, "Output");
+    auto* picture = output.path("-o,--output", "PICTURE", a.picture.output,
+                                "differences in false colours, zero in the middle: .png; - on stdout");
+    output.path("--csv", "FILE.csv", a.csv, "both values and the difference of every patch; - for stdout");
+    add_difference_picture(app, a.picture, picture);
+    add_device(app, a.device, false);
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi diff day.hres evening.hres\n"
+               "  hemi diff coarse.hres fine.hres --show irradiance -o difference.png --range=-50,50");
+}
+
 #ifdef HEMI_WITH_VIEWER
 void add_view(CLI::App& app, ViewArguments& a) {
     add_scene(app, a.scene, "SCENE|RESULT", ".hres");
@@ -619,6 +634,7 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
     add_command(app, "points", "Irradiance, view of the sky and radiant temperature at points", add_points,
                 chosen);
     add_command(app, "render", "Picture of a stored solution", add_render, chosen);
+    add_command(app, "diff", "Two stored solutions compared, by group and as a picture", add_diff, chosen);
 #ifdef HEMI_WITH_VIEWER
     add_command(app, "view", "Window with an orbiting camera", add_view, chosen);
 #endif
@@ -657,7 +673,7 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
         if (commands.empty()) {
             const Words rest = app.remaining();
             if (rest.empty()) {
-                throw InvalidArgument("a command is missing (see `hemi --help`)");
+                refuse_no_command(app);
             }
             throw InvalidArgument(
                 fmt::format("unexpected '{}' before the command (see `hemi --help`)", rest.front()));

@@ -69,12 +69,14 @@ struct PictureOptions {
     bool backs = false;
     bool orthographic = false;
     std::uint32_t samples = 4;
+    std::optional<std::array<std::uint8_t, 3>> background; ///< sRGB; none: the environment
     std::vector<std::string> show;    ///< channel names; empty: all of one or three channels
     std::optional<Quantity> quantity; ///< is shown in false colours instead of light
     std::string channel = "mean";     ///< of the quantity
     std::optional<std::array<double, 2>> range;
     ColourMap map = ColourMap::viridis;
     bool logarithmic = false;
+    bool celsius = false; ///< of temperatures
     bool legend = true;
     std::vector<std::string> of_quantities; ///< options given that only they have
     std::optional<CameraOption> camera;
@@ -141,24 +143,9 @@ struct TradeArguments {
     double budget = 60.0; ///< seconds
 };
 
-/// What a picture of heat shows.
-enum class HeatShown { temperature, flux };
-} // namespace hemi::cli
-
-/// Words of HeatShown.
-template <>
-struct hemi::Names<hemi::cli::HeatShown> {
-    static constexpr NamedValue<cli::HeatShown> table[] = {{cli::HeatShown::temperature, "temperature"},
-                                                           {cli::HeatShown::flux, "flux"}};
-};
-
-namespace hemi::cli {
-
 /// In false colours; the picture's path is that of the command's output.
 struct HeatPicture {
     PictureOptions picture;
-    HeatShown shown = HeatShown::temperature;
-    bool celsius = false;
     std::vector<std::string> options; ///< names of all that only pictures have
 };
 
@@ -217,6 +204,15 @@ struct RenderArguments {
     std::string device = "auto";
 };
 
+struct DiffArguments {
+    CommonOptions common;
+    std::filesystem::path first;  ///< .hres
+    std::filesystem::path second; ///< .hres
+    PictureOptions picture;       ///< of a quantity
+    std::optional<std::filesystem::path> csv;
+    std::string device = "auto";
+};
+
 struct ViewArguments {
     CommonOptions common;
     SceneOptions scene;
@@ -258,12 +254,13 @@ struct DevicesArguments {
     CommonOptions common;
 };
 
-using Arguments = std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments,
-                               HeatArguments, ExchangeArguments, PointsArguments, RenderArguments,
+using Arguments =
+    std::variant<SolveArguments, FactorsArguments, CheckArguments, TradeArguments, HeatArguments,
+                 ExchangeArguments, PointsArguments, RenderArguments, DiffArguments,
 #ifdef HEMI_WITH_VIEWER
-                               ViewArguments,
+                 ViewArguments,
 #endif
-                               BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+                 BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
 
 /// Text that was asked for instead of work: help or the version.
 struct Answer {

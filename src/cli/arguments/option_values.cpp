@@ -144,9 +144,15 @@ std::uint64_t parse_memory(std::string_view option, const std::string& text) {
 }
 
 std::array<std::uint32_t, 2> parse_picture_size(std::string_view option, const std::string& text) {
+    if (text == "HD" || text == "hd") {
+        return {1920, 1080};
+    }
+    if (text == "4K" || text == "4k") {
+        return {3840, 2160};
+    }
     const std::size_t cross = text.find('x');
     if (cross == std::string::npos) {
-        refuse(option, text, "WIDTHxHEIGHT in pixels, such as 800x600");
+        refuse(option, text, "WIDTHxHEIGHT in pixels, such as 800x600, or HD or 4K");
     }
     std::array<std::uint32_t, 2> size{};
     const std::array<std::string, 2> parts{text.substr(0, cross), text.substr(cross + 1)};
@@ -159,6 +165,30 @@ std::array<std::uint32_t, 2> parse_picture_size(std::string_view option, const s
         }
     }
     return size;
+}
+
+std::array<std::uint8_t, 3> parse_colour(std::string_view option, const std::string& text) {
+    constexpr std::uint8_t middle = 0x80;
+    if (text == "black") {
+        return {0, 0, 0};
+    }
+    if (text == "white") {
+        return {255, 255, 255};
+    }
+    if (text == "grey") {
+        return {middle, middle, middle};
+    }
+    std::array<std::uint8_t, 3> colour{};
+    bool sound = text.size() == 7 && text[0] == '#';
+    for (std::size_t c = 0; c < 3 && sound; ++c) {
+        const char* const first = text.data() + 1 + 2 * c;
+        const auto [end, problem] = std::from_chars(first, first + 2, colour[c], 16);
+        sound = problem == std::errc{} && end == first + 2;
+    }
+    if (!sound) {
+        refuse(option, text, "environment, black, white, grey, or a colour as #RRGGBB");
+    }
+    return colour;
 }
 
 std::vector<std::string> parse_list(const std::string& text) {

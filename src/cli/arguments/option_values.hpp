@@ -28,9 +28,11 @@ namespace hemi::cli {
 [[nodiscard]] double parse_duration(std::string_view option, const std::string& text);
 /// Memory: a number and K, M, G or T (powers of 1024, as KiB …), KB, MB … (powers of 1000), or bytes.
 [[nodiscard]] std::uint64_t parse_memory(std::string_view option, const std::string& text);
-/// WIDTHxHEIGHT in pixels, each 1 to 16384.
+/// WIDTHxHEIGHT in pixels, each 1 to 16384; HD is 1920x1080, 4K is 3840x2160.
 [[nodiscard]] std::array<std::uint32_t, 2> parse_picture_size(std::string_view option,
                                                               const std::string& text);
+/// A colour: black, white, grey or #RRGGBB, sRGB.
+[[nodiscard]] std::array<std::uint8_t, 3> parse_colour(std::string_view option, const std::string& text);
 /// Comma-separated words.
 [[nodiscard]] std::vector<std::string> parse_list(const std::string& text);
 

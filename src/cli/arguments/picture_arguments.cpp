@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace hemi::cli {
 
@@ -19,7 +21,8 @@ std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture, Scen
     std::vector<CLI::Option*> added;
     Options options(app, "Picture");
     added.push_back(options.value(
-        "--size", "WxH", fmt::format("size in pixels ({}x{})", picture.size[0], picture.size[1]),
+        "--size", "WxH",
+        fmt::format("size in pixels, or HD, or 4K ({}x{})", picture.size[0], picture.size[1]),
         [&picture](const std::string& text) { picture.size = parse_picture_size("--size", text); }));
     added.push_back(options.value(
         "--camera", "EYE:TARGET[:UP][:FOV]", "camera, such as 0,-3,1:0,0,1:0,0,1:40 (scene units, degrees)",
@@ -43,6 +46,15 @@ std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture, Scen
     for (const char* name : {"--orthographic", "--outlines", "--backs"}) {
         added.push_back(app.get_option(name));
     }
+    added.push_back(
+        options.value("--background", "COLOUR",
+                      "where no surface is: environment (the default), black, white, grey or #RRGGBB",
+                      [&picture](const std::string& text) {
+                          picture.background.reset();
+                          if (text != "environment") {
+                              picture.background = parse_colour("--background", text);
+                          }
+                      }));
     added.push_back(options.value("--samples", "N", "supersamples along each edge of a pixel, 1 to 8 (4)",
                                   [&picture](const std::string& text) {
                                       picture.samples =
@@ -51,16 +63,28 @@ std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture, Scen
     return added;
 }
 
-std::string quantity_words() {
-    std::string words;
+/// @param known  whether a quantity is one of them
+std::vector<std::string> quantity_words(bool (*known)(Quantity)) {
+    std::vector<std::string> words;
     for (const auto& [quantity, word] : Names<Quantity>::table) {
-        words += fmt::format("{}{}", words.empty() ? "" : ", ", word);
+        if (known(quantity)) {
+            words.emplace_back(word);
+        }
     }
     return words;
 }
 
+bool is_of_light(Quantity quantity) {
+    return !is_of_heat(quantity);
+}
+
+/// `heat` estimates errors of groups, not of patches.
+bool is_known_of_heat(Quantity quantity) {
+    return !is_error(quantity);
+}
+
 /// How quantities are shown in false colours. @return all of them
-std::vector<CLI::Option*> add_quantities(CLI::App& app, PictureOptions& picture) {
+std::vector<CLI::Option*> add_quantities(CLI::App& app, PictureOptions& picture, bool logarithmic = true) {
     std::vector<CLI::Option*> added;
     Options options(app, "Picture");
     const auto given = [&picture](const char* name) { picture.of_quantities.emplace_back(name); };
@@ -80,15 +104,17 @@ std::vector<CLI::Option*> add_quantities(CLI::App& app, PictureOptions& picture)
             picture.range = {parse_number("--range", ends[0]), parse_number("--range", ends[1])};
             given("--range");
         }));
-    added.push_back(options.choice<ColourMap>("--map", "NAME",
-                                              "viridis (the default), inferno, turbo, cool-warm or grey",
-                                              [&picture, given](ColourMap map) {
-                                                  picture.map = map;
-                                                  given("--map");
-                                              }));
-    options.flag("--log", picture.logarithmic, "equal steps of colour are equal ratios");
+    added.push_back(options.choice<ColourMap>(
+        "--map", "NAME", fmt::format("viridis, inferno, turbo, cool-warm or grey ({})", to_word(picture.map)),
+        [&picture, given](ColourMap map) {
+            picture.map = map;
+            given("--map");
+        }));
+    if (logarithmic) {
+        options.flag("--log", picture.logarithmic, "equal steps of colour are equal ratios");
+        added.push_back(app.get_option("--log"));
+    }
     options.flag("--no-legend", picture.legend, "no legend in the picture", false);
-    added.push_back(app.get_option("--log"));
     added.push_back(app.get_option("--no-legend"));
     return added;
 }
@@ -102,7 +128,7 @@ std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool
         "--show", quantities ? "A,B,C|QUANTITY" : "A,B,C",
         quantities
             ? fmt::format("channels shown as red, green, blue; or one, as grey; or in false colours: {}",
-                          quantity_words())
+                          fmt::join(quantity_words(is_of_light), ", "))
             : "channels shown as red, green, blue; or one, as grey",
         [&picture, quantities](const std::string& text) {
             picture.show = parse_list(text);
@@ -153,14 +179,45 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bo
     }
 }
 
+void add_difference_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
+    picture.quantity = Quantity::radiosity;
+    picture.map = ColourMap::cool_warm;
+    const std::vector<std::string> known = quantity_words(is_of_light);
+    Options(app, "Picture")
+        .value("--show", "QUANTITY",
+               fmt::format("quantity that is compared (radiosity): {}", fmt::join(known, ", ")),
+               [&picture, known](const std::string& text) {
+                   picture.quantity = from_word<Quantity>(known[parse_choice("--show", text, known)]);
+               })
+        ->type_name(fmt::format("{}", fmt::join(known, "|")));
+    std::vector<CLI::Option*> added = add_drawn(app, picture, nullptr);
+    const std::vector<CLI::Option*> of_quantities = add_quantities(app, picture, false);
+    added.insert(added.end(), of_quantities.begin(), of_quantities.end());
+    for (CLI::Option* option : added) {
+        if (option->get_name() != "--channel") {
+            option->needs(output);
+        }
+    }
+}
+
 std::vector<std::string> add_heat_picture(CLI::App& app, HeatPicture& picture, CLI::Option* output,
                                           SceneOptions& scene) {
     Options options(app, "Picture");
     std::vector<CLI::Option*> added = add_drawn(app, picture.picture, &scene);
-    added.push_back(options.choice<HeatShown>(
-        "--show", "NAME", "temperature (the default) or flux, the net flux leaving positive",
-        [&picture](HeatShown value) { picture.shown = value; }));
-    options.flag("--celsius", picture.celsius, "temperatures of the picture's legend in °C instead of K");
+    picture.picture.quantity = Quantity::temperature;
+    const std::vector<std::string> known = quantity_words(is_known_of_heat);
+    added.push_back(options.value(
+        "--show", "QUANTITY",
+        fmt::format("temperature (the default), flux (net, leaving positive), or another of: {}",
+                    fmt::join(known, ", ")),
+        [&picture, known](const std::string& text) {
+            picture.picture.quantity = from_word<Quantity>(known[parse_choice("--show", text, known)]);
+        }));
+    added.back()->type_name(fmt::format("{}", fmt::join(known, "|")));
+    const std::vector<CLI::Option*> of_quantities = add_quantities(app, picture.picture);
+    added.insert(added.end(), of_quantities.begin(), of_quantities.end());
+    options.flag("--celsius", picture.picture.celsius,
+                 "temperatures of the picture's legend and range in °C instead of K");
     added.push_back(app.get_option("--celsius"));
     std::vector<std::string> names;
     for (CLI::Option* option : added) {

@@ -25,6 +25,9 @@ void add_gather(CLI::App& app, Gather& gather);
 /// @param scene       that is read for it, none: a stored result
 void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bool quantities,
                  SceneOptions* scene);
+/// The quantity that is compared, and all of a picture of its difference.
+/// @param output  the option without which a picture's make no sense
+void add_difference_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output);
 /// All of a picture of heat.
 /// @param output  the option without which these make no sense
 /// @param scene   that is read for it

@@ -21,6 +21,14 @@ std::vector<std::string> option_names(const CLI::App& app) {
     return names;
 }
 
+void refuse_no_command(const CLI::App& app) {
+    std::string message = "a command is missing (see `hemi --help`):";
+    for (const CLI::App* command : app.get_subcommands({})) {
+        message += fmt::format("\n  {:<9} {}", command->get_name(), command->get_description());
+    }
+    throw InvalidArgument(message);
+}
+
 void refuse_command(const CLI::App& app, const std::string& word) {
 #ifndef HEMI_WITH_VIEWER
     if (word == "view") {

@@ -16,6 +16,9 @@ namespace hemi::cli {
 /// Long names of a command's own options, "--" included, in the order of its help.
 [[nodiscard]] std::vector<std::string> option_names(const CLI::App& app);
 
+/// No word at all: lists the commands.
+[[noreturn]] void refuse_no_command(const CLI::App& app);
+
 /// A word that is no command.
 [[noreturn]] void refuse_command(const CLI::App& app, const std::string& word);
 

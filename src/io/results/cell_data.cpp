@@ -36,17 +36,21 @@ std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh
         arrays.push_back({"direct", solution.direct, names});
     }
     arrays.push_back({"exitance", patch_values(mesh, result.scene.materials, &Material::exitance), names});
-    arrays.push_back(
-        {"reflectance", patch_values(mesh, result.scene.materials, &Material::reflectance), names});
+    std::vector<double> reflectance = patch_values(mesh, result.scene.materials, &Material::reflectance);
+    arrays.push_back({"reflectance", reflectance, names});
+    for (double& value : reflectance) {
+        value = 1.0 - value;
+    }
+    arrays.push_back({"emissivity", std::move(reflectance), names});
     if (solution.factor_error) {
         arrays.push_back({"row_error", solution.factor_error->rows, {}});
     }
     if (solution.error) {
-        arrays.push_back({"radiosity_error", radiosity_errors(solution), names});
+        arrays.push_back({"error", radiosity_errors(solution), names});
     }
     if (solution.error && solution.patch_size_error) {
-        arrays.push_back({"radiosity_error_factors", solution.error->patches, names});
-        arrays.push_back({"radiosity_error_patch_size", solution.patch_size_error->patches, names});
+        arrays.push_back({"error_factors", solution.error->patches, names});
+        arrays.push_back({"error_patch_size", solution.patch_size_error->patches, names});
     }
     add_patch_of(result.parts, arrays);
     return arrays;

@@ -6,7 +6,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 namespace hemi::io {
 
@@ -45,6 +48,11 @@ private:
     std::span<const Vec3> centres_;
     std::vector<std::string> groups_;
 };
+
+/// What there is one of for all channels.
+bool is_share_of_row(std::string_view name) {
+    return name == "environment" || name == "blocked" || name == "row_sum";
+}
 
 } // namespace
 
@@ -154,26 +162,37 @@ void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mes
 }
 
 void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& result) {
+    constexpr std::array<const char*, 12> columns{
+        "exitance",   "irradiance",  "radiosity", "error",   "direct",        "reflectance",
+        "emissivity", "environment", "blocked",   "row_sum", "error_factors", "error_patch_size"};
     const PatchMesh mesh(result.scene, result.subdivision);
     const std::vector<std::string>& channels = result.scene.channels;
-    const Solution& solution = result.solution;
-    const std::vector<double> exitance = solution.exitance.empty()
-                                             ? patch_values(mesh, result.scene.materials, &Material::exitance)
-                                             : solution.exitance;
-    const std::vector<double> errors = radiosity_errors(solution);
+    std::vector<CellArray> known = solution_arrays(result, mesh);
+    std::vector<CellArray> arrays;
+    for (const char* const name : columns) {
+        const auto found = std::find_if(known.begin(), known.end(),
+                                        [name](const CellArray& array) { return name == array.name; });
+        if (found == known.end()) {
+            continue;
+        }
+        CellArray& array = arrays.emplace_back(std::move(*found));
+        if (!is_share_of_row(name)) {
+            array.components = channels;
+        }
+        if (array.name == "exitance" && !result.solution.exitance.empty()) {
+            array.values = result.solution.exitance;
+        }
+        if (result.parts.any()) {
+            array.values = means_of_patches(result.parts, mesh.areas(), array.values,
+                                            std::max<std::size_t>(array.components.size(), 1));
+        }
+    }
     if (!result.parts.any()) {
-        write_radiosity_csv(path, mesh, channels, exitance, solution.irradiance, solution.radiosity, errors,
-                            {}, solution.direct);
+        write_patch_table(path, mesh, arrays);
         return;
     }
     const PatchMesh as_read(result.scene_as_read());
-    const auto means = [&](const std::vector<double>& values) {
-        return values.empty() ? values
-                              : means_of_patches(result.parts, mesh.areas(), values, channels.size());
-    };
-    write_radiosity_csv(path, as_read, channels, means(exitance), means(solution.irradiance),
-                        means(solution.radiosity), means(errors), places_left(as_read, mesh, result.parts),
-                        means(solution.direct));
+    write_patch_table(path, as_read, arrays, places_left(as_read, mesh, result.parts));
 }
 
 } // namespace hemi::io
