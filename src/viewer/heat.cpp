@@ -24,7 +24,15 @@ double of_band(const std::vector<double>& values, std::uint32_t i, std::uint32_t
     return sum / channels;
 }
 
+/// Patches may have been cut since.
+bool is_of_these_patches(const ViewerInput& input) {
+    return input.heat->condition_of.size() == input.mesh->size();
+}
+
 HeatProblem problem_of(const ViewerInput& input, const Light& light) {
+    if (!is_of_these_patches(input)) {
+        throw InvalidArgument("what the scene says of heat is of other patches than these");
+    }
     HeatProblem problem = *input.heat;
     if (!light.conditions.empty()) {
         problem.conditions = light.conditions;
@@ -62,7 +70,7 @@ std::vector<std::string> condition_names(const ViewerInput& input) {
     const PatchMesh& mesh = *input.mesh;
     std::vector<std::string> names(input.heat->conditions.size());
     std::vector<std::uint32_t> last(names.size(), no_heat);
-    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+    for (std::uint32_t i = 0; i < mesh.size() && is_of_these_patches(input); ++i) {
         const std::uint32_t condition = input.heat->condition_of[i];
         if (condition == no_heat || last[condition] == mesh.group(i)) {
             continue;
@@ -79,9 +87,12 @@ std::vector<std::string> condition_names(const ViewerInput& input) {
 }
 
 void radiate_by_conditions(const ViewerInput& input, Light& light) {
+    if (light.conditions.empty() || !is_of_these_patches(input)) {
+        return;
+    }
     const HeatProblem& heat = *input.heat;
     const std::size_t channels = input.channels();
-    for (std::uint32_t i = 0; i < input.mesh->size() && !light.conditions.empty(); ++i) {
+    for (std::uint32_t i = 0; i < input.mesh->size(); ++i) {
         const std::uint32_t condition = heat.condition_of[i];
         if (condition == no_heat || !heat.conditions[condition].temperature ||
             heat.conditions[condition].temperature == light.conditions[condition].temperature) {

@@ -14,7 +14,8 @@ namespace {
 void set_temperature(const SetCommand& set, const ViewerInput& input, Choices& choices) {
     const PatchMesh& mesh = *input.mesh;
     bool found = false;
-    for (std::uint32_t i = 0; i < mesh.size() && input.heat != nullptr; ++i) {
+    const bool known = input.heat != nullptr && input.heat->condition_of.size() == mesh.size();
+    for (std::uint32_t i = 0; i < mesh.size() && known; ++i) {
         const std::uint32_t condition = input.heat->condition_of[i];
         if (mesh.groups()[mesh.group(i)] == set.name && condition != no_heat &&
             choices.conditions[condition].temperature) {
