@@ -39,7 +39,7 @@ const std::vector<std::string>& window_options() {
 
 /// Options that `hemi heat` does not have.
 const std::vector<std::string>& of_light_alone() {
-    static const std::vector<std::string> names{"--solver", "--tolerance", "--gather"};
+    static const std::vector<std::string> names{"--solver", "--tolerance", "--gather", "--environment"};
     return names;
 }
 
