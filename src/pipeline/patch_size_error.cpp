@@ -10,6 +10,7 @@
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/solver/solver.hpp"
 #include "pipeline/corner_interpolation.hpp"
+#include "pipeline/error_sample.hpp"
 #include "pipeline/group_importance.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
@@ -45,94 +46,6 @@ std::uint64_t bytes_of(std::uint64_t rows, std::uint64_t columns) {
     return rows * columns * pair + columns * patch;
 }
 
-/// A patch of the sample, with how many of its kind it stands for.
-struct Drawn {
-    std::uint32_t patch;
-    double weight;
-};
-
-/// Draws about `count` of `patches` with probabilities that go like `importance`, spread over them in order.
-std::vector<Drawn> draw_sample(const std::vector<std::uint32_t>& patches,
-                               const std::vector<double>& importance, double count) {
-    const double total = std::accumulate(importance.begin(), importance.end(), 0.0);
-    std::vector<Drawn> sample;
-    double sum = 0.5;
-    for (std::size_t k = 0; k < patches.size(); ++k) {
-        const double probability = std::min(1.0, count * importance[k] / total);
-        sum += probability;
-        if (sum >= 1.0) {
-            sum -= 1.0;
-            sample.push_back({patches[k], 1.0 / probability});
-        }
-    }
-    return sample;
-}
-
-/// Errors at quarters of patches, with the areas they stand for.
-class Errors {
-public:
-    void add(double error, double area) { errors_.push_back({std::abs(error), area}); }
-    /// A patch of the sample is complete: what it adds to the variance of squares().
-    /// @param weight  how many patches it stands for
-    /// @param square  what it added to squares(), with that weight
-    void end_patch(double weight, double square) { variance_ += (weight - 1.0) / weight * square * square; }
-
-    /// Sum of their squares times areas.
-    [[nodiscard]] double squares() const {
-        double sum = 0.0;
-        for (const auto& [error, area] : errors_) {
-            sum += area * error * error;
-        }
-        return sum;
-    }
-
-    /// @param unit  what they are relative to
-    /// @param more  by which the mean square is more than that of these errors
-    [[nodiscard]] FieldError summary(double unit, double more) {
-        double total = 0.0;
-        for (const auto& [error, area] : errors_) {
-            total += area;
-        }
-        FieldError result;
-        if (!(total > 0.0)) {
-            return result;
-        }
-        std::sort(errors_.begin(), errors_.end());
-        result.rms = std::sqrt(more * squares() / total) / unit;
-        result.doubt = std::sqrt(more * (squares() + std::sqrt(variance_)) / total) / unit - result.rms;
-        double below = 0.0;
-        for (const auto& [error, area] : errors_) {
-            result.percentile95 = std::sqrt(more) * error / unit;
-            below += area;
-            if (below >= 0.95 * total) {
-                break;
-            }
-        }
-        return result;
-    }
-
-private:
-    std::vector<std::pair<double, double>> errors_;
-    double variance_ = 0.0; ///< of the sum of squares
-};
-
-/// A sum over all patches, from those of a sample.
-class SampledSum {
-public:
-    /// @param weight  how many of its kind the value stands for
-    void add(double value, double weight) {
-        sum_ += weight * value;
-        variance_ += weight * (weight - 1.0) * value * value;
-    }
-    /// The sum's magnitude and its standard error, together. What was drawn for certain has none; of others
-    /// the mean is taken to be 0, which is the safe side.
-    [[nodiscard]] double with_standard_error() const { return std::sqrt(sum_ * sum_ + variance_); }
-
-private:
-    double sum_ = 0.0;
-    double variance_ = 0.0;
-};
-
 class PatchSizeEstimator {
 public:
     PatchSizeEstimator(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
@@ -160,7 +73,7 @@ public:
 
     [[nodiscard]] std::optional<PatchSizeError> run(const FactorSettings& settings, Gather gather,
                                                     double effort, Observer& observer) {
-        const std::vector<Drawn> sample = draw(effort);
+        const std::vector<DrawnPatch> sample = draw(effort);
         const auto [fine, parents] = mesh_.split(all_patches(mesh_.size()), Cut::in_four);
         const std::vector<std::array<std::uint32_t, 4>> quarters = find_quarters(sample, parents);
         std::vector<std::uint32_t> rows;
@@ -189,8 +102,8 @@ public:
         near_ = patches_near_surfaces(mesh_);
         find_importance(bytes_of(rows.size(), fine.size()), settings, observer);
         find_variation(fine, parents);
-        std::vector<Errors> vertices(channels_);
-        std::vector<Errors> field(channels_);
+        std::vector<SampledErrors> vertices(channels_);
+        std::vector<SampledErrors> field(channels_);
         std::vector<SampledSum> groups(std::size_t{importance_.groups()} * channels_);
         std::vector<double> squares;
         for (std::size_t k = 0; k < sample.size(); ++k) {
@@ -257,7 +170,7 @@ private:
         }
     }
 
-    [[nodiscard]] std::vector<Drawn> draw(double effort) const {
+    [[nodiscard]] std::vector<DrawnPatch> draw(double effort) const {
         std::vector<double> importance;
         for (const std::uint32_t patch : patches_) {
             // The square root of what a patch is likely to add makes the sum's variance least.
@@ -270,13 +183,13 @@ private:
     }
 
     static std::vector<std::array<std::uint32_t, 4>>
-    find_quarters(const std::vector<Drawn>& sample, const std::vector<std::uint32_t>& parents) {
+    find_quarters(const std::vector<DrawnPatch>& sample, const std::vector<std::uint32_t>& parents) {
         std::vector<std::array<std::uint32_t, 4>> quarters(sample.size());
         std::vector<std::uint32_t> found(sample.size(), 0);
         for (std::uint32_t k = 0; k < parents.size(); ++k) {
-            const auto drawn =
-                std::lower_bound(sample.begin(), sample.end(), parents[k],
-                                 [](const Drawn& entry, std::uint32_t patch) { return entry.patch < patch; });
+            const auto drawn = std::lower_bound(
+                sample.begin(), sample.end(), parents[k],
+                [](const DrawnPatch& entry, std::uint32_t patch) { return entry.patch < patch; });
             if (drawn != sample.end() && drawn->patch == parents[k]) {
                 const auto index = static_cast<std::size_t>(drawn - sample.begin());
                 quarters[index][found[index]++ % 4] = k;
@@ -294,11 +207,11 @@ private:
                 means_.bend(patch, solution_, channel) + even * even};
     }
 
-    /// Errors of all patches that count, modelled: a sum of both signs, neither below 0, that agrees best
-    /// with the sample, relative to what the signs are there; then scaled to the sample's whole. Patches of
-    /// the sample have no less than was found there.
+    /// SampledErrors of all patches that count, modelled: a sum of both signs, neither below 0, that agrees
+    /// best with the sample, relative to what the signs are there; then scaled to the sample's whole. Patches
+    /// of the sample have no less than was found there.
     /// @param squares  of the sample: area means of the squared errors of every patch, channel by channel
-    [[nodiscard]] std::vector<double> model_patches(const std::vector<Drawn>& sample,
+    [[nodiscard]] std::vector<double> model_patches(const std::vector<DrawnPatch>& sample,
                                                     const std::vector<double>& squares) const {
         std::vector<double> result(std::size_t{mesh_.size()} * channels_, 0.0);
         for (std::uint32_t c = 0; c < channels_; ++c) {
@@ -361,9 +274,10 @@ private:
     }
 
     /// What the corners of the sample would show if all were gathered.
-    void gather_sample(const std::vector<Drawn>& sample, const FactorSettings& settings, Observer& observer) {
+    void gather_sample(const std::vector<DrawnPatch>& sample, const FactorSettings& settings,
+                       Observer& observer) {
         std::vector<std::uint32_t> patches;
-        for (const Drawn& drawn : sample) {
+        for (const DrawnPatch& drawn : sample) {
             patches.push_back(drawn.patch);
         }
         VertexGather vertices(mesh_, solution_.back_face_share, patches);
@@ -484,7 +398,7 @@ private:
         return light;
     }
 
-    /// Errors of the mean irradiance of the groups.
+    /// SampledErrors of the mean irradiance of the groups.
     /// @param sums  of A (G(s) - G_i) (h_i + rho_i z(s)) over the sample, see estimate_patch_size_error():
     /// channel c
     ///   of group g at [g·channels + c]
@@ -523,7 +437,7 @@ private:
         return errors;
     }
 
-    /// Errors of the sampled rows' irradiance, times area and importance: channel c of group g at
+    /// SampledErrors of the sampled rows' irradiance, times area and importance: channel c of group g at
     /// [g·channels + c].
     [[nodiscard]] std::vector<SampledSum> factor_error_sums() const {
         std::vector<SampledSum> sums(std::size_t{importance_.groups()} * channels_);
@@ -555,10 +469,10 @@ private:
         return std::binary_search(near_.begin(), near_.end(), patch) ? back_face_share : 0.0;
     }
 
-    void add_patch(const Drawn& drawn, const std::array<std::uint32_t, 4>& quarters, const PatchMesh& fine,
-                   const std::vector<std::uint32_t>& parents, const FormFactorMatrix& factors,
-                   std::vector<Errors>& vertices, std::vector<Errors>& field,
-                   std::vector<SampledSum>& groups) const {
+    void add_patch(const DrawnPatch& drawn, const std::array<std::uint32_t, 4>& quarters,
+                   const PatchMesh& fine, const std::vector<std::uint32_t>& parents,
+                   const FormFactorMatrix& factors, std::vector<SampledErrors>& vertices,
+                   std::vector<SampledErrors>& field, std::vector<SampledSum>& groups) const {
         const std::uint32_t patch = drawn.patch;
         std::array<std::vector<double>, 4> light;
         std::array<double, 4> seen{}; // area that nothing stands on

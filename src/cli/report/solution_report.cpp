@@ -88,7 +88,8 @@ std::string advice(const SolutionError& error, const PatchMesh& mesh) {
         return {};
     }
     std::string by = fmt::format("--error-target {:.2g}%", 50.0 * error.vertices.rms);
-    if (!mesh.cuts().any()) {
+    const PatchCuts cuts = mesh.cuts();
+    if (std::all_of(cuts.parts.begin(), cuts.parts.end(), [](const auto& parts) { return parts.empty(); })) {
         double area = 0.0;
         double size = 0.0; // mean over the area
         for (const double patch : mesh.areas()) {
