@@ -176,6 +176,10 @@ Report draw_heat(const HeatArguments& arguments, const LoadedScene& loaded, cons
     const auto channels = static_cast<std::uint32_t>(loaded.scene.channels.size());
     PictureOptions options = arguments.picture.picture;
     options.output = arguments.output;
+    const std::vector<std::string>& given = arguments.common.given;
+    if (problem.bands == channels && std::find(given.begin(), given.end(), "--channel") == given.end()) {
+        options.channel = "sum"; // bands are parts of one radiation
+    }
     return write_picture(loaded.scene, loaded.mesh, heat_as_solution(factors, problem, solution, channels),
                          options, arguments.rows.factors.engine.device);
 }
@@ -194,6 +198,9 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     seconds["load"] = loaded.seconds;
     if (lines) {
         give_temperatures(loaded.scene, *arguments.series, *lines);
+    }
+    if (arguments.output && is_picture(*arguments.output)) { // tested before the work
+        check_channel(loaded.scene.channels, arguments.picture.picture.channel);
     }
     TerminalObserver observer(terminal);
     HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);

@@ -197,6 +197,12 @@ CoarseMesh coarse_begin(const LoadedScene& loaded, const SceneOptions& options) 
                                                 : coarse_mesh(loaded.uncut(), options.imprint);
 }
 
+void check_budget(const RefinementOptions& refinement, const RowOptions& rows) {
+    if (refinement.budget > 0.0 && !refinement.asked(rows)) {
+        throw InvalidArgument("--budget needs --error-target or --refine, by which patches are cut");
+    }
+}
+
 void check_refinable(const Scene& scene) {
     if (scene.sun || scene.sky) {
         throw InvalidArgument("--refine and --error-target cut patches by the light that goes between them, "

@@ -88,6 +88,8 @@ struct CutMesh {
 };
 /// What refinement begins with: patches of the size that the command line asks for, or a coarse mesh.
 [[nodiscard]] CoarseMesh coarse_begin(const LoadedScene& loaded, const SceneOptions& options);
+/// @throws InvalidArgument if there is a budget for nothing
+void check_budget(const RefinementOptions& refinement, const RowOptions& rows);
 /// @throws InvalidArgument where the scene has what does not go together with patches that are cut
 void check_refinable(const Scene& scene);
 /// The mesh that the rows of a `.hff` are of: the scene's own, one that a refinement begins with, or one that

@@ -165,7 +165,8 @@ Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& 
         Report report = write_false_colours(
             scene, mesh, patch_quantity(*options.quantity, scene, mesh, solution, options.channel), options,
             device, to_word(*options.quantity));
-        if (*options.quantity == Quantity::radiosity && is_uniform(solution)) {
+        if (*options.quantity == Quantity::radiosity && is_uniform(solution) &&
+            !is_dark(solution.radiosity, scene.environment)) {
             report.add("light", light_note(scene, solution));
         }
         return report;

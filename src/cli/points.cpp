@@ -279,8 +279,8 @@ Lit light_of_result(const PointsArguments& arguments, Seconds& seconds,
     }
     refuse_all_but(arguments.common,
                    std::vector<std::string>{"--points", "--grid", "--spheres", "--output", "--by-group",
-                                            "--show", "--range", "--preset", "--resolution", "--shadow-rays",
-                                            "--seed", "--no-merge", "--device", "--jobs"},
+                                            "--show", "--range", "--no-legend", "--preset", "--resolution",
+                                            "--shadow-rays", "--seed", "--no-merge", "--device", "--jobs"},
                    path);
     const Stopwatch watch;
     const io::ResultFile result = io::read_hres(path);

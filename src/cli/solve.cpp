@@ -63,9 +63,7 @@ void check_input(const SolveArguments& arguments) {
         throw InvalidArgument(fmt::format("--show {} needs the estimate that --no-estimate leaves out",
                                           to_word(*arguments.picture.quantity)));
     }
-    if (arguments.refinement.budget > 0.0 && !arguments.refines()) {
-        throw InvalidArgument("--budget needs --error-target or --refine, by which patches are cut");
-    }
+    check_budget(arguments.refinement, arguments.rows);
     if (arguments.rows.error_target && !arguments.refines() && has_rows(arguments)) {
         throw InvalidArgument(fmt::format("--error-target chooses settings, but the rows of {} are there "
                                           "already; leave one out",

@@ -37,9 +37,17 @@ const std::vector<std::string>& window_options() {
     return names;
 }
 
+/// Options that say how patches are cut: rows that are stored have that.
+const std::vector<std::string>& of_refinement() {
+    static const std::vector<std::string> names{"--error-target", "--error-target-of", "--refine",
+                                                "--budget"};
+    return names;
+}
+
 /// Options that `hemi heat` does not have.
-const std::vector<std::string>& of_light_alone() {
-    static const std::vector<std::string> names{"--solver", "--tolerance", "--gather", "--environment"};
+std::vector<std::string> of_light_alone() {
+    std::vector<std::string> names = of_refinement();
+    names.insert(names.end(), {"--solver", "--tolerance", "--gather", "--environment"});
     return names;
 }
 
@@ -72,6 +80,13 @@ std::string given_options(const CommonOptions& common, const std::vector<std::st
         }
     }
     return text;
+}
+
+/// `--up`, where a sun or a sky goes by it.
+std::string upwards_option(const SceneOptions& options, const Scene& scene) {
+    return options.reader.up && (scene.sun || scene.sky)
+               ? fmt::format(" --up {}", to_word(*options.reader.up))
+               : "";
 }
 
 /// Reads what the window shows, as often as it wants to.
@@ -153,10 +168,9 @@ private:
         for (const std::filesystem::path& more : options.also) {
             input.command += " " + viewer::quoted(more.string());
         }
-        input.command += given_options(arguments_.common);
-        if (options.reader.up && (loaded->scene.sun || loaded->scene.sky)) {
-            input.command += fmt::format(" --up {}", to_word(*options.reader.up));
-        }
+        input.command +=
+            given_options(arguments_.common, factors.empty() ? std::vector<std::string>() : of_refinement());
+        input.command += upwards_option(options, loaded->scene);
         input.factor_settings = arguments_.rows.factors;
         input.solver = arguments_.solver;
         input.gather = arguments_.gather;
@@ -207,6 +221,7 @@ private:
     /// What the scene says of heat; where that cannot be solved for, the window shows light alone.
     void add_heat(SceneOptions options, viewer::ViewerInput& input) const {
         options.reader.adiabatic = true;
+        options.environment.clear();                               // which is of light
         LoadedScene thermal = load_scene(options, Terminal(true)); // which has told what there is to tell
         if (!input.factor_file.empty()) {
             adopt_mesh_of_rows(thermal, options, input.factor_file);
@@ -222,6 +237,7 @@ private:
             input.heat_command += " " + viewer::quoted(more.string());
         }
         input.heat_command += given_options(arguments_.common, of_light_alone());
+        input.heat_command += upwards_option(options, thermal.scene);
         if (!input.factor_file.empty()) {
             input.heat_command += " --factors " + viewer::quoted(input.factor_file.string());
         }
@@ -244,12 +260,13 @@ private:
 } // namespace
 
 ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
-    check_display();
+    check_budget(arguments.refinement, arguments.rows);
     if (arguments.rows.error_target && arguments.rows.error_of == ErrorOf::factors) {
         throw InvalidArgument(
             "--error-target-of factors: the window cuts patches until an error of vertices, "
             "field or groups is met; `hemi solve` chooses settings for form factors");
     }
+    check_display();
     const std::filesystem::path& path = arguments.scene.path;
     if (extension_of(path) == ".hres") {
         refuse_all_but(arguments.common, window_options(), path);

@@ -6,7 +6,6 @@
 #include "hemi/engine/engine.hpp"
 #include "hemi/io/image_file.hpp"
 #include "hemi/io/paths.hpp"
-
 #include "hemi/scene/light_unit.hpp"
 
 #include <fmt/format.h>

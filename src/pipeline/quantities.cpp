@@ -35,17 +35,12 @@ std::vector<double> channel_weights(const std::vector<std::string>& channels, co
         return weights;
     }
     if (wanted == "luminance") {
-        constexpr std::array<std::pair<const char*, double>, 3> parts{
-            {{"red", 0.2126}, {"green", 0.7152}, {"blue", 0.0722}}};
-        for (const auto& [name, weight] : parts) {
-            const auto found = std::find(channels.begin(), channels.end(), name);
-            if (found == channels.end()) {
-                throw InvalidArgument(
-                    fmt::format("luminance needs channels red, green and blue; the scene has {}",
-                                fmt::join(channels, ", ")),
-                    {"channel"});
-            }
-            weights[static_cast<std::size_t>(found - channels.begin())] = weight;
+        weights = luminance_weights(channels);
+        if (weights.empty()) {
+            throw InvalidArgument(
+                fmt::format("luminance needs channels red, green and blue; the scene has {}",
+                            fmt::join(channels, ", ")),
+                {"channel"});
         }
         return weights;
     }

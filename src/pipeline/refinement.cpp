@@ -42,6 +42,8 @@ constexpr double most_split = 1.0 / 3.0;
 constexpr double effort_near_goal = 2.0;
 /// While the error is so many times the goal, the next step does not come near it.
 constexpr double far_from_goal = 2.0;
+/// Steps after which a smaller error is looked for in vain may be the last; their estimates must be good.
+constexpr std::size_t steps_of_small_samples = 3;
 /// Patches are not cut into more than this share of the scene's diagonal: two surfaces that touch have
 /// singular light there, at any size.
 constexpr double least_size = 1e-3;
@@ -328,8 +330,9 @@ private:
 
     /// @param last  with all vertices, if they are gathered, and the form factors' error
     Errors estimate(bool last) {
-        const bool far = !last && (!goal_.error || result_.steps.empty() ||
-                                   result_.steps.back().error > far_from_goal * *goal_.error);
+        const std::vector<Refinement::Step>& steps = result_.steps;
+        const bool far = !last && steps.size() < steps_of_small_samples &&
+                         (!goal_.error || steps.empty() || steps.back().error > far_from_goal * *goal_.error);
         const bool gathers = should_gather(goal_.gather, settings_, result_.mesh, result_.solution);
         result_.solution.patch_size_error = estimate_patch_size_error(
             scene_, result_.mesh, result_.factors, result_.solution, settings_, observer_,

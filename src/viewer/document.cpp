@@ -102,7 +102,7 @@ void Document::make_light_mesh() {
                                        evenly_lit_ ? std::span<const double>(input_.solution.back_face_share)
                                                    : std::span<const double>(left_out),
                                        input_.solution.exitance, input_.channels());
-        exposure_settled_ = state_ == State::solved;
+        exposure_settled_ = state_ == State::solved && !evenly_lit_;
     }
     changed_ = true;
 }
@@ -254,11 +254,13 @@ void Document::take_light() {
     light_.reflectance = update->light.reflectance;
     light_.exitance = update->light.exitance;
     input_.solution.error = solution.error;
+    input_.solution.patch_size_error.reset(); // it was of another light
     if (update->heat && update->heat != heat_) {
+        const std::string problem_before = heat_ ? heat_->problem : "";
         heat_ = update->heat;
         input_.solution.temperature = heat_->solution.temperature;
         input_.solution.net_flux = heat_->solution.net_flux;
-        if (!heat_->problem.empty() && input_.observer) {
+        if (!heat_->problem.empty() && heat_->problem != problem_before && input_.observer) {
             input_.observer->warning(fmt::format("no temperatures: {}", heat_->problem), "");
         }
     }
@@ -321,6 +323,7 @@ void Document::start_over() {
     work_.light = "the lamps alone: no sweep yet";
     solved_.reset();
     input_.solution.error.reset();
+    input_.solution.patch_size_error.reset();
     show_light(light_.exitance, State::lamps);
     wake_();
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 
 namespace hemi::viewer {
 
@@ -92,25 +93,33 @@ void radiate_by_conditions(const ViewerInput& input, Light& light) {
     }
     const HeatProblem& heat = *input.heat;
     const std::size_t channels = input.channels();
+    const std::vector<double> of_scene =
+        patch_values(*input.mesh, input.scene->materials, &Material::reflectance);
     for (std::uint32_t i = 0; i < input.mesh->size(); ++i) {
         const std::uint32_t condition = heat.condition_of[i];
-        if (condition == no_heat || !heat.conditions[condition].temperature ||
-            heat.conditions[condition].temperature == light.conditions[condition].temperature) {
+        if (condition == no_heat || !heat.conditions[condition].temperature) {
             continue;
         }
         const double before = *heat.conditions[condition].temperature;
         const double now = *light.conditions[condition].temperature;
+        const auto first = static_cast<std::ptrdiff_t>(i * channels);
+        const bool same_material =
+            std::equal(of_scene.begin() + first, of_scene.begin() + first + std::ptrdiff_t(channels),
+                       light.reflectance.begin() + first);
+        if (before == now && same_material) {
+            continue;
+        }
         const std::vector<double> shares_before = band_fractions(before, heat.band_limits);
         const std::vector<double> shares_now = band_fractions(now, heat.band_limits);
         for (std::size_t c = 0; c < channels; ++c) {
             const std::size_t at = i * channels + c;
             const std::size_t band = heat.bands == 1 ? 0 : c;
-            const double emitted = 1.0 - light.reflectance[at];
-            if (heat.table_of[i] != no_heat) {
+            if (same_material && heat.table_of[i] != no_heat) {
                 light.reflectance[at] = 1.0 - emissivity_at(heat.tables[heat.table_of[i]], now);
             }
             light.exitance[at] = std::max(
-                0.0, light.exitance[at] - emitted * shares_before[band] * black_body_exitance(before) +
+                0.0, light.exitance[at] -
+                         (1.0 - of_scene[at]) * shares_before[band] * black_body_exitance(before) +
                          (1.0 - light.reflectance[at]) * shares_now[band] * black_body_exitance(now));
         }
     }
@@ -125,7 +134,7 @@ Heat find_heat(const ViewerInput& input, const Light& light, Observer& observer)
         heat.solution = heat_as_solution(*input.factors, problem, solution, input.channels());
     } catch (const Cancelled&) {
         throw;
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         heat.problem = error.what();
     }
     return heat;

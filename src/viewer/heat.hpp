@@ -19,7 +19,7 @@ struct Heat {
 /// Of every condition of the scene's heat the group that has it, "walls" or "walls, ..." where several have.
 [[nodiscard]] std::vector<std::string> condition_names(const ViewerInput& input);
 
-/// Gives patches whose temperature is no longer that of the scene the exitance of the new one.
+/// Gives patches whose temperature or reflectance is no longer that of the scene the exitance of the new one.
 /// @param light  of the materials, with conditions; is changed
 void radiate_by_conditions(const ViewerInput& input, Light& light);
 

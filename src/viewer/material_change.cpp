@@ -12,6 +12,9 @@ namespace {
 
 /// Of all conditions of a group that have a temperature.
 void set_temperature(const SetCommand& set, const ViewerInput& input, Choices& choices) {
+    if (set.values.size() != 1) {
+        throw InvalidArgument(fmt::format("set: {} temperatures; must be one", set.values.size()));
+    }
     const PatchMesh& mesh = *input.mesh;
     bool found = false;
     const bool known = input.heat != nullptr && input.heat->condition_of.size() == mesh.size();
@@ -23,9 +26,8 @@ void set_temperature(const SetCommand& set, const ViewerInput& input, Choices& c
             found = true;
         }
     }
-    if (!found || set.values.size() != 1) {
-        throw InvalidArgument(found ? fmt::format("set: {} temperatures; must be one", set.values.size())
-                                    : fmt::format("set: no group \"{}\" has a temperature", set.name));
+    if (!found) {
+        throw InvalidArgument(fmt::format("set: no group \"{}\" has a temperature", set.name));
     }
 }
 

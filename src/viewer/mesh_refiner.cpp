@@ -89,7 +89,6 @@ void MeshRefiner::work(const std::stop_token& stop) {
         input.adopt(input, std::move(found.mesh));
         input.refinement.reset();
         input.solution = std::move(found.solution);
-        input.solution.factor_error = found.factors.error;
         input.of_solution = step_words(found.steps.back());
         if (!found.stopped.empty() && coarse_.refinement->error) {
             input.of_solution +=

@@ -278,11 +278,15 @@ void heat_section(const PanelContent& content, Choices& choices) {
         return;
     }
     const Heat* heat = content.document.heat();
-    if (heat == nullptr || !heat->problem.empty()) {
-        faint(heat == nullptr ? "Found once there are form factors." : heat->problem);
+    if (heat == nullptr) {
+        faint("Found once there are form factors.");
         return;
     }
     temperature_sliders(content.document.input(), choices);
+    if (!heat->problem.empty()) {
+        faint(heat->problem);
+        return;
+    }
     if (!ImGui::BeginTable("heat", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit)) {
         return;
     }

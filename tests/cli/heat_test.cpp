@@ -746,6 +746,7 @@ TEST_CASE("hemi heat -o PICTURE.png: temperatures and fluxes in false colours", 
     CHECK(draw(directory.path("g.png"), {"--show", "irradiance", "--range", "0,2000", "--map", "inferno"})
               .out_has("(240 x 200, irradiance)"));
     CHECK(draw(directory.path("plain.png"), {"--no-legend"}).status == 0);
+    CHECK(draw(directory.path("plain.png"), {"--show", "radiosity", "--channel", "grene"}).status == 2);
     CHECK(directory.read("plain.png") != directory.read("kelvin.png"));
     const Outcome table = run_hemi({"heat", file, "-o", directory.path("box.vtp"), "--outlines"});
     CHECK(table.status == 2);

@@ -183,6 +183,12 @@ TEST_CASE("hemi points: a grid as table, for ParaView and as a map", "[cli][poin
     CHECK(hemi::test::read_png(directory.path("map.png")).width == 4 * 32);
     CHECK(hemi::test::read_png(directory.path("map.png")).height == 4 * 32);
     CHECK(with({"-o", directory.path("grid.vtp"), "--no-legend"}).status == 2);
+    REQUIRE(
+        run_hemi(on_cpu({"solve", scene, "--preset", "fast", "--result", directory.path("a.hres")})).status ==
+        0);
+    CHECK(run_hemi({"points", directory.path("a.hres"), "--grid", "z0", "0.5", "0.8", "--preset", "fast",
+                    "-q", "-o", directory.path("stored.png"), "--no-legend"})
+              .status == 0);
     const Outcome vtp = with({"-o", directory.path("grid.vtp"), "-q"});
     REQUIRE(vtp.status == 0);
     const std::string file = directory.read("grid.vtp");

@@ -41,4 +41,7 @@ TEST_CASE("view: shows a scene, and a stored solution as render draws it", "[cli
     CHECK(directory.read("scene.png") == directory.read("result.png"));
     CHECK(run_with_display({"view", result, "--script", directory.path("missing")}) == 3);
     CHECK(run_hemi({"view", result, "--jobs", "2"}, {"DISPLAY=:none"}).status == 2);
+    CHECK(run_hemi({"view", scene, "--budget", "5m"}, {"DISPLAY=:none"}).err_has("--budget needs"));
+    CHECK(run_hemi({"view", scene, "--error-target", "1%", "--error-target-of", "factors"}, {"DISPLAY=:none"})
+              .status == 2);
 }

@@ -105,6 +105,17 @@ TEST_CASE("JSON reader: what is left out has its default", "[io]") {
     REQUIRE(sky.materials[0].reflectance == std::vector<double>{0.5, 0.5, 0.5});
 }
 
+TEST_CASE("JSON reader: a camera stands upright in a scene whose upward axis is y", "[io]") {
+    const Folder folder;
+    const auto up_of = [&](const std::string& more) {
+        return read(folder, scene(square, R"("white": {"reflectance": 0.5})",
+                                  R"(, "camera": {"eye": [0,1,-5], "target": [0,1,0]})" + more))
+            .camera->up;
+    };
+    CHECK(up_of(R"(, "up": "y")") == Vec3(0, 1, 0));
+    CHECK_THROWS_WITH(up_of(""), Catch::Contains("up is 0 or along the view"));
+}
+
 TEST_CASE("JSON reader: surfaces of one name form one group", "[io]") {
     const Folder folder;
     const Scene result = read(

@@ -4,6 +4,8 @@
 
 #include "hemi/core/error.hpp"
 
+#include "hemi/scene/light_unit.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <array>
@@ -117,4 +119,16 @@ TEST_CASE("quantities: what is not there is refused by name", "[pipeline]") {
     CHECK_THROWS_WITH(known.shown(Quantity::radiosity, "luminance"), Catch::Contains("red, green and blue"));
     known.solution.radiosity.pop_back();
     CHECK_THROWS_AS(known.shown(Quantity::radiosity, "a"), InvalidArgument);
+}
+
+TEST_CASE("quantities: channels count by their names in fluxes and luminance", "[pipeline]") {
+    Scene scene;
+    scene.channels = {"blue", "ir", "red", "green"};
+    CHECK(luminance_weights(scene.channels) == std::vector<double>{0.0722, 0.0, 0.2126, 0.7152});
+    CHECK(flux_weights(scene) == std::vector<double>(4, 1.0));
+    scene.photometric = true;
+    CHECK(flux_weights(scene) == luminance_weights(scene.channels));
+    scene.channels = {"grey"};
+    CHECK(luminance_weights(scene.channels).empty());
+    CHECK(flux_weights(scene) == std::vector<double>{1.0});
 }

@@ -252,7 +252,8 @@ TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat dr
         "show temperature\nreport kelvin.json\nscreenshot temperature.png\ncommand temperature.txt\n"
         "show flux\nreport flux.json\nscreenshot flux.png\ncommand flux.txt\n"
         "set reflectance 0.5 lamp at 700 K\nshow temperature\nreport other.json\n"
-        "set temperature 400 ceiling\nreport cool.json\nset reflectance 0.1 lamp at 700 K\n"
+        "set temperature 400 ceiling\nreport cool.json\nshow exitance\nreport emitted.json\n"
+        "set reflectance 0.1 lamp at 700 K\n"
         "show flux\nreport cool_flux.json\n",
         options);
     INFO(place.read("errors.txt"));
@@ -287,6 +288,8 @@ TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat dr
         CHECK(place.json("cool_flux.json")["radiosity"][i][0].get<double>() >= // itself and its reflection
               Approx(0.9 * 5.670374419e-8 * std::pow(400.0, 4.0)));
     }
+    CHECK(place.json("emitted.json")["values"][40].get<double>() == // by the emissivity as it was then
+          Approx(0.5 * 5.670374419e-8 * std::pow(400.0, 4.0)));
     CHECK(place.view("set temperature 400 left\n", options) == 2);
     CHECK(place.view("set temperature 400 ceiling\nsave-result a.hres\n", options) == 2);
     // A ceiling that emits less warms the walls less.

@@ -91,7 +91,8 @@ TEST_CASE("Viewer: shows patches as they are cut, and the light of hemi solve in
     const int status = place.view("live\nreport coarse.json\npatches 46\n"
                                   "report cut.json\nwait\nreport all.json\n"
                                   "screenshot all.png\nsave-result window.hres\nclick 150 150\nshow row\n"
-                                  "report row.json\nset exitance 40,36,24 lamp\nreport twice.json\n",
+                                  "report row.json\nset exitance 40,36,24 lamp\nreport twice.json\n"
+                                  "save-result twice.hres\n",
                                   "--size 300x200 " + options);
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
@@ -116,6 +117,8 @@ TEST_CASE("Viewer: shows patches as they are cut, and the light of hemi solve in
     for (std::size_t i = 0; i < once.size(); ++i) {
         REQUIRE(twice[i][0].get<double>() == Approx(2.0 * once[i][0].get<double>()).epsilon(1e-5));
     }
+    CHECK(window.solution.patch_size_error);
+    CHECK_FALSE(io::read_hres(place.path("twice.hres")).solution.patch_size_error); // it was of other light
     const auto row = place.json("row.json");
     CHECK(row["quantity"] == "row");
     CHECK(row["values"].size() * 3 == window.solution.radiosity.size());

@@ -64,9 +64,11 @@ Grid read_grid(const JsonNode& node) {
     return {node.element(0).count(), node.element(1).count()};
 }
 
-Camera read_camera(const JsonNode& node) {
+/// @param up  its own, if it does not say another
+Camera read_camera(const JsonNode& node, const Vec3& up) {
     node.check_keys({"eye", "target", "up", "fov", "orthographic"});
     Camera camera;
+    camera.up = up;
     camera.eye = node.member("eye").point();
     camera.target = node.member("target").point();
     if (node.has("up")) {
@@ -449,7 +451,7 @@ private:
             scene_.unit = read_unit(root_.member("unit"));
         }
         if (root_.has("camera")) {
-            scene_.camera = read_camera(root_.member("camera"));
+            scene_.camera = read_camera(root_.member("camera"), upwards(scene_.up));
         }
     }
 
