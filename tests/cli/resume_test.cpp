@@ -131,7 +131,7 @@ TEST_CASE("Resume: a refinement that was killed goes on to what an undisturbed o
     const std::string scene = directory.write("cube.json", cube(4));
     const auto refine = [&](const std::string& file) {
         return Words{"solve",    scene,  "--device",  "cpu", "--jobs", "2",
-                     "--refine", "3000", "--factors", file,  "-q",     "--resume"};
+                     "--refine", "1000", "--factors", file,  "-q",     "--resume"};
     };
     const auto start = Clock::now();
     REQUIRE(run_hemi(refine(directory.path("whole.hff"))).status == 0);

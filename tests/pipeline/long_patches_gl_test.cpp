@@ -52,7 +52,8 @@ Scene tube_in_tube(int sides) {
 
 } // namespace
 
-TEST_CASE("long patches: a tube seen through the open ends of another", "[pipeline][gl][every-device]") {
+TEST_CASE("long patches: a tube seen through the open ends of another",
+          "[pipeline][gl][every-device][long-patches]") {
     // Right: 4e6 rays, to 2e-5.
     const Scene scene = tube_in_tube(16);
     CHECK(groups_by(Preset::standard, scene).factor("in", "shield") ==
@@ -61,7 +62,7 @@ TEST_CASE("long patches: a tube seen through the open ends of another", "[pipeli
 }
 
 TEST_CASE("long patches: a needle of 100 : 1 that looks past an edge at a grazing angle",
-          "[pipeline][gl][every-device]") {
+          "[pipeline][gl][every-device][long-patches]") {
     // Right: 2e7 rays, to 1e-5. The facade's own few points are what is left of the error.
     const Scene scene = io::read_scene(data_path("needle-past-an-edge.vs3"));
     CHECK(groups_by(Preset::standard, scene).factor("needle", "facade") ==
