@@ -10,14 +10,6 @@ namespace hemi::cli {
 
 namespace {
 
-std::string value_text(double value) {
-    return std::isfinite(value) ? number_text(value) : "-";
-}
-
-Json value_json(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
 std::string percent_text(const GroupDifference& group) {
     return std::isfinite(group.first) && group.first != 0.0
                ? fmt::format("{:+.3g}", 100.0 * group.difference / group.first)

@@ -12,15 +12,6 @@ namespace hemi::cli {
 
 namespace {
 
-std::string value_text(double value) {
-    return std::isfinite(value) ? number_text(value) : "-";
-}
-
-/// Null where it is not a number.
-Json value_json(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
 /// Of every group, without the last of `all`, which is their total.
 Json column_json(const std::vector<GroupHeat>& all, double GroupHeat::*member) {
     Json json = Json::array();

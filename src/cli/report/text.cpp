@@ -59,6 +59,14 @@ std::string summary_line(std::string_view name, std::string_view value) {
     return fmt::format("{:<13} {}\n", name, value);
 }
 
+std::string value_text(double value) {
+    return std::isfinite(value) ? number_text(value) : "-";
+}
+
+Json value_json(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
+}
+
 void print(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
         throw IoError(fmt::format("standard output: {}", std::strerror(errno)));

@@ -38,6 +38,11 @@ void print(std::string_view text);
 /// One JSON object and a line end; NaN and infinity become null, bytes that are not UTF-8 U+FFFD.
 void print_json(const Json& object);
 
+/// A number for tables; "-" where it is none.
+[[nodiscard]] std::string value_text(double value);
+/// The same for JSON: null where it is none.
+[[nodiscard]] Json value_json(double value);
+
 /// What is needed to speak of a patch: its group, and its centre where the geometry is known.
 struct PatchNames {
     std::span<const std::string> groups;
