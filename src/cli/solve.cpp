@@ -198,10 +198,6 @@ void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loa
     if (!arguments.rows.factors.estimate_error || !solution.error) {
         return;
     }
-    if (!solution.direct.empty()) {
-        observer.detail("what the patches' size does to shadows of sun and sky is not estimated");
-        return;
-    }
     const Stopwatch watch;
     solution.patch_size_error = try_estimate_patch_size_error(loaded.scene, loaded.mesh, factors, solution,
                                                               arguments.rows.factors, observer);

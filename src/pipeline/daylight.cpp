@@ -6,6 +6,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/engine/exchange_area.hpp"
+#include "hemi/pipeline/form_factors.hpp"
 #include "pipeline/point_daylight.hpp"
 
 #include <fmt/format.h>
@@ -28,15 +29,15 @@ constexpr double far = 10.0;
 constexpr double apart = 3.0;
 constexpr std::size_t patches_at_once = 16;
 
-std::vector<double> sun_irradiance(const PatchMesh& mesh, const Sun& sun, std::size_t channels) {
+std::vector<double> sun_irradiance(const PatchMesh& mesh, const Sun& sun, std::size_t channels,
+                                   std::span<const std::uint32_t> patches) {
     const ShadowRays rays(mesh);
-    std::vector<double> result(mesh.size() * channels, 0.0);
-    parallel_for(mesh.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto patch = static_cast<std::uint32_t>(i);
-            const double share = rays.sun_share(patch, sun, first_rays, edge_rays);
+    std::vector<double> result(patches.size() * channels, 0.0);
+    parallel_for(patches.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const double share = rays.sun_share(patches[k], sun, first_rays, edge_rays);
             for (std::size_t c = 0; c < channels; ++c) {
-                result[i * channels + c] = sun.irradiance[c] * share;
+                result[k * channels + c] = sun.irradiance[c] * share;
             }
         }
         stop_if_interrupted();
@@ -129,15 +130,16 @@ private:
 };
 
 std::vector<double> sky_irradiance(const PatchMesh& mesh, const Sky& sky, const Vec3& up,
-                                   std::size_t channels, const FormFactorMatrix& factors) {
+                                   std::size_t channels, const FormFactorMatrix& factors,
+                                   std::span<const std::uint32_t> patches) {
     const SkyShares shares(mesh, factors, up);
-    std::vector<double> result(mesh.size() * channels, 0.0);
-    parallel_for(mesh.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const PointDaylight::Environment seen = shares.seen(static_cast<std::uint32_t>(i));
+    std::vector<double> result(patches.size() * channels, 0.0);
+    parallel_for(patches.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const PointDaylight::Environment seen = shares.seen(patches[k]);
             const double above = sky_irradiance(sky.distribution, seen.above);
             for (std::size_t c = 0; c < channels; ++c) {
-                result[i * channels + c] = sky.horizontal[c] * (above + sky.ground[c] * seen.below);
+                result[k * channels + c] = sky.horizontal[c] * (above + sky.ground[c] * seen.below);
             }
         }
         stop_if_interrupted();
@@ -149,6 +151,11 @@ std::vector<double> sky_irradiance(const PatchMesh& mesh, const Sky& sky, const 
 
 DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,
                                     const FormFactorMatrix& factors) {
+    return direct_irradiances(scene, mesh, factors, all_patches(mesh.size()));
+}
+
+DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,
+                                    const FormFactorMatrix& factors, std::span<const std::uint32_t> patches) {
     DirectIrradiance result;
     if (factors.size() != mesh.size()) {
         throw InvalidArgument(
@@ -156,10 +163,10 @@ DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,
     }
     const std::size_t channels = scene.channels.size();
     if (scene.sun) {
-        result.sun = sun_irradiance(mesh, *scene.sun, channels);
+        result.sun = sun_irradiance(mesh, *scene.sun, channels, patches);
     }
     if (scene.sky) {
-        result.sky = sky_irradiance(mesh, *scene.sky, upwards(scene.up), channels, factors);
+        result.sky = sky_irradiance(mesh, *scene.sky, upwards(scene.up), channels, factors, patches);
     }
     return result;
 }

@@ -7,6 +7,7 @@
 #include "hemi/display/vertex_colours.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/matrix/error_estimate.hpp"
+#include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/solver/solver.hpp"
 #include "pipeline/corner_interpolation.hpp"
@@ -99,8 +100,10 @@ public:
         };
         const FormFactorMatrix factors = compute_visibility_weighted(
             *engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure, go_on, go_on, go_on);
+        direct_ = direct_irradiances(scene_, fine, factors, rows);
+        rows_ = std::move(rows);
         near_ = patches_near_surfaces(mesh_);
-        find_importance(bytes_of(rows.size(), fine.size()), settings, observer);
+        find_importance(bytes_of(rows_.size(), fine.size()), settings, observer);
         find_variation(fine, parents);
         std::vector<SampledErrors> vertices(channels_);
         std::vector<SampledErrors> field(channels_);
@@ -318,6 +321,7 @@ private:
         problem.reflectance = reflectance_;
         problem.exitance = solution_.exitance;
         problem.environment = scene_.environment;
+        problem.direct = solution_.direct;
         irradiance_ = irradiance(problem, solution_.radiosity);
     }
 
@@ -343,7 +347,7 @@ private:
     }
 
     /// G of a quarter, a value a channel.
-    [[nodiscard]] std::vector<double> irradiance_at(const RowView& row,
+    [[nodiscard]] std::vector<double> irradiance_at(std::uint32_t quarter, const RowView& row,
                                                     const std::vector<std::uint32_t>& parents) const {
         std::vector<double> light = gathered(row, parents, channels_, [this](std::uint32_t patch) {
             return std::span(solution_.radiosity).subspan(at(patch, 0), channels_);
@@ -351,7 +355,43 @@ private:
         for (std::uint32_t c = 0; c < channels_; ++c) {
             light[c] += scene_.environment.empty() ? 0.0 : row.environment * scene_.environment[c];
         }
+        for (const std::vector<double>* part : {&direct_.sun, &direct_.sky}) {
+            for (std::uint32_t c = 0; c < channels_ && !part->empty(); ++c) {
+                light[c] += (*part)[direct_at(quarter) + c];
+            }
+        }
         return light;
+    }
+
+    /// Of a quarter among those with rows: where its values in direct_ begin.
+    [[nodiscard]] std::size_t direct_at(std::uint32_t quarter) const {
+        const auto found = std::lower_bound(rows_.begin(), rows_.end(), quarter);
+        return static_cast<std::size_t>(found - rows_.begin()) * channels_;
+    }
+
+    /// A part of a quarter in which the light is even, and by how much of the sun's normal irradiance that
+    /// is more than the quarter's mean.
+    struct EvenPart {
+        double share;
+        double more;
+    };
+    /// Where the edge of a shadow of the sun crosses a quarter, what is in the sun and what is not; else all
+    /// of it. An edge is sharp: whatever the size of patches, the light changes there within one.
+    /// @param to_seen  the quarter's area over what nothing stands on, which the sun can reach
+    [[nodiscard]] std::vector<EvenPart> even_parts(std::uint32_t quarter, const PatchMesh& fine,
+                                                   double to_seen) const {
+        if (scene_.sun) {
+            const std::vector<double>& normal = scene_.sun->irradiance;
+            const auto c =
+                static_cast<std::size_t>(std::max_element(normal.begin(), normal.end()) - normal.begin());
+            const double cosine = glm::dot(fine.normal(quarter), scene_.sun->direction);
+            const double all = cosine * normal[c];
+            const double lit = all > 0.0 ? to_seen * direct_.sun[direct_at(quarter) + c] / all : 0.0;
+            if (lit > 0.0 && lit < 1.0) {
+                return {{lit, (1.0 - lit) * cosine}, {1.0 - lit, -lit * cosine}};
+            }
+        }
+        return {{1.0, 0.0}};
     }
 
     /// How the radiosity varies within the patches, where it is known well enough: at gathered vertices. A
@@ -479,7 +519,7 @@ private:
         std::vector<double> mean(channels_, 0.0);
         for (std::size_t q = 0; q < 4; ++q) {
             const RowView row = factors.row(quarters[q]);
-            light[q] = irradiance_at(row, parents);
+            light[q] = irradiance_at(quarters[q], row, parents);
             seen[q] = fine.areas()[quarters[q]] * (1.0 - covered(patch, row.blocked));
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 mean[c] += light[q][c] * fine.areas()[quarters[q]];
@@ -502,6 +542,7 @@ private:
             const std::vector<double> varying = varying_light(row);
             const auto weights = shown_.weights(patch, fine.corners(quarters[q]));
             const double to_seen = fine.areas()[quarters[q]] / seen[q];
+            const std::vector<EvenPart> parts = even_parts(quarters[q], fine, to_seen);
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 const double rho = reflectance_[at(patch, c)];
                 const double emitted = solution_.exitance[at(patch, c)];
@@ -510,8 +551,13 @@ private:
                 for (std::uint32_t corner = 0; corner < mesh_.corners(patch).count; ++corner) {
                     shown += weights[corner] * shown_.at_corner(patch, corner, c);
                 }
-                field[c].add(change, drawn.weight * seen[q]);
-                vertices[c].add(shown - change - rho * varying[c], drawn.weight * seen[q]);
+                for (const EvenPart& part : parts) {
+                    const double here =
+                        change + (part.more != 0.0 ? rho * part.more * scene_.sun->irradiance[c] : 0.0);
+                    const double area = drawn.weight * seen[q] * part.share;
+                    field[c].add(here, area);
+                    vertices[c].add(shown - here - rho * varying[c], area);
+                }
                 // Here the quarters' mean counts, too: it differs from what the patch's own row gets where
                 // visibility and F0 change together.
                 if (groups.empty()) {
@@ -543,8 +589,10 @@ private:
     std::vector<double> units_;          // a channel: rms of B - E over them
     std::vector<std::uint32_t> near_;    // patches with a surface near in front of them, ascending
     GroupImportance importance_;
-    std::vector<double> variation_;  // of fine patches, with their channels; empty: not known
-    std::vector<double> irradiance_; // of all patches, N·channels; with the importance
+    std::vector<double> variation_;   // of fine patches, with their channels; empty: not known
+    std::vector<double> irradiance_;  // of all patches, N·channels; with the importance
+    std::vector<std::uint32_t> rows_; // quarters of the sample, ascending
+    DirectIrradiance direct_;         // of these
 };
 
 } // namespace

@@ -362,6 +362,10 @@ fs::path workplace;
 
 } // namespace
 
+// libFuzzer has no header of its own.
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv);
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     for (int k = 1; k < *argc; ++k) {
         const std::string_view word = (*argv)[k];

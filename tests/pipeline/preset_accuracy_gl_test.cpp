@@ -153,6 +153,7 @@ TEST_CASE("presets: the shared cases of 16 patches a face", "[pipeline][gl][slow
             const PatchMesh mesh(scene, {.patch_size = {}, .patches_per_face = 16});
             FactorSettings settings;
             settings.preset = limit.preset;
+            settings.estimate_error = false;
             settings.engine.device = "osmesa";
             const FormFactors factors = compute_form_factors(scene, mesh, settings);
             const GroupFactors groups = group_factors(factors.matrix, factors.areas, factors.group_of,

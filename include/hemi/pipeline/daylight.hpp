@@ -4,6 +4,7 @@
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace hemi {
@@ -32,8 +33,14 @@ struct DirectIrradiance {
 /// They one by one, as direct_irradiance() adds them.
 [[nodiscard]] DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,
                                                   const FormFactorMatrix& factors);
+/// The same of some patches.
+/// @param patches  whose rows are known
+/// @return channel c of patches[k] at [k·channels + c]
+[[nodiscard]] DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,
+                                                  const FormFactorMatrix& factors,
+                                                  std::span<const std::uint32_t> patches);
 
-/// The same by the bands of a heat problem, for HeatProblem::direct.
+/// direct_irradiance() by the bands of a heat problem, for HeatProblem::direct.
 /// @param scene    as in direct_irradiance()
 /// @param mesh     likewise
 /// @param factors  likewise
