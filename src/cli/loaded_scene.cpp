@@ -203,13 +203,6 @@ void check_budget(const RefinementOptions& refinement, const RowOptions& rows) {
     }
 }
 
-void check_refinable(const Scene& scene) {
-    if (scene.sun || scene.sky) {
-        throw InvalidArgument("--refine and --error-target cut patches by the light that goes between them, "
-                              "not by shadows of a sun or a sky, which the scene has; give --patch-size");
-    }
-}
-
 CutMesh mesh_of_rows(const LoadedScene& loaded, const SceneOptions& options,
                      const std::filesystem::path& path) {
     const io::RowsGeometry rows = io::read_hff_geometry(path);

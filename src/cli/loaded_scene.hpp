@@ -90,8 +90,6 @@ struct CutMesh {
 [[nodiscard]] CoarseMesh coarse_begin(const LoadedScene& loaded, const SceneOptions& options);
 /// @throws InvalidArgument if there is a budget for nothing
 void check_budget(const RefinementOptions& refinement, const RowOptions& rows);
-/// @throws InvalidArgument where the scene has what does not go together with patches that are cut
-void check_refinable(const Scene& scene);
 /// The mesh that the rows of a `.hff` are of: the scene's own, one that a refinement begins with, or one that
 /// was cut from either; the scene's own where the rows are of another geometry.
 /// @throws InputError for the file

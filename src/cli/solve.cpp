@@ -244,9 +244,6 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         adopt_mesh_of_rows(loaded, arguments.scene, *arguments.factors, arguments.parts);
     }
     seconds["load"] = loaded.seconds;
-    if (arguments.refines()) {
-        check_refinable(loaded.scene);
-    }
     if (arguments.picture.output) { // tested before the work
         if (arguments.picture.quantity) {
             check_channel(loaded.scene.channels, arguments.picture.channel);

@@ -147,7 +147,6 @@ private:
         if (!factors.empty()) {
             adopt_mesh_of_rows(*loaded, options, factors);
         } else if (arguments_.refinement.asked(arguments_.rows)) {
-            check_refinable(loaded->scene);
             const CoarseMesh begin = coarse_begin(*loaded, options);
             adopt = [whole = *loaded, begin](viewer::ViewerInput& input, PatchMesh mesh) {
                 const auto finer = std::make_shared<LoadedScene>(whole);

@@ -175,10 +175,20 @@ private:
 
     [[nodiscard]] std::vector<DrawnPatch> draw(double effort) const {
         std::vector<double> importance;
+        std::vector<double> at_edges;
         for (const std::uint32_t patch : patches_) {
             // The square root of what a patch is likely to add makes the sum's variance least.
-            importance.push_back(mesh_.areas()[patch] * std::sqrt(means_.spread(patch, solution_, units_) +
-                                                                  least_doubt * least_doubt));
+            const double likely = means_.spread(patch, solution_, units_) + least_doubt * least_doubt;
+            importance.push_back(mesh_.areas()[patch] * std::sqrt(likely));
+            at_edges.push_back(mesh_.areas()[patch] * likely);
+        }
+        if (scene_.sun) {
+            // Edges of its shadows err much on little area: half of the sample is theirs.
+            const double sum = std::accumulate(importance.begin(), importance.end(), 0.0);
+            const double sum_at_edges = std::accumulate(at_edges.begin(), at_edges.end(), 0.0);
+            for (std::size_t k = 0; k < importance.size(); ++k) {
+                importance[k] = importance[k] / sum + at_edges[k] / sum_at_edges;
+            }
         }
         const double count = effort * std::clamp(sampled_share * static_cast<double>(patches_.size()),
                                                  min_sampled, max_sampled);

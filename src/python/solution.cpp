@@ -236,7 +236,7 @@ SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectan
             gather_at_vertices(factors.scene->mesh, values, factors.factors.enclosure, factors.settings,
                                wanted, solution, observer);
         }
-        if (estimate && result.scene_values && solution.error && solution.direct.empty()) {
+        if (estimate && result.scene_values && solution.error) {
             solution.patch_size_error =
                 try_estimate_patch_size_error(factors.scene->scene, factors.scene->mesh, factors.factors,
                                               solution, factors.settings, observer);

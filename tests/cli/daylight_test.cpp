@@ -85,8 +85,9 @@ TEST_CASE("hemi solve: sun and sky are reported apart, and stored", "[cli][solve
     CHECK(coming + 5.0 == Approx(json["balance"]["absorbed"].get<double>()).epsilon(1e-5));
     CHECK(coming < 200.0 + 800.0 * std::sin(std::numbers::pi / 3.0));
     CHECK_THAT(first_line(directory.read("court.csv")), Catch::Contains(",direct_grey,"));
-    CHECK(json["error"].is_null()); // nothing is known of shadows within patches
     CHECK_FALSE(json["error_estimate"].is_null());
+    const double error = json["error"]["vertices"]["rms"];
+    CHECK(error > 0.02); // shadows of patches a third of the court wide
 
     const std::string points = directory.write(
         "points.csv", "x,y,z,nx,ny,nz\n0.5,0.8,0.2,0,0,1\n0.5,0.1,0.2,0,0,1\n0.5,0.5,2,0,-1,0\n");
@@ -106,9 +107,19 @@ TEST_CASE("hemi solve: sun and sky are reported apart, and stored", "[cli][solve
     CHECK(a["irradiance"][1][0].get<double>() < 600.0);
     CHECK(a["irradiance"][2][0].get<double>() > 400.0);
 
-    const Outcome refined = run_hemi(on_cpu({"solve", file, "--refine", "3"}));
-    CHECK(refined.status == 2);
-    CHECK(refined.err_has("--refine"));
+    // Patches are cut where shadows end, which takes fewer than a finer grid does.
+    const auto error_by = [&](const char* option, const char* value) {
+        const Outcome of = run_hemi(on_cpu({"solve", file, "--json", option, value}));
+        INFO(of.err);
+        REQUIRE(of.status == 0);
+        return std::pair{of.json()["error"]["vertices"]["rms"].get<double>(),
+                         of.json()["patches"].get<int>()};
+    };
+    const auto [cut, patches] = error_by("--refine", "800");
+    const auto [even, more] = error_by("--patch-size", "0.0625");
+    INFO(patches << " patches: " << cut << "; " << more << " patches: " << even);
+    CHECK(cut < even);
+    CHECK(patches < more);
     const Outcome picture =
         run_hemi(on_cpu({"solve", file, "-o", directory.path("court.png"), "--size", "64x64"}));
     CHECK(picture.status == 0);

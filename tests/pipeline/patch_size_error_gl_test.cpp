@@ -210,6 +210,58 @@ TEST_CASE("patch size: the error of lit rooms is that against a grid three times
     CHECK(patch_size_squares < 4.0 * true_squares);
 }
 
+TEST_CASE("patch size: shadows of the sun and the sky behind edges count", "[pipeline][gl][slow]") {
+    constexpr std::uint32_t times = 6;
+    std::uint32_t groups = 0;
+    std::uint32_t too_small = 0;
+    struct Case {
+        const char* name;
+        bool sun, sky;
+    };
+    for (const Case& c : {Case{"sun", true, false}, Case{"sky", false, true}, Case{"both", true, true}}) {
+        Scene scene = room_with_blocks(4);
+        std::erase_if(scene.surfaces, [](const Surface& surface) { // an open yard
+            return std::all_of(surface.vertices.begin(), surface.vertices.end(),
+                               [](const Vec3& vertex) { return vertex.z == 0.8; });
+        });
+        scene.materials[0].exitance = {0.0};
+        scene.enclosure = Enclosure::open;
+        if (c.sun) {
+            scene.sun = Sun{glm::normalize(Vec3(0.5, -0.3, 1.0)), {10.0}, 0.0};
+        }
+        if (c.sky) {
+            scene.sky = Sky{SkyDistribution::overcast, {5.0}, {0.2}};
+        }
+        const Solved coarse = solved(scene, Preset::standard);
+        const Solved fine = solved(refined(scene, times), Preset::fast);
+        const Truth truth = truth_of(coarse, fine, times);
+        const auto error = estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution,
+                                                     settings_of(Preset::standard));
+        REQUIRE(error);
+        INFO(c.name << ": field " << error->field.rms << ", true " << truth.field << "; vertices "
+                    << error->vertices.rms << ", true " << truth.vertices);
+        CHECK(error->field.rms > 0.6 * truth.field);
+        CHECK(error->field.rms < 1.6 * truth.field);
+        CHECK(error->vertices.rms > 0.5 * truth.vertices);
+        CHECK(error->vertices.rms < 2.0 * truth.vertices);
+        const std::vector<double> is = group_irradiance(coarse.mesh, coarse.solution);
+        const std::vector<double> should = group_irradiance(fine.mesh, fine.solution);
+        REQUIRE(error->groups.size() == is.size());
+        for (std::size_t g = 0; g < is.size(); ++g) {
+            if (coarse.mesh.groups()[g] == "z1") {
+                continue; // the ceiling that is not there
+            }
+            const double true_error = std::abs(is[g] / should[g] - 1.0);
+            const double printed = std::hypot(error->groups[g].patch_size, error->groups[g].factors);
+            ++groups;
+            too_small += true_error > 2.0 * printed + 2e-4 ? 1 : 0;
+        }
+    }
+    INFO(too_small << " of " << groups << " errors of groups are too small");
+    CHECK(groups == 21);
+    CHECK(too_small <= groups / 10);
+}
+
 TEST_CASE("patch size: triangles err as the quadrilaterals that they halve, or less", "[pipeline][gl]") {
     const Scene scene = lit_room(6, 0.5, 0.3);
     const auto error_of = [](const Scene& of) {
