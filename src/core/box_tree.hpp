@@ -70,15 +70,6 @@ private:
         std::uint32_t after = 0;          ///< the node that follows all below this one
     };
 
-    static bool overlap(const Bounds& a, const Bounds& b) {
-        for (int axis = 0; axis < 3; ++axis) {
-            if (a.lower[axis] > b.upper[axis] || b.lower[axis] > a.upper[axis]) {
-                return false;
-            }
-        }
-        return true;
-    }
-
     static bool passes(const Bounds& box, const Vec3& origin, const Vec3& direction) {
         double from = 0.0;
         double to = std::numeric_limits<double>::infinity();

@@ -1,6 +1,7 @@
 #include "scene/convex_polygon.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -110,24 +111,64 @@ bool overlap(std::span<const Vec3> polygon, const Vec3& normal, std::span<const 
     return common.size() > 2 && is_wide(common, slack);
 }
 
-void split_all(std::vector<Polygon>& polygons, const Vec3& normal, const Segment& segment, double slack) {
-    std::vector<Polygon> result;
-    for (Polygon& polygon : polygons) {
-        if (!within(polygon, normal, segment, slack)) {
-            result.push_back(std::move(polygon));
+DividedPolygon::DividedPolygon(Polygon polygon, const Vec3& normal, double slack)
+    : normal_(normal), slack_(slack) {
+    add(std::move(polygon));
+}
+
+void DividedPolygon::add(Polygon corners) {
+    Node node;
+    node.around = bounds_of(corners, 2.0 * slack_);
+    node.corners = std::move(corners);
+    nodes_.push_back(std::move(node));
+}
+
+void DividedPolygon::cut(const Segment& segment) {
+    const Bounds along = bounds_of(std::array{segment.from, segment.to});
+    std::vector<std::uint32_t> open{0};
+    while (!open.empty()) {
+        const std::uint32_t at = open.back();
+        open.pop_back();
+        if (!overlap(nodes_[at].around, along)) {
             continue;
         }
-        auto [left, right] = split(polygon, normal, segment, slack);
-        const bool both =
-            left.size() > 2 && right.size() > 2 && is_wide(left, slack) && is_wide(right, slack);
-        if (!both) {
-            result.push_back(std::move(polygon));
-            continue;
+        if (nodes_[at].left == 0) {
+            cut_part(at, segment);
+        } else {
+            open.push_back(nodes_[at].right);
+            open.push_back(nodes_[at].left);
         }
-        result.push_back(std::move(left));
-        result.push_back(std::move(right));
     }
-    polygons = std::move(result);
+}
+
+void DividedPolygon::cut_part(std::uint32_t part, const Segment& segment) {
+    if (!within(nodes_[part].corners, normal_, segment, slack_)) {
+        return;
+    }
+    auto [left, right] = split(nodes_[part].corners, normal_, segment, slack_);
+    if (left.size() > 2 && right.size() > 2 && is_wide(left, slack_) && is_wide(right, slack_)) {
+        nodes_[part].corners.clear();
+        nodes_[part].left = static_cast<std::uint32_t>(nodes_.size());
+        nodes_[part].right = nodes_[part].left + 1;
+        add(std::move(left));
+        add(std::move(right));
+    }
+}
+
+std::vector<Polygon> DividedPolygon::parts() const {
+    std::vector<Polygon> result;
+    std::vector<std::uint32_t> open{0};
+    while (!open.empty()) {
+        const Node& node = nodes_[open.back()];
+        open.pop_back();
+        if (node.left == 0) {
+            result.push_back(node.corners);
+        } else {
+            open.push_back(node.right);
+            open.push_back(node.left);
+        }
+    }
+    return result;
 }
 
 Polygon without_straight_corners(const Polygon& polygon, double slack) {

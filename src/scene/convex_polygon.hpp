@@ -33,8 +33,33 @@ struct Segment {
 [[nodiscard]] bool overlap(std::span<const Vec3> polygon, const Vec3& normal, std::span<const Vec3> other,
                            double slack);
 
-/// Cuts those polygons of a plane in two that a segment runs through, along its whole line.
-void split_all(std::vector<Polygon>& polygons, const Vec3& normal, const Segment& segment, double slack);
+/// A convex polygon that is cut along segments in its plane.
+class DividedPolygon {
+public:
+    /// @param slack  parts that are no wider do not count
+    DividedPolygon(Polygon polygon, const Vec3& normal, double slack);
+
+    /// Cuts those parts in two that the segment runs through, along its whole line.
+    void cut(const Segment& segment);
+    /// From the left of the first cuts to their right.
+    [[nodiscard]] std::vector<Polygon> parts() const;
+
+private:
+    /// A part, or two: those on the left and on the right of a line.
+    struct Node {
+        Polygon corners;
+        Bounds around;
+        std::uint32_t left = 0; ///< of two parts; 0: it is one
+        std::uint32_t right = 0;
+    };
+
+    void add(Polygon corners);
+    void cut_part(std::uint32_t part, const Segment& segment);
+
+    std::vector<Node> nodes_; ///< the whole polygon first
+    Vec3 normal_;
+    double slack_;
+};
 
 /// The polygon without corners that lie within `slack` of the line between their neighbours.
 [[nodiscard]] Polygon without_straight_corners(const Polygon& polygon, double slack);

@@ -317,10 +317,11 @@ private:
             std::vector<std::uint32_t> here;
             cuts.overlapping(box, [&](std::uint32_t k) { here.push_back(k); });
             std::sort(here.begin(), here.end());
-            std::vector<Polygon> parts{std::move(cell.corners)};
+            DividedPolygon divided(std::move(cell.corners), normal(f), tolerance_);
             for (const std::uint32_t k : here) {
-                split_all(parts, normal(f), contacts.cuts[k], tolerance_);
+                divided.cut(contacts.cuts[k]);
             }
+            std::vector<Polygon> parts = divided.parts();
             cell.whole = parts.size() == 1;
             face.split = face.split || !cell.whole;
             for (Polygon& part : parts) {
@@ -348,9 +349,21 @@ private:
 
     /// Finds which sides of pieces are covered by faces in their plane.
     void cover_by_coplanar(std::uint32_t f) {
+        const std::vector<std::uint32_t>& coplanar = cut_[f].contacts.coplanar;
+        if (coplanar.empty()) {
+            return;
+        }
+        std::vector<Bounds> coplanar_boxes;
+        for (const std::uint32_t other : coplanar) {
+            coplanar_boxes.push_back(bounds_of(face(other), 2.0 * tolerance_));
+        }
+        const BoxTree tree(coplanar_boxes);
         for (Piece& piece : cut_[f].pieces) {
             const Vec3 centre = area_centroid(piece.corners);
-            for (const std::uint32_t other : cut_[f].contacts.coplanar) {
+            std::vector<std::uint32_t> here;
+            tree.overlapping(bounds_of({&centre, 1}), [&](std::uint32_t k) { here.push_back(coplanar[k]); });
+            std::sort(here.begin(), here.end());
+            for (const std::uint32_t other : here) {
                 if (contains(face(other), normal(other), centre, tolerance_)) {
                     const bool before = piece.is_left();
                     cover(f, other, piece);

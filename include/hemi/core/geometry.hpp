@@ -30,6 +30,15 @@ struct Bounds {
     /// Middle of the diagonal; not a number when empty.
     [[nodiscard]] Vec3 centre() const { return 0.5 * (lower + upper); }
 };
+/// Whether two boxes have a point in common.
+[[nodiscard]] inline bool overlap(const Bounds& a, const Bounds& b) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (a.lower[axis] > b.upper[axis] || b.lower[axis] > a.upper[axis]) {
+            return false;
+        }
+    }
+    return true;
+}
 
 /// Area times unit normal of a closed polygon (Newell's method): half the sum of cross products of its
 /// corners, taken relative to the first one so that distance from the origin costs no digits.
