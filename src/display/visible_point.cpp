@@ -1,11 +1,14 @@
 #include "display/visible_point.hpp"
 
+#include "hemi/core/geometry.hpp"
+
 #include <limits>
 
 namespace hemi {
 
-std::optional<Vec3> visible_point(const PatchMesh& mesh, const Vec3& origin, const Vec3& direction) {
+std::optional<VisiblePoint> visible_point(const PatchMesh& mesh, const Vec3& origin, const Vec3& direction) {
     double nearest = std::numeric_limits<double>::infinity();
+    VisiblePoint result{};
     for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
         const Surface& surface = mesh.surfaces()[s];
         const Vec3& normal = mesh.surface_normal(s);
@@ -26,12 +29,28 @@ std::optional<Vec3> visible_point(const PatchMesh& mesh, const Vec3& origin, con
         }
         if (inside) {
             nearest = along;
+            result = {point, s, slope > 0.0};
         }
     }
     if (nearest == std::numeric_limits<double>::infinity()) {
         return std::nullopt;
     }
-    return origin + nearest * direction;
+    return result;
+}
+
+std::uint32_t patch_at(const PatchMesh& mesh, const VisiblePoint& point) {
+    const std::uint32_t count = mesh.patches_per_side(point.surface);
+    const std::uint32_t first = mesh.first_patch(point.surface) + (point.back ? count : 0);
+    std::uint32_t found = first;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t patch = first; patch < first + count && least > 0.0; ++patch) {
+        const double distance = distance_to_polygon(point.position, mesh.corners(patch).polygon());
+        if (distance < least) {
+            least = distance;
+            found = patch;
+        }
+    }
+    return found;
 }
 
 } // namespace hemi

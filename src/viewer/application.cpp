@@ -1,9 +1,11 @@
 #include "viewer/application.hpp"
 
 #include "hemi/pipeline/settings.hpp"
+#include "hemi/scene/light_unit.hpp"
 
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
+#include "hemi/core/text.hpp"
 #include "hemi/io/image_file.hpp"
 #include "hemi/io/scene_writer.hpp"
 #include "viewer/command_line.hpp"
@@ -31,6 +33,8 @@ constexpr std::chrono::milliseconds rest{200};
 /// part of the time that they take.
 constexpr std::chrono::milliseconds gather_interval{100};
 constexpr int gather_part = 20;
+/// A solution that took longer is not thrown away without a word.
+constexpr std::chrono::seconds long_work{60};
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code error;
@@ -68,6 +72,9 @@ void Application::exchange(ViewerInput input) {
     choices_.materials = input.scene->materials;
     choices_.conditions = input.heat ? input.heat->conditions : std::vector<HeatCondition>();
     inset_.reset();
+    under_cursor_.reset();
+    asks_to_close_ = false;
+    history_.emplace(MaterialHistory::State{choices_.materials, choices_.conditions});
     document_.reset(); // whose threads end first
     document_ = std::make_unique<Document>(std::move(input), factor_cache_, Window::wake);
     const std::vector<std::string> channels = channel_choices(document_->input().scene->channels);
@@ -139,6 +146,7 @@ void Application::act_on(const Event& event) {
                               if (navigator_.on_cursor(e)) {
                                   moved();
                               }
+                              look_under_cursor();
                           },
                           [this](const ButtonEvent& e) {
                               if (const auto pixel = navigator_.on_button(e)) {
@@ -152,14 +160,18 @@ void Application::act_on(const Event& event) {
                           },
                           [this](const KeyEvent& e) { on_key(e); },
                           [this](const RefreshEvent&) { refresh(); },
-                          [this](const CloseEvent&) { closing_ = true; },
+                          [this](const CloseEvent&) { ask_to_close(); },
                           [this](const DropEvent& e) { open(e.path); }},
                event);
 }
 
 void Application::on_key(const KeyEvent& event) {
     navigator_.let_go();
-    if (apply_camera_key(event, navigator_.aspect(), navigator_.orbit())) {
+    if (event.control) {
+        if (event.key == 'Z') {
+            undo_or_redo(event.shift);
+        }
+    } else if (apply_camera_key(event, navigator_.aspect(), navigator_.orbit())) {
         picture_changed_ = true;
     } else if (!apply_look_key(event, document_->input(), choices_)) {
         other_key(event);
@@ -185,15 +197,77 @@ void Application::other_key(const KeyEvent& event) {
         choices_.help = !choices_.help;
     } else if (event.key == escape_key && gui_.close_list()) {
         return;
+    } else if (event.key == escape_key && asks_to_close_) {
+        asks_to_close_ = false;
     } else if (event.key == escape_key && choices_.help) {
         choices_.help = false;
     } else if (event.key == escape_key && !message_.empty()) {
         message_.clear();
     } else if (event.key == escape_key && choices_.picked) {
         choices_.picked.reset();
-    } else if (event.key == 'Q' || event.key == escape_key) {
-        closing_ = true;
+    } else if (event.key == 'Q') {
+        ask_to_close();
     }
+}
+
+void Application::undo_or_redo(bool redo) {
+    const MaterialHistory::State& state = redo ? history_->redo() : history_->undo();
+    choices_.materials = state.materials;
+    choices_.conditions = state.conditions;
+}
+
+void Application::ask_to_close() {
+    const auto view = view_size();
+    const bool seen = view[0] > 0 && view[1] > 0; // nobody would see the question else
+    closing_ = asks_to_close_ || !seen || unsaved().empty();
+    asks_to_close_ = true;
+}
+
+std::string Application::unsaved() const {
+    if (!saved_result_.empty()) {
+        return {};
+    }
+    if (!document_->as_opened()) {
+        return "Materials or temperatures were changed, and are not saved.";
+    }
+    if (worked_ > long_work && document_->unsavable_reason() == nullptr) {
+        return fmt::format("The light took {} to compute, and is not saved.",
+                           seconds_text(std::chrono::duration<double>(worked_).count()));
+    }
+    return {};
+}
+
+void Application::look_under_cursor() {
+    under_cursor_.reset();
+    if (navigator_.dragging() || !navigator_.on_picture() || gui_.has_mouse()) {
+        return;
+    }
+    if (const auto point = navigator_.surface_under_cursor()) {
+        under_cursor_ = UnderCursor{patch_at(*document_->input().mesh, *point), point->position};
+    }
+}
+
+std::array<std::string, 2> Application::words_under_cursor() const {
+    if (!under_cursor_) {
+        return {};
+    }
+    const ViewerInput& input = document_->input();
+    const std::uint32_t i = under_cursor_->patch;
+    std::string value;
+    if (view_.field()) {
+        const FalseColours& shown = view_.field()->shown;
+        value = std::isnan(shown.values[i]) ? view_.field()->grey
+                                            : fmt::format("{:.4g} {}", shown.values[i], shown.unit);
+    } else if (document_->light().knows(i)) {
+        for (std::uint32_t c = 0; c < input.channels(); ++c) {
+            value +=
+                fmt::format("{:.3g} ", document_->light().radiosity[std::size_t{i} * input.channels() + c]);
+        }
+        value += flux_density_unit(*input.scene);
+    }
+    const Vec3& at = under_cursor_->position;
+    return {fmt::format("{}, patch {}: {}", input.mesh->groups()[input.mesh->group(i)], i, value),
+            fmt::format("at {:.4g} {:.4g} {:.4g}", at.x, at.y, at.z)};
 }
 
 template <typename Action>
@@ -256,6 +330,15 @@ void Application::grant_wishes() {
     if (wishes.reload) {
         open(document_->input().file);
     }
+    if (wishes.save_and_close) {
+        attempt([this] {
+            save_result(free_name(document_->input().file.stem().string(), ".hres"));
+            close();
+        });
+        asks_to_close_ = false;
+    }
+    closing_ = closing_ || wishes.close;
+    asks_to_close_ = asks_to_close_ && !wishes.stay;
 }
 
 void Application::pick(std::array<double, 2> pixel) {
@@ -301,6 +384,11 @@ void Application::update() {
         exchange(std::move(*finer));
     }
     const Clock::time_point now = Clock::now();
+    if (document_->busy()) {
+        works_since_ = works_since_.value_or(now);
+    } else if (works_since_) {
+        worked_ += now - *std::exchange(works_since_, std::nullopt);
+    }
     if (document_->update(now >= gathers_at_)) {
         took_light_ = took_light_.value_or(now);
         moving_ = moving_ || document_->busy();
@@ -326,6 +414,9 @@ void Application::settle() {
         choices_.look.range.reset(); // it was of another quantity
     }
     document_->set_materials(choices_.materials, choices_.conditions);
+    if (!gui_.holds()) {
+        history_->note({choices_.materials, choices_.conditions});
+    }
     const bool other_patch = shown_pick_ != choices_.picked;
     const bool other_look = shown_look_ != choices_.look;
     const HemicubeChoice hemicube{choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
@@ -394,7 +485,9 @@ void Application::describe_panels() {
     const PatchMesh& mesh = *document_->input().mesh;
     gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
     if (view[0] < size[0]) {
-        side_panel({*document_, picked_, navigator_.camera(), view_.field(), note_, status_}, size, choices_);
+        side_panel(
+            {*document_, picked_, navigator_.camera(), view_.field(), note_, status_, words_under_cursor()},
+            size, choices_);
     }
     if (view[0] > 0 && view[1] > 0) {
         if (choices_.pointed_at) {
@@ -411,6 +504,9 @@ void Application::describe_panels() {
         }
         if (choices_.help) {
             help_window(view, settings_.controls, choices_.help);
+        }
+        if (asks_to_close_) {
+            close_question(unsaved(), document_->unsavable_reason() == nullptr, view, choices_.wishes);
         }
         bool open = true;
         if (!message_.empty()) {
@@ -533,8 +629,9 @@ void Application::numbered_screenshot(bool of_window) {
 
 void Application::report(const std::filesystem::path& path) const {
     const bool hemicube = inset_ && choices_.picked && choices_.hemicube;
-    write_report(path, {*document_, choices_, view_.field(), picked_, navigator_.camera(), message_,
-                        hemicube ? inset_->seen() : std::vector<std::uint32_t>()});
+    write_report(path,
+                 {*document_, choices_, view_.field(), picked_, navigator_.camera(), message_,
+                  hemicube ? inset_->seen() : std::vector<std::uint32_t>(), under_cursor_, asks_to_close_});
 }
 
 void Application::save_camera() {

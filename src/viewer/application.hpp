@@ -4,9 +4,11 @@
 #include "viewer/file_watch.hpp"
 #include "viewer/gui.hpp"
 #include "viewer/hemicube_inset.hpp"
+#include "viewer/material_history.hpp"
 #include "viewer/navigator.hpp"
 #include "viewer/opener.hpp"
 #include "viewer/panels.hpp"
+#include "viewer/report.hpp"
 #include "viewer/scene_target.hpp"
 #include "viewer/scene_view.hpp"
 #include "viewer/window.hpp"
@@ -47,6 +49,8 @@ public:
     /// Whether the open file has changed on the disk since the last call.
     [[nodiscard]] bool file_changed() { return watch_->take(); }
     [[nodiscard]] bool closing() const { return closing_; }
+    /// Ends, whatever is not saved.
+    void close() { closing_ = true; }
     [[nodiscard]] Document& document() { return *document_; }
     [[nodiscard]] Choices& choices() { return choices_; }
     [[nodiscard]] Window& window() { return window_; }
@@ -75,6 +79,13 @@ private:
     void act_on(const Event& event);
     void on_key(const KeyEvent& event);
     void other_key(const KeyEvent& event);
+    void undo_or_redo(bool redo);
+    /// Ends, unless something would be lost: then it asks first.
+    void ask_to_close();
+    /// What would be lost, in words; empty: nothing.
+    [[nodiscard]] std::string unsaved() const;
+    void look_under_cursor();
+    [[nodiscard]] std::array<std::string, 2> words_under_cursor() const;
     void pick(std::array<double, 2> pixel);
     void moved();
     void grant_wishes();
@@ -111,7 +122,9 @@ private:
     std::string note_;
     std::string message_;
     std::string title_;
-    std::filesystem::path saved_result_; ///< of the light as it is; empty: it was not saved
+    std::optional<UnderCursor> under_cursor_;
+    std::optional<MaterialHistory> history_; ///< always there once a scene is
+    std::filesystem::path saved_result_;     ///< of the light as it is; empty: it was not saved
 
     using Clock = std::chrono::steady_clock;
     bool moving_ = false;                         ///< the picture will change again at once
@@ -122,6 +135,9 @@ private:
     bool picture_changed_ = true;
     bool lost_ = true; ///< what the window holds is not what was drawn last
     bool closing_ = false;
+    bool asks_to_close_ = false;
+    Clock::duration worked_{0};                    ///< on the scene that is open
+    std::optional<Clock::time_point> works_since_; ///< while it does
 
     std::shared_ptr<FactorCache> factor_cache_ = std::make_shared<FactorCache>();
     std::unique_ptr<Document> document_;

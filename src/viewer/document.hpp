@@ -70,7 +70,7 @@ public:
     /// @throws what ended the cutting
     [[nodiscard]] std::optional<ViewerInput> take_refined();
 
-    /// Asks for the light of other materials, from the light that is there on.
+    /// Asks for the light of other materials.
     /// @param conditions  of heat
     void set_materials(const std::vector<Material>& materials, const std::vector<HeatCondition>& conditions);
     /// Back to the light of the lamps, and a sweep at a time from there. Needs rows.

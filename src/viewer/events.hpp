@@ -30,6 +30,7 @@ inline constexpr char home_key = '\x02';   ///< Home
 struct KeyEvent {
     char key;
     bool shift;
+    bool control = false;
 };
 /// The window has another size, or its content was lost.
 struct RefreshEvent {};

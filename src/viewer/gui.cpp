@@ -65,6 +65,10 @@ bool Gui::has_mouse() const {
     return ImGui::GetIO().WantCaptureMouse;
 }
 
+bool Gui::holds() const {
+    return ImGui::IsAnyItemActive();
+}
+
 bool Gui::close_list() {
     const bool open = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     if (open) {

@@ -23,6 +23,8 @@ public:
     /// Whether the mouse is the panels' business, as of the last frame.
     [[nodiscard]] bool has_mouse() const;
 
+    /// Whether a slider or a button is held.
+    [[nodiscard]] bool holds() const;
     /// Closes a list that is open. @return whether one was
     bool close_list();
 

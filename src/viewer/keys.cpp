@@ -75,8 +75,10 @@ std::vector<GuideLine> guide(Controls controls) {
                                {"F5", "read the file again"},
                                {"Tab", "side panel"},
                                {"F1", "this list"},
-                               {"Esc", "closes a list, lets go of the patch, quits"},
-                               {"Q", "quits"}});
+                               {"ctrl + Z, ctrl + shift + Z",
+                                "takes back a change of materials or temperatures; redoes it"},
+                               {"Esc", "closes a list, lets go of the patch"},
+                               {"Q", "quits; asks where something is not saved"}});
     return lines;
 }
 

@@ -1,7 +1,5 @@
 #include "viewer/navigator.hpp"
 
-#include "display/visible_point.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -41,7 +39,7 @@ Navigator::Point Navigator::on_screen(Point pixel) const {
     return {(pixel.x - 0.5 * view_[0]) / height, 0.5 - pixel.y / height};
 }
 
-std::optional<Vec3> Navigator::surface_under_cursor() const {
+std::optional<VisiblePoint> Navigator::surface_under_cursor() const {
     const Point place = on_screen(cursor_);
     const ViewRay ray = orbit_.ray(place.x, place.y);
     return visible_point(*mesh_, ray.origin, ray.direction);
@@ -49,7 +47,7 @@ std::optional<Vec3> Navigator::surface_under_cursor() const {
 
 Vec3 Navigator::point_under_cursor() const {
     if (const auto point = surface_under_cursor()) {
-        return *point;
+        return point->position;
     }
     const Point place = on_screen(cursor_);
     const ViewRay ray = orbit_.ray(place.x, place.y);
@@ -99,8 +97,10 @@ std::optional<std::array<double, 2>> Navigator::on_button(const ButtonEvent& eve
         pressed_at_ = cursor_;
         dragging_ = false;
         // Off the scene one turns about the target, not about a place in empty space.
-        orbit_.grab(motion_ == Motion::orbit ? surface_under_cursor().value_or(camera().target)
-                                             : point_under_cursor());
+        const auto point = surface_under_cursor();
+        orbit_.grab(motion_ != Motion::orbit ? point_under_cursor()
+                    : point                  ? point->position
+                                             : camera().target);
         return std::nullopt;
     }
     if (button_ != event.button) {

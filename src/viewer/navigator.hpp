@@ -1,6 +1,7 @@
 #pragma once
 
 #include "display/orbit_camera.hpp"
+#include "display/visible_point.hpp"
 #include "viewer/events.hpp"
 #include "viewer/viewer.hpp"
 
@@ -39,6 +40,12 @@ public:
     /// Whether a button was pressed on the scene and not released.
     [[nodiscard]] bool holds() const { return button_.has_value(); }
     [[nodiscard]] bool dragging() const { return button_ && dragging_; }
+    /// What the picture shows under the cursor.
+    [[nodiscard]] std::optional<VisiblePoint> surface_under_cursor() const;
+    /// Whether the cursor is on the picture.
+    [[nodiscard]] bool on_picture() const {
+        return cursor_.x >= 0.0 && cursor_.x < view_[0] && cursor_.y >= 0.0 && cursor_.y < view_[1];
+    }
 
 private:
     enum class Motion { none, orbit, pan, zoom };
@@ -50,9 +57,7 @@ private:
     [[nodiscard]] Motion motion_of(const ButtonEvent& event) const;
     /// On the screen as OrbitCamera wants it: heights of the picture, from its centre, y upwards.
     [[nodiscard]] Point on_screen(Point pixel) const;
-    /// The surface point under the cursor.
-    [[nodiscard]] std::optional<Vec3> surface_under_cursor() const;
-    /// The same; where there is none, the target's depth there.
+    /// The surface point under the cursor; where there is none, the target's depth there.
     [[nodiscard]] Vec3 point_under_cursor() const;
 
     Controls controls_;

@@ -152,6 +152,28 @@ void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& ope
     ImGui::End();
 }
 
+void close_question(const std::string& unsaved, bool savable, std::array<std::uint32_t, 2> view,
+                    Wishes& wishes) {
+    const float width = std::min(430.0F, static_cast<float>(view[0]) - 20.0F);
+    ImGui::SetNextWindowPos({0.5F * static_cast<float>(view[0]), 0.4F * static_cast<float>(view[1])},
+                            ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSize({width, 0.0F});
+    ImGui::SetNextWindowBgAlpha(0.97F);
+    ImGui::Begin("quit", nullptr, fixed_window | ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushTextWrapPos(width - 10.0F);
+    text(unsaved);
+    ImGui::PopTextWrapPos();
+    ImGui::Spacing();
+    if (savable) {
+        wishes.save_and_close = ImGui::Button("Save the result and quit") || wishes.save_and_close;
+        ImGui::SameLine();
+    }
+    wishes.close = ImGui::Button("Quit (Q)") || wishes.close;
+    ImGui::SameLine();
+    wishes.stay = ImGui::Button("Stay (Esc)") || wishes.stay;
+    ImGui::End();
+}
+
 void message_window(const std::string& message, std::array<std::uint32_t, 2> view, bool& open) {
     constexpr float margin = 10.0F;
     const float width = std::min(620.0F, static_cast<float>(view[0]) - 2.0F * margin);

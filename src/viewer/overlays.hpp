@@ -27,6 +27,11 @@ struct HemicubePicture {
 void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2> view, Choices& choices);
 /// Mouse and keys.
 void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& open);
+/// Whether to quit although something is not saved, in the middle of the view.
+/// @param unsaved  what that is
+/// @param savable  whether it can be saved
+void close_question(const std::string& unsaved, bool savable, std::array<std::uint32_t, 2> view,
+                    Wishes& wishes);
 /// What went wrong, in the upper left of the view.
 void message_window(const std::string& message, std::array<std::uint32_t, 2> view, bool& open);
 

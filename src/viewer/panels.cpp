@@ -439,10 +439,13 @@ void material_section(const PanelContent& content, Choices& choices) {
                                   (lamp ? ImGuiTreeNodeFlags_DefaultOpen : 0))) {
             channel_sliders("reflectance", material.reflectance, most_reflectance, "%.2f");
             channel_sliders("exitance", material.exitance, most_exitance, "%.3g");
+            if (material != input.scene->materials[m] && ImGui::SmallButton("as in the scene")) {
+                material = input.scene->materials[m];
+            }
         }
         ImGui::PopID();
     }
-    if (choices.materials != input.scene->materials && ImGui::Button("As in the scene")) {
+    if (choices.materials != input.scene->materials && ImGui::Button("All as in the scene")) {
         choices.materials = input.scene->materials;
     }
 }
@@ -601,8 +604,9 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     ImGui::EndChild();
     ImGui::Separator();
     text(content.note.empty() ? work.light : content.note);
-    faint(content.status);
-    faint("F1 help   Tab panel");
+    const bool pointed = !content.under_cursor[0].empty();
+    faint(pointed ? content.under_cursor[0] : content.status);
+    faint(pointed ? content.under_cursor[1] : "F1 help   Tab panel");
     ImGui::End();
 }
 

@@ -25,6 +25,9 @@ struct Wishes {
     bool save_camera = false;
     bool copy_command = false;
     bool reload = false;
+    bool save_and_close = false;
+    bool close = false;             ///< whatever is not saved
+    bool stay = false;              ///< instead
     std::optional<char> camera_key; ///< as if it were pressed
     std::optional<double> fov;
     std::optional<bool> orthographic;
@@ -71,9 +74,10 @@ struct PanelContent {
     const Document& document;
     const std::optional<PickedPatch>& picked;
     const Camera& camera;
-    const std::optional<Field>& field; ///< false colours that are shown
-    std::string note;                  ///< on what was done last; empty: on the light
-    std::string status;                ///< at the panel's foot
+    const std::optional<Field>& field;       ///< false colours that are shown
+    std::string note;                        ///< on what was done last; empty: on the light
+    std::string status;                      ///< at the panel's foot
+    std::array<std::string, 2> under_cursor; ///< in its place: what is there, and where; empty: nothing
 };
 
 /// Pixels of the window that the side panel takes, from the right; 0 where the window is too small for it.

@@ -17,6 +17,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Light on the way to the solution is shown no more often than this.
 constexpr std::chrono::milliseconds interval{80};
+/// And from this residual on: before, the light that is shown is nearer to what will be.
+constexpr double near_solution = 0.01;
 
 } // namespace
 
@@ -177,7 +179,9 @@ void Relighter::solve(Wish wish, const std::stop_token& stop) {
             &input_.factors->matrix,   input_.channels(),    update.light.reflectance, update.light.exitance,
             input_.scene->environment, input_.mesh->areas(), input_.solution.direct};
         SolverSettings settings = input_.solver;
-        settings.start = start;
+        if (wish.stepwise) {
+            settings.start = start;
+        } // else from the beginning, so that the same materials always give the same bits
         if (wish.stepwise && settings.method == SolverMethod::automatic) {
             settings.method = SolverMethod::gauss_seidel;
         }
@@ -190,7 +194,8 @@ void Relighter::solve(Wish wish, const std::stop_token& stop) {
             }
             residuals_.push_back(residual);
             const bool waits = stepwise_ && steps_ == 0;
-            if (waits || now - shown >= interval) {
+            const bool shows = wish.stepwise || residual < near_solution;
+            if (waits || (shows && now - shown >= interval)) {
                 shown = now;
                 lock.unlock();
                 SolveUpdate so_far;

@@ -44,6 +44,12 @@ void write_report(const std::filesystem::path& path, const Report& report) {
                 {"fov", report.camera.fov},
                 {"orthographic", report.camera.orthographic}}},
               {"message", report.message}};
+    json["under_cursor"] = nullptr;
+    if (report.under_cursor) {
+        json["under_cursor"] = {{"patch", report.under_cursor->patch},
+                                {"position", point(report.under_cursor->position)}};
+    }
+    json["asks_to_close"] = report.asks_to_close;
     if (report.picked) {
         for (const Partner& partner : report.picked->partners) {
             json["partners"].push_back(partner.patch);

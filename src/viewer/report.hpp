@@ -12,6 +12,12 @@
 namespace hemi::viewer {
 
 /// What a window shows, as a script may ask.
+/// What the cursor points at.
+struct UnderCursor {
+    std::uint32_t patch;
+    Vec3 position;
+};
+
 struct Report {
     const Document& document;
     const Choices& choices;
@@ -20,13 +26,15 @@ struct Report {
     const Camera& camera;
     const std::string& message;
     std::vector<std::uint32_t> seen; ///< patches in the hemicube that is shown
+    const std::optional<UnderCursor>& under_cursor;
+    bool asks_to_close;
 };
 
 /// One JSON object: {"schema": "hemi/view/1", "quantity", "picked": patch or null, "pointed_at", "partners":
 /// [patch …], "hemicube": [patch …], "values": one a patch, null where there is none, or null, "scale":
 /// {"low", "high", "logarithmic"} or null, "radiosity": [[per channel] …], "residuals": [after every sweep],
 /// "light": how it was solved, "camera": {"eye", "target", "up", "fov", "orthographic"}, "message": what went
-/// wrong last}.
+/// wrong last, "under_cursor": {"patch", "position"} or null, "asks_to_close": whether it does}.
 /// @throws IoError
 void write_report(const std::filesystem::path& path, const Report& report);
 

@@ -126,18 +126,19 @@ DragCommand parse_drag(Line& line) {
 
 KeyCommand parse_key(Line& line) {
     std::string_view name = line.word("a key");
+    const bool control = take("ctrl+", name);
     const bool shift = take("shift+", name);
     constexpr std::array<std::pair<std::string_view, char>, 5> named{
         {{"Escape", escape_key}, {"Tab", tab_key}, {"Home", home_key}, {"F1", help_key}, {"F5", reload_key}}};
     for (const auto& [word, key] : named) {
         if (name == word) {
-            return {{key, shift}};
+            return {{key, shift, control}};
         }
     }
     if (name.size() != 1 || std::isalnum(static_cast<unsigned char>(name[0])) == 0) {
         line.fail(fmt::format("key \"{}\"; must be a letter, a digit, Escape, Tab, Home, F1 or F5", name));
     }
-    return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift}};
+    return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift, control}};
 }
 
 /// WIDTHxHEIGHT; nothing if the word is none.

@@ -139,7 +139,7 @@ public:
         application_.document().cancel();
         application_.wait_for_work();
     }
-    void perform(const QuitCommand&) { application_.handle(CloseEvent{}); }
+    void perform(const QuitCommand&) { application_.close(); }
 
 private:
     Application& application_;

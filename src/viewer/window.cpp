@@ -105,7 +105,8 @@ struct Window::Callbacks {
             return;
         }
         if (const std::optional<char> name = key_name(key, scancode)) {
-            events(window).push_back(KeyEvent{*name, (modifiers & GLFW_MOD_SHIFT) != 0});
+            events(window).push_back(
+                KeyEvent{*name, (modifiers & GLFW_MOD_SHIFT) != 0, (modifiers & GLFW_MOD_CONTROL) != 0});
         }
     }
     static void resized(GLFWwindow* window, int, int) noexcept { events(window).push_back(RefreshEvent{}); }

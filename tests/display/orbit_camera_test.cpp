@@ -225,17 +225,25 @@ TEST_CASE("VisiblePoint: finds the nearest front side and passes through backs",
     const PatchMesh mesh = builder.mesh();
     const auto down = visible_point(mesh, {0.3, 0.4, 5.0}, {0, 0, -2});
     REQUIRE(down);
-    check_near(*down, {0.3, 0.4, 0.0});
+    check_near(down->position, {0.3, 0.4, 0.0});
     const auto up = visible_point(mesh, {0.3, 0.4, -5.0}, {0, 0, 1});
     REQUIRE(up);
-    check_near(*up, {0.3, 0.4, 1.0});
+    check_near(up->position, {0.3, 0.4, 1.0});
     CHECK_FALSE(visible_point(mesh, {1.3, 0.4, 5.0}, {0, 0, -1}));
     CHECK_FALSE(visible_point(mesh, {0.3, 0.4, 5.0}, {0, 0, 1}));
 
     builder.scene.surfaces[1].two_sided = true;
     const auto sheet = visible_point(builder.mesh(), {0.3, 0.4, 5.0}, {0, 0, -1});
     REQUIRE(sheet);
-    check_near(*sheet, {0.3, 0.4, 1.0});
+    check_near(sheet->position, {0.3, 0.4, 1.0});
+    CHECK(sheet->surface == 1);
+    CHECK(sheet->back); // it faces down
+
+    builder.scene.surfaces[1].patches = Grid{4, 2};
+    const PatchMesh cut = builder.mesh();
+    const std::uint32_t patch = patch_at(cut, *visible_point(cut, {0.3, 0.4, 5.0}, {0, 0, -1}));
+    CHECK(cut.is_back(patch));
+    CHECK(distance_to_polygon({0.3, 0.4, 1.0}, cut.corners(patch).polygon()) == 0.0);
 }
 
 TEST_CASE("OrbitCamera: a line is seen where rays through its ends leave the eye", "[display]") {

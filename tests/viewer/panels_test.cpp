@@ -190,20 +190,72 @@ TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
     CHECK(place.read("bare.png") == place.read("bare_too.png"));
 }
 
-TEST_CASE("Viewer: Escape closes what is open before it quits", "[viewer][gl]") {
+TEST_CASE("Viewer: Escape closes what is open, and never the window", "[viewer][gl]") {
     const Workplace place;
     // The list of quantities stands at the top of the panel, which is 332 wide.
     const int status = place.view("windowshot start.png\nclick 480 41\nwindowshot list.png\nkey Escape\n"
                                   "move 100 200\nwindowshot closed.png\n"
                                   "key F1\nkey Escape\nclick 150 200\nkey Escape\nreport let_go.json\n"
-                                  "key Escape\nreport never.json\n",
+                                  "key Escape\nkey Escape\nreport open.json\n",
                                   with_panel);
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
     CHECK(place.read("list.png") != place.read("start.png"));
     REQUIRE(place.has("closed.png"));
     CHECK(picked(place.json("let_go.json")) == no_patch);
+    CHECK(place.has("open.json"));
+}
+
+TEST_CASE("Viewer: changes that are not saved are asked for before it quits", "[viewer][gl]") {
+    const Workplace place;
+    const int status = place.view("set reflectance 0.1 white\nkey Q\nreport asks.json\nwindowshot asks.png\n"
+                                  "key Escape\nreport stays.json\nwindowshot stays.png\n"
+                                  "save-result kept.hres\nkey Q\nreport never.json\n",
+                                  with_panel);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    CHECK(place.json("asks.json")["asks_to_close"] == true);
+    CHECK(place.json("stays.json")["asks_to_close"] == false);
+    CHECK(place.read("asks.png") != place.read("stays.png"));
     CHECK_FALSE(place.has("never.json"));
+    REQUIRE(place.view("set reflectance 0.1 white\nkey Q\nkey Q\nreport never.json\n", small) == 0);
+    CHECK_FALSE(place.has("never.json"));
+}
+
+TEST_CASE("Viewer: changes of materials are taken back and redone to the bits of the light", "[viewer][gl]") {
+    const Workplace place;
+    const int status = place.view("report first.json\nscreenshot first.png\n"
+                                  "set reflectance 0.1 white\nscreenshot second.png\n"
+                                  "set exitance 1 lamp\nscreenshot third.png\n"
+                                  "key ctrl+Z\nwait\nscreenshot back.png\n"
+                                  "key ctrl+shift+Z\nwait\nscreenshot again.png\n"
+                                  "key ctrl+Z\nkey ctrl+Z\nkey ctrl+Z\nwait\nscreenshot start.png\n"
+                                  "key ctrl+Q\nset reflectance 0.3 white\nkey ctrl+shift+Z\nwait\n"
+                                  "key ctrl+Z\nwait\nreport end.json\nscreenshot end.png\n",
+                                  small);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    CHECK(place.read("second.png") != place.read("first.png"));
+    CHECK(place.read("third.png") != place.read("second.png"));
+    CHECK(place.read("back.png") == place.read("second.png"));
+    CHECK(place.read("again.png") == place.read("third.png"));
+    CHECK(place.read("start.png") == place.read("first.png"));
+    CHECK(place.read("end.png") == place.read("first.png"));
+    CHECK(place.json("end.json")["radiosity"] == place.json("first.json")["radiosity"]);
+}
+
+TEST_CASE("Viewer: what is under the cursor is told", "[viewer][gl]") {
+    const Workplace place;
+    const int status = place.view("click 150 200\nreport picked.json\nmove 150 200\nreport there.json\n"
+                                  "windowshot light.png\nshow radiosity\nwindowshot field.png\n"
+                                  "move 500 200\nreport panel.json\n",
+                                  with_panel);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto there = place.json("there.json")["under_cursor"];
+    REQUIRE(there.is_object());
+    CHECK(there["patch"] == place.json("picked.json")["picked"]);
+    CHECK(place.json("panel.json")["under_cursor"].is_null());
 }
 
 TEST_CASE("Viewer: what cannot be shown is refused with the reason", "[viewer][gl]") {

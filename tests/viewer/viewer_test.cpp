@@ -92,7 +92,6 @@ TEST_CASE("Viewer: survives being resized, down to one pixel", "[viewer][gl]") {
 TEST_CASE("Viewer: a script ends at quit or at its end", "[viewer][gl]") {
     const Workplace place;
     CHECK(place.view("key Q\nscreenshot never.png\n") == 0);
-    CHECK(place.view("key Escape\nscreenshot never.png\n") == 0);
     CHECK(place.view("quit\nscreenshot never.png\n") == 0);
     CHECK(place.view("# nothing to do\n\n") == 0);
     CHECK_FALSE(place.has("never.png"));
