@@ -188,7 +188,7 @@ TEST_CASE("Viewer: a large scene shows about its light before its form factors a
 TEST_CASE("Viewer: while rows come in, patches show the light that reaches them straight from the lamps",
           "[viewer][gl]") {
     const Workplace place;
-    const std::string slow = "--patches-per-face 64 --preset plain --resolution 1536 --jobs 1";
+    const std::string slow = "--patches-per-face 64 --preset plain --resolution 1024 --jobs 1";
     const int status = place.view("live\nrows 0.2\ncancel\nshow radiosity\nreport half.json\n"
                                   "show picture\nscreenshot half.png\n",
                                   "--size 300x200 " + slow);
