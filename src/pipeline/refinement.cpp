@@ -99,17 +99,14 @@ std::vector<double> contributions(const PatchMesh& mesh, const Solution& solutio
 struct Errors {
     double patch_size = 0.0;
     double all = 0.0;
-    double at_most = 0.0; ///< all of it, with the sample's standard error
 };
 Errors errors_of(const Solution& solution, ErrorOf error_of) {
     const auto worst = [](double so_far, double error) { return error > so_far ? error : so_far; };
     const PatchSizeError& of_size = *solution.patch_size_error;
     Errors errors;
-    double doubt = 0.0;
     switch (error_of) {
     case ErrorOf::field:
         errors.patch_size = of_size.field.rms;
-        doubt = of_size.field.doubt;
         break;
     case ErrorOf::groups:
         if (std::none_of(of_size.groups.begin(), of_size.groups.end(),
@@ -125,7 +122,6 @@ Errors errors_of(const Solution& solution, ErrorOf error_of) {
         break;
     default:
         errors.patch_size = of_size.vertices.rms;
-        doubt = of_size.vertices.doubt;
     }
     errors.all = errors.patch_size;
     if (const auto total = solution_error(solution)) {
@@ -136,7 +132,6 @@ Errors errors_of(const Solution& solution, ErrorOf error_of) {
             errors.all = error_of == ErrorOf::groups ? worst(errors.all, group) : errors.all;
         }
     }
-    errors.at_most = errors.all + doubt; // errors of groups have it
     return errors;
 }
 
@@ -215,7 +210,7 @@ public:
             observer_.detail(fmt::format("refinement: {}, error {:.2g} %",
                                          plural(step.patches, "patch", "patches"), 100.0 * step.error));
             observer_.refined(result_);
-            const bool enough = is_enough(errors.at_most);
+            const bool enough = is_enough(errors.all);
             if (enough || !may_go_on()) {
                 errors = finish();
                 result_.steps.back().error = errors.all;
@@ -341,7 +336,7 @@ private:
             if (!result_.steps.empty()) {
                 result_.stopped = fmt::format("memory is short to estimate the error of {}",
                                               plural(result_.mesh.size(), "patch", "patches"));
-                return {not_known, not_known, not_known};
+                return {not_known, not_known};
             }
             throw InvalidArgument(
                 "patches cannot be cut where it tells: nothing in the scene reflects light, or "
