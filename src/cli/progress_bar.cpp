@@ -31,12 +31,15 @@ std::string clock_text(double seconds) {
 }
 
 /// "43 %  1234 rows/s  0:12 left"
-std::string figures(std::size_t done, std::size_t total, double seconds, const std::string& unit) {
+/// @param before   of `done`, what was done when the clock began to run
+/// @param seconds  by that clock
+std::string figures(std::size_t before, std::size_t done, std::size_t total, double seconds,
+                    const std::string& unit) {
     const double share = static_cast<double>(done) / static_cast<double>(total);
     std::string text = fmt::format("{:3.0f} %", std::floor(100.0 * share));
     // The first rows wait for everything to start and tell nothing about the rest.
-    if (done > 0 && seconds > 0.0 && (share >= 0.02 || seconds > 3.0)) {
-        const double rate = static_cast<double>(done) / seconds;
+    if (done > before && seconds > 0.0 && (share >= 0.02 || seconds > 3.0)) {
+        const double rate = static_cast<double>(done - before) / seconds;
         if (!unit.empty()) {
             text += fmt::format("  {:.{}f} {}/s", rate, rate < 10.0 ? 1 : 0, unit);
         }
@@ -60,6 +63,7 @@ ProgressBar::~ProgressBar() {
 bool ProgressBar::update(std::size_t done, std::size_t total) {
     if (total > 0 && !terminal_.quiet()) {
         const Clock::time_point now = Clock::now();
+        before_ = std::min(before_.value_or(done), done);
         if (!terminal_.can_redraw()) {
             print_tenth(done, total, now);
         } else if (now - drawn_ >= redraw_interval) {
@@ -71,7 +75,7 @@ bool ProgressBar::update(std::size_t done, std::size_t total) {
 
 void ProgressBar::draw(std::size_t done, std::size_t total, Clock::time_point now) {
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    const std::string text = figures(done, total, seconds, unit_);
+    const std::string text = figures(*before_, done, total, seconds, unit_);
     const std::size_t taken = title_.size() + text.size() + 6;
     const std::size_t width = terminal_width();
     std::string bar;
@@ -94,7 +98,7 @@ void ProgressBar::print_tenth(std::size_t done, std::size_t total, Clock::time_p
     }
     tenth_ = tenth;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    const std::string line = fmt::format("{} {}\n", title_, figures(done, total, seconds, unit_));
+    const std::string line = fmt::format("{} {}\n", title_, figures(*before_, done, total, seconds, unit_));
     std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

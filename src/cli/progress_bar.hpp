@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace hemi::cli {
@@ -35,6 +36,7 @@ private:
     const Terminal& terminal_;
     std::string title_;
     std::string unit_;
+    std::optional<std::size_t> before_; ///< done at the first report, which comes when a part is done
     Clock::time_point start_;
     Clock::time_point drawn_;
     std::size_t tenth_ = 0;

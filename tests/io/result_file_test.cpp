@@ -246,22 +246,11 @@ TEST_CASE("Patch tables: one line a patch, names in quotes where needed, numbers
     const std::string area = text.substr(text.find("0,floor,") + 8);
     REQUIRE(std::stod(area) == mesh.areas()[0]);
 
-    io::write_radiosity_csv(folder / "r.csv", mesh, result.scene.channels, result.solution.radiosity,
-                            result.solution.irradiance, result.solution.radiosity);
+    io::write_radiosity_csv(folder / "r.csv", result);
     const std::string table = io::read_file(folder / "r.csv");
-    REQUIRE(table.starts_with(
-        "index,group,area,cx,cy,cz,nx,ny,nz,exitance_short,\"exitance_long, far\",irradiance_short,"
-        "\"irradiance_long, far\",radiosity_short,\"radiosity_long, far\"\n"));
-    REQUIRE(table.find(",1,0.5,0,1,1,0.5\n") != std::string::npos);
-    const std::vector<double> errors(result.solution.radiosity.size(), 0.25);
-    io::write_radiosity_csv(folder / "r.csv", mesh, result.scene.channels, result.solution.radiosity,
-                            result.solution.irradiance, result.solution.radiosity, errors);
-    const std::string with_errors = io::read_file(folder / "r.csv");
-    REQUIRE(with_errors.find(",\"radiosity_long, far\",error_short,\"error_long, far\"\n") !=
-            std::string::npos);
-    REQUIRE(with_errors.find(",1,0.5,0,1,1,0.5,0.25,0.25\n") != std::string::npos);
-    REQUIRE_THROWS_AS(io::write_radiosity_csv(folder / "x.csv", mesh, result.scene.channels, {}, {}, {}),
-                      InvalidArgument);
+    REQUIRE(table.starts_with("index,group,area,cx,cy,cz,nx,ny,nz,exitance_short,\"exitance_long, far\","));
+    REQUIRE(table.find(",radiosity_short,\"radiosity_long, far\",") != std::string::npos);
+    REQUIRE(std::count(table.begin(), table.end(), '\n') == static_cast<int>(mesh.size()) + 1);
     REQUIRE(folder.files() == 2);
 }
 

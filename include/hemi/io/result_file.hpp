@@ -59,24 +59,11 @@ struct PatchPlaces {
 /// @throws InvalidArgument for other than N places; IoError
 void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh,
                        const PatchPlaces& left = {});
-/// The same columns, then exitance_C, irradiance_C, radiosity_C for every channel name C, and error_C where
-/// errors of the radiosity are given, and direct_C where irradiances of sun and sky are.
-/// @param path      of the file
-/// @param mesh      N patches
-/// @param channels  their names
-/// @param exitance,irradiance,radiosity,errors  N·channels each, channel c of patch i at [i·channels + c];
-///   errors may be empty
-/// @param left      what is left of the patches
-/// @param direct    as the others; may be empty
-/// @throws InvalidArgument for spans that do not fit; IoError
-void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
-                         std::span<const std::string> channels, std::span<const double> exitance,
-                         std::span<const double> irradiance, std::span<const double> radiosity,
-                         std::span<const double> errors = {}, const PatchPlaces& left = {},
-                         std::span<const double> direct = {});
-/// The same of a stored solution: one line a patch of the surfaces as they were read, with means over what is
-/// left of it; then reflectance_C and emissivity_C, environment, blocked and row_sum, and, where the error
-/// has parts, error_factors_C and error_patch_size_C.
+/// The same columns of a stored solution: one line a patch of the surfaces as they were read, with means over
+/// what is left of it; then, for every channel name C, exitance_C, irradiance_C, radiosity_C, error_C and
+/// direct_C, reflectance_C and emissivity_C, environment, blocked and row_sum, and, where the error has
+/// parts, error_factors_C and error_patch_size_C; each where it is known.
+/// @throws IoError
 void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& result);
 
 } // namespace hemi::io

@@ -127,40 +127,6 @@ void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh,
     write_patch_table(path, mesh, {}, left);
 }
 
-void write_radiosity_csv(const std::filesystem::path& path, const PatchMesh& mesh,
-                         std::span<const std::string> channels, std::span<const double> exitance,
-                         std::span<const double> irradiance, std::span<const double> radiosity,
-                         std::span<const double> errors, const PatchPlaces& left,
-                         std::span<const double> direct) {
-    const std::size_t values = std::size_t{mesh.size()} * channels.size();
-    if (exitance.size() != values || irradiance.size() != values || radiosity.size() != values) {
-        throw InvalidArgument(fmt::format(
-            "{} exitances, {} irradiances and {} radiosities for {} patches with {} channels; must be {}",
-            exitance.size(), irradiance.size(), radiosity.size(), mesh.size(), channels.size(), values));
-    }
-    if (!errors.empty() && errors.size() != values) {
-        throw InvalidArgument(fmt::format("{} errors for {} patches with {} channels; must be {}",
-                                          errors.size(), mesh.size(), channels.size(), values));
-    }
-    if (!direct.empty() && direct.size() != values) {
-        throw InvalidArgument(fmt::format("{} direct irradiances for {} patches with {} channels; must be {}",
-                                          direct.size(), mesh.size(), channels.size(), values));
-    }
-    const std::vector<std::string> names(channels.begin(), channels.end());
-    const auto array = [&names](const char* name, std::span<const double> of_patches) {
-        return CellArray{name, {of_patches.begin(), of_patches.end()}, names};
-    };
-    std::vector<CellArray> arrays{array("exitance", exitance), array("irradiance", irradiance),
-                                  array("radiosity", radiosity)};
-    if (!errors.empty()) {
-        arrays.push_back(array("error", errors));
-    }
-    if (!direct.empty()) {
-        arrays.push_back(array("direct", direct));
-    }
-    write_patch_table(path, mesh, arrays, left);
-}
-
 void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& result) {
     constexpr std::array<const char*, 12> columns{
         "exitance",   "irradiance",  "radiosity", "error",   "direct",        "reflectance",
