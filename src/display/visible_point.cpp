@@ -6,14 +6,15 @@
 
 namespace hemi {
 
-std::optional<VisiblePoint> visible_point(const PatchMesh& mesh, const Vec3& origin, const Vec3& direction) {
+std::optional<VisiblePoint> visible_point(const PatchMesh& mesh, const Vec3& origin, const Vec3& direction,
+                                          bool backs) {
     double nearest = std::numeric_limits<double>::infinity();
     VisiblePoint result{};
     for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
         const Surface& surface = mesh.surfaces()[s];
         const Vec3& normal = mesh.surface_normal(s);
         const double slope = glm::dot(direction, normal);
-        if (slope == 0.0 || (slope > 0.0 && !surface.two_sided)) {
+        if (slope == 0.0 || (slope > 0.0 && !surface.two_sided && !backs)) {
             continue;
         }
         const double along = glm::dot(surface.vertices[0] - origin, normal) / slope;
@@ -29,7 +30,7 @@ std::optional<VisiblePoint> visible_point(const PatchMesh& mesh, const Vec3& ori
         }
         if (inside) {
             nearest = along;
-            result = {point, s, slope > 0.0};
+            result = {point, s, slope > 0.0 && surface.two_sided};
         }
     }
     if (nearest == std::numeric_limits<double>::infinity()) {

@@ -29,20 +29,21 @@ constexpr double far = 10.0;
 constexpr double apart = 3.0;
 constexpr std::size_t patches_at_once = 16;
 
-std::vector<double> sun_irradiance(const PatchMesh& mesh, const Sun& sun, std::size_t channels,
-                                   std::span<const std::uint32_t> patches) {
+void add_sun(const PatchMesh& mesh, const Sun& sun, std::size_t channels,
+             std::span<const std::uint32_t> patches, DirectIrradiance& result) {
     const ShadowRays rays(mesh);
-    std::vector<double> result(patches.size() * channels, 0.0);
+    result.sun.assign(patches.size() * channels, 0.0);
+    result.lit.assign(patches.size(), 0.0);
     parallel_for(patches.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            const double share = rays.sun_share(patches[k], sun, first_rays, edge_rays);
+            const auto [share, lit] = rays.sun_share(patches[k], sun, first_rays, edge_rays);
+            result.lit[k] = lit;
             for (std::size_t c = 0; c < channels; ++c) {
-                result[k * channels + c] = sun.irradiance[c] * share;
+                result.sun[k * channels + c] = sun.irradiance[c] * share;
             }
         }
         stop_if_interrupted();
     });
-    return result;
 }
 
 /// What patches see of the sky.
@@ -163,7 +164,7 @@ DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,
     }
     const std::size_t channels = scene.channels.size();
     if (scene.sun) {
-        result.sun = sun_irradiance(mesh, *scene.sun, channels, patches);
+        add_sun(mesh, *scene.sun, channels, patches, result);
     }
     if (scene.sky) {
         result.sky = sky_irradiance(mesh, *scene.sky, upwards(scene.up), channels, factors, patches);

@@ -37,6 +37,8 @@ constexpr double max_sampled = 192.0;
 // A patch in whose neighbourhood the radiosity is even may still hide something: it is drawn as if its error
 // were this share of the mean reflected radiosity.
 constexpr double least_doubt = 0.03;
+// Edges of shadows of wider suns, degrees across, are no longer sharp: the sun itself has 0.53.
+constexpr double widest_sharp_sun = 1.0;
 // Variance of a linear field over that of its means over four equal parts.
 constexpr double linear_over_quarters = 4.0 / 3.0;
 
@@ -388,17 +390,17 @@ private:
     /// Where the edge of a shadow of the sun crosses a quarter, what is in the sun and what is not; else all
     /// of it. An edge is sharp: whatever the size of patches, the light changes there within one.
     /// @param to_seen  the quarter's area over what nothing stands on, which the sun can reach
-    [[nodiscard]] std::vector<EvenPart> even_parts(std::uint32_t quarter, const PatchMesh& fine,
-                                                   double to_seen) const {
-        if (scene_.sun) {
+    [[nodiscard]] std::vector<EvenPart> even_parts(std::uint32_t quarter, double to_seen) const {
+        if (scene_.sun && scene_.sun->diameter <= widest_sharp_sun) {
             const std::vector<double>& normal = scene_.sun->irradiance;
             const auto c =
                 static_cast<std::size_t>(std::max_element(normal.begin(), normal.end()) - normal.begin());
-            const double cosine = glm::dot(fine.normal(quarter), scene_.sun->direction);
-            const double all = cosine * normal[c];
-            const double lit = all > 0.0 ? to_seen * direct_.sun[direct_at(quarter) + c] / all : 0.0;
-            if (lit > 0.0 && lit < 1.0) {
-                return {{lit, (1.0 - lit) * cosine}, {1.0 - lit, -lit * cosine}};
+            const std::size_t at = direct_at(quarter);
+            const double lit = direct_.lit[at / channels_];
+            const double seen_lit = std::min(1.0, to_seen * lit);
+            if (lit > 0.0 && seen_lit < 1.0 && normal[c] > 0.0) {
+                const double whole = direct_.sun[at + c] / (normal[c] * lit);
+                return {{seen_lit, (1.0 - seen_lit) * whole}, {1.0 - seen_lit, -seen_lit * whole}};
             }
         }
         return {{1.0, 0.0}};
@@ -552,7 +554,7 @@ private:
             const std::vector<double> varying = varying_light(row);
             const auto weights = shown_.weights(patch, fine.corners(quarters[q]));
             const double to_seen = fine.areas()[quarters[q]] / seen[q];
-            const std::vector<EvenPart> parts = even_parts(quarters[q], fine, to_seen);
+            const std::vector<EvenPart> parts = even_parts(quarters[q], to_seen);
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 const double rho = reflectance_[at(patch, c)];
                 const double emitted = solution_.exitance[at(patch, c)];

@@ -2,6 +2,7 @@
 
 #include "hemi/core/geometry.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>

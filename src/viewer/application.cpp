@@ -113,7 +113,9 @@ void Application::run() {
 
 void Application::watch(double seconds) {
     for (const Event& event : seconds > 0.0 ? window_.wait(seconds) : window_.poll()) {
-        if (std::holds_alternative<CloseEvent>(event) || std::holds_alternative<RefreshEvent>(event)) {
+        if (std::holds_alternative<CloseEvent>(event)) {
+            close(); // nobody could answer a question
+        } else if (std::holds_alternative<RefreshEvent>(event)) {
             handle(event);
         }
     }
@@ -146,7 +148,6 @@ void Application::act_on(const Event& event) {
                               if (navigator_.on_cursor(e)) {
                                   moved();
                               }
-                              look_under_cursor();
                           },
                           [this](const ButtonEvent& e) {
                               if (const auto pixel = navigator_.on_button(e)) {
@@ -163,6 +164,7 @@ void Application::act_on(const Event& event) {
                           [this](const CloseEvent&) { ask_to_close(); },
                           [this](const DropEvent& e) { open(e.path); }},
                event);
+    look_under_cursor();
 }
 
 void Application::on_key(const KeyEvent& event) {
@@ -230,19 +232,23 @@ std::string Application::unsaved() const {
     if (!document_->as_opened()) {
         return "Materials or temperatures were changed, and are not saved.";
     }
-    if (worked_ > long_work && document_->unsavable_reason() == nullptr) {
-        return fmt::format("The light took {} to compute, and is not saved.",
-                           seconds_text(std::chrono::duration<double>(worked_).count()));
+    const Clock::duration worked =
+        worked_ + (works_since_ ? Clock::now() - *works_since_ : Clock::duration{0});
+    const bool savable = document_->unsavable_reason() == nullptr;
+    if (worked > long_work && (savable || works_since_)) {
+        return fmt::format("{} of work are lost: the light is not {}.",
+                           seconds_text(std::chrono::duration<double>(worked).count()),
+                           savable ? "saved" : "found yet");
     }
     return {};
 }
 
 void Application::look_under_cursor() {
     under_cursor_.reset();
-    if (navigator_.dragging() || !navigator_.on_picture() || gui_.has_mouse()) {
+    if (!choices_.panel || navigator_.dragging() || !navigator_.on_picture() || gui_.has_mouse()) {
         return;
     }
-    if (const auto point = navigator_.surface_under_cursor()) {
+    if (const auto point = navigator_.surface_under_cursor(choices_.look.backs)) {
         under_cursor_ = UnderCursor{patch_at(*document_->input().mesh, *point), point->position};
     }
 }
@@ -375,6 +381,8 @@ void Application::take_opened() {
         return;
     }
     note_ = fmt::format("{} read", opened->file.filename().string());
+    worked_ = {};
+    works_since_.reset();
     exchange(std::move(*opened->input));
 }
 
@@ -414,8 +422,8 @@ void Application::settle() {
         choices_.look.range.reset(); // it was of another quantity
     }
     document_->set_materials(choices_.materials, choices_.conditions);
-    if (!gui_.holds()) {
-        history_->note({choices_.materials, choices_.conditions});
+    if (!gui_.holds() && history_->note({choices_.materials, choices_.conditions})) {
+        saved_result_.clear(); // it is of other light
     }
     const bool other_patch = shown_pick_ != choices_.picked;
     const bool other_look = shown_look_ != choices_.look;
@@ -505,6 +513,7 @@ void Application::describe_panels() {
         if (choices_.help) {
             help_window(view, settings_.controls, choices_.help);
         }
+        asks_to_close_ = asks_to_close_ && !unsaved().empty();
         if (asks_to_close_) {
             close_question(unsaved(), document_->unsavable_reason() == nullptr, view, choices_.wishes);
         }

@@ -306,7 +306,6 @@ void Document::set_materials(const std::vector<Material>& materials,
     materials_ = materials;
     conditions_ = conditions;
     Light wanted = of_materials();
-    wanted.radiosity = light_.radiosity;
     relighter_->ask(std::move(wanted));
 }
 

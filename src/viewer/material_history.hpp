@@ -22,12 +22,15 @@ public:
     explicit MaterialHistory(State opened) : states_{std::move(opened)} {}
 
     /// A change is complete; the same state again is none. What was undone before is forgotten.
-    void note(State now) {
+    /// @return whether there was a change
+    bool note(State now) {
         if (now != states_[at_]) {
             states_.resize(at_ + 1);
             states_.push_back(std::move(now));
             ++at_;
+            return true;
         }
+        return false;
     }
     /// One step back, or none at the first state.
     const State& undo() { return states_[at_ > 0 ? --at_ : 0]; }

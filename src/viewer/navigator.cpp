@@ -39,10 +39,10 @@ Navigator::Point Navigator::on_screen(Point pixel) const {
     return {(pixel.x - 0.5 * view_[0]) / height, 0.5 - pixel.y / height};
 }
 
-std::optional<VisiblePoint> Navigator::surface_under_cursor() const {
+std::optional<VisiblePoint> Navigator::surface_under_cursor(bool backs) const {
     const Point place = on_screen(cursor_);
     const ViewRay ray = orbit_.ray(place.x, place.y);
-    return visible_point(*mesh_, ray.origin, ray.direction);
+    return visible_point(*mesh_, ray.origin, ray.direction, backs);
 }
 
 Vec3 Navigator::point_under_cursor() const {

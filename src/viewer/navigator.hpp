@@ -41,7 +41,8 @@ public:
     [[nodiscard]] bool holds() const { return button_.has_value(); }
     [[nodiscard]] bool dragging() const { return button_ && dragging_; }
     /// What the picture shows under the cursor.
-    [[nodiscard]] std::optional<VisiblePoint> surface_under_cursor() const;
+    /// @param backs  whether it shows backs
+    [[nodiscard]] std::optional<VisiblePoint> surface_under_cursor(bool backs = false) const;
     /// Whether the cursor is on the picture.
     [[nodiscard]] bool on_picture() const {
         return cursor_.x >= 0.0 && cursor_.x < view_[0] && cursor_.y >= 0.0 && cursor_.y < view_[1];

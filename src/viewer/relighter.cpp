@@ -172,16 +172,12 @@ void Relighter::try_to_gather(SolveUpdate& update, const std::stop_token& stop) 
 void Relighter::solve(Wish wish, const std::stop_token& stop) {
     SolveUpdate update;
     update.light = std::move(wish.light);
-    const std::vector<double> start = update.light.radiosity;
     Clock::time_point began = Clock::now();
     try {
         const RadiosityProblem problem{
             &input_.factors->matrix,   input_.channels(),    update.light.reflectance, update.light.exitance,
             input_.scene->environment, input_.mesh->areas(), input_.solution.direct};
         SolverSettings settings = input_.solver;
-        if (wish.stepwise) {
-            settings.start = start;
-        } // else from the beginning, so that the same materials always give the same bits
         if (wish.stepwise && settings.method == SolverMethod::automatic) {
             settings.method = SolverMethod::gauss_seidel;
         }

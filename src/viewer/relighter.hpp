@@ -38,7 +38,7 @@ public:
     Relighter(const Relighter&) = delete;
     Relighter& operator=(const Relighter&) = delete;
 
-    /// @param wanted    its radiosity is where the sweeps begin; empty: at the sources
+    /// From the sources on, so that the same materials always give the same light.
     /// @param stepwise  wait for step() before every sweep; Gauss–Seidel unless another method was asked for
     void ask(Light wanted, bool stepwise = false);
     /// Lets it do one more sweep, or all that are left.

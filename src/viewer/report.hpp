@@ -11,13 +11,13 @@
 
 namespace hemi::viewer {
 
-/// What a window shows, as a script may ask.
 /// What the cursor points at.
 struct UnderCursor {
     std::uint32_t patch;
     Vec3 position;
 };
 
+/// What a window shows, as a script may ask.
 struct Report {
     const Document& document;
     const Choices& choices;

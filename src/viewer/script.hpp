@@ -132,7 +132,7 @@ struct ScriptCommand {
 /// click X Y              with the left button
 /// move X Y               of the cursor
 /// scroll X Y AMOUNT
-/// key [shift+]NAME       a letter, a digit, Escape, Tab, Home, F1 or F5
+/// key [ctrl+][shift+]NAME  a letter, a digit, Escape, Tab, Home, F1 or F5
 /// show QUANTITY          picture, outlines, items, radiosity, reflectance, exitance, row-error, error, row
 ///                        or column
 /// set reflectance|exitance VALUE[,VALUE ...] MATERIAL

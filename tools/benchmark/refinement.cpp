@@ -23,7 +23,7 @@ constexpr double next_size = 0.84;
 constexpr std::uint32_t most_patches = 40000;
 
 struct Solved {
-    double error = 0.0; ///< estimated, with the sample's standard error
+    double error = 0.0; ///< estimated
     double seconds = 0.0;
 };
 

@@ -30,6 +30,7 @@ struct Bounds {
     /// Middle of the diagonal; not a number when empty.
     [[nodiscard]] Vec3 centre() const { return 0.5 * (lower + upper); }
 };
+
 /// Whether two boxes have a point in common.
 [[nodiscard]] inline bool overlap(const Bounds& a, const Bounds& b) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -25,10 +25,12 @@ namespace hemi {
 [[nodiscard]] std::vector<double> direct_irradiance(const Scene& scene, const PatchMesh& mesh,
                                                     const FormFactorMatrix& factors);
 
-/// The two parts of direct_irradiance(), each empty where there is none.
+/// The two parts of direct_irradiance(), each empty where there is none; channel c of the k-th patch at
+/// [k·channels + c].
 struct DirectIrradiance {
-    std::vector<double> sun; ///< of the beam, N·channels
-    std::vector<double> sky; ///< of sky and ground, N·channels
+    std::vector<double> sun; ///< of the beam
+    std::vector<double> sky; ///< of sky and ground
+    std::vector<double> lit; ///< share of the beam that nothing hides from a patch, one a patch; with `sun`
 };
 /// They one by one, as direct_irradiance() adds them.
 [[nodiscard]] DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,

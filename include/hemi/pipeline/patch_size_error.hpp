@@ -28,6 +28,10 @@ namespace hemi {
 /// standard error is added. Patches that reflect nothing are not in the sample: of a group of such patches
 /// only what wrong light from others does is known.
 ///
+/// What comes straight from sun and sky is found for each quarter as for a patch. A quarter that the edge of
+/// a shadow of the sun crosses counts as two even parts, unless the sun is wider than a degree; where patches
+/// are as small as half-shadows are wide, that is too much.
+///
 /// Not included: errors of form factors; what the errors of other patches change in a patch's mean, which is
 /// of second order; whatever four rows do not see, such as light that falls through a gap between them.
 /// Quarters under other geometry do not count; of those that something stands on partly, the rest does.

@@ -250,7 +250,7 @@ Vec3 ShadowRays::beyond(const Vec3& at, const Vec3& towards) const {
     return at + (glm::length(at - bounds.centre()) + bounds.diagonal()) * towards;
 }
 
-ShadowRays::Lit ShadowRays::sun_by_rays(std::uint32_t i, const Sun& sun, std::uint32_t rays) const {
+ShadowRays::SunShare ShadowRays::sun_by_rays(std::uint32_t i, const Sun& sun, std::uint32_t rays) const {
     const Vec3 normal = mesh_.normal(i);
     const SunDisc disc(sun);
     const PatchCorners corners = mesh_.corners(i);
@@ -272,16 +272,16 @@ ShadowRays::Lit ShadowRays::sun_by_rays(std::uint32_t i, const Sun& sun, std::ui
         }
     }
     const double lit = unblocked > 0.0 ? sum.finish().visibility : 0.0;
-    return {lit * unblocked / all, lit > 0.0 && lit < 1.0};
+    return {lit * unblocked / all, lit};
 }
 
-double ShadowRays::sun_share(std::uint32_t i, const Sun& sun, std::uint32_t rays,
-                             std::uint32_t edge_rays) const {
+ShadowRays::SunShare ShadowRays::sun_share(std::uint32_t i, const Sun& sun, std::uint32_t rays,
+                                           std::uint32_t edge_rays) const {
     if (!SunDisc(sun).rises(mesh_.normal(i))) {
-        return 0.0;
+        return {0.0, 0.0};
     }
-    const Lit lit = sun_by_rays(i, sun, rays);
-    return lit.partly ? sun_by_rays(i, sun, edge_rays).share : lit.share;
+    const SunShare found = sun_by_rays(i, sun, rays);
+    return found.lit > 0.0 && found.lit < 1.0 ? sun_by_rays(i, sun, edge_rays) : found;
 }
 
 double ShadowRays::sun_share_at(const Vec3& at, const std::optional<Vec3>& normal, const Sun& sun) const {
@@ -304,13 +304,13 @@ double ShadowRays::sun_share_at(const Vec3& at, const std::optional<Vec3>& norma
             }
         }
         const double lit = unblocked > 0.0 ? sum.finish().visibility : 0.0;
-        return Lit{lit * unblocked * (normal ? 1.0 : cross_section), lit > 0.0 && lit < 1.0};
+        return SunShare{lit * unblocked * (normal ? 1.0 : cross_section), lit};
     };
     if (disc.is_point()) {
         return by_rays(1).share;
     }
-    const Lit lit = by_rays(disc_rays);
-    return lit.partly ? by_rays(disc_edge_rays).share : lit.share;
+    const SunShare found = by_rays(disc_rays);
+    return found.lit > 0.0 && found.lit < 1.0 ? by_rays(disc_edge_rays).share : found.share;
 }
 
 } // namespace hemi

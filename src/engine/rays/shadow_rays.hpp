@@ -37,11 +37,15 @@ public:
     /// @param key     shifts the rays' ends on the patch
     [[nodiscard]] Estimate visibility_from(const Vec3& at, const std::optional<Vec3>& normal, std::uint32_t j,
                                            std::uint32_t rays, std::uint64_t key) const;
-    /// Irradiance of a patch by the sun, as a share of that normal to the beam: the cosine times the share
-    /// that is lit, over patch and disc, by rays from Sobol points. Backs get none.
+    /// Irradiance by the sun.
+    struct SunShare {
+        double share; ///< of that normal to the beam: the cosine times what is lit
+        double lit;   ///< of what the same area would get with nothing else there; 1: no ray was blocked
+    };
+    /// Of a patch: means over patch and disc, by rays from Sobol points. Backs get none.
     /// @param rays  to trace; powers of two are spread best; where some are blocked, `edge_rays` are traced
-    [[nodiscard]] double sun_share(std::uint32_t i, const Sun& sun, std::uint32_t rays,
-                                   std::uint32_t edge_rays) const;
+    [[nodiscard]] SunShare sun_share(std::uint32_t i, const Sun& sun, std::uint32_t rays,
+                                     std::uint32_t edge_rays) const;
     /// The same of a point, whose own surface hides nothing; few rays where the sun is a point.
     /// @param normal  of unit length; none: of a small sphere, whose cross-section is a quarter of its
     /// surface
@@ -51,16 +55,10 @@ public:
 private:
     struct Packet;
     class Sum;
-    /// What rays found of the sun.
-    struct Lit {
-        double share;
-        bool partly; ///< some rays were blocked and some were not
-    };
-
     /// A point in that direction beyond all surfaces.
     [[nodiscard]] Vec3 beyond(const Vec3& at, const Vec3& towards) const;
     /// As sun_share(), by so many rays.
-    [[nodiscard]] Lit sun_by_rays(std::uint32_t i, const Sun& sun, std::uint32_t rays) const;
+    [[nodiscard]] SunShare sun_by_rays(std::uint32_t i, const Sun& sun, std::uint32_t rays) const;
 
     const PatchMesh& mesh_;
     double rounding_;
