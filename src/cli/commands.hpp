@@ -18,6 +18,7 @@ namespace hemi::cli {
 [[nodiscard]] ExitStatus run(const DiffArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ViewArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const BakeArguments& arguments, const Terminal& terminal);
+[[nodiscard]] ExitStatus run(const MergeArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const InfoArguments& arguments, const Terminal& terminal);
 [[nodiscard]] ExitStatus run(const DevicesArguments& arguments, const Terminal& terminal);

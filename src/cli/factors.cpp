@@ -25,7 +25,9 @@ bool table_goes_to_file(const FactorsArguments& arguments) {
 
 Outputs check_outputs(const FactorsArguments& arguments) {
     Outputs outputs;
-    if (arguments.output) {
+    if (arguments.selection) {
+        outputs.add("-o", *arguments.output, {".hff"});
+    } else if (arguments.output) {
         std::vector<std::string_view> extensions = io::factor_extensions();
         extensions.push_back(".vtp");
         outputs.add("-o", *arguments.output, extensions, true);
@@ -112,6 +114,9 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
         const LoadedScene loaded = load_scene(arguments.scene, terminal);
         show(point_report(loaded, *arguments.from_point), arguments.common.json);
         return ExitStatus::ok;
+    }
+    if (arguments.selection && is_scene) {
+        return factors_part(arguments, outputs, terminal);
     }
     return is_scene ? factors_of_scene(arguments, outputs, terminal) : factors_of_file(arguments, terminal);
 }

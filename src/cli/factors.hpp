@@ -13,6 +13,9 @@ namespace hemi::cli {
 /// All rows of a scene, or one: computed, written, reported.
 [[nodiscard]] ExitStatus factors_of_scene(const FactorsArguments& arguments, const Outputs& outputs,
                                           const Terminal& terminal);
+/// --rows: a part of the rows of a scene, computed and written.
+[[nodiscard]] ExitStatus factors_part(const FactorsArguments& arguments, const Outputs& outputs,
+                                      const Terminal& terminal);
 /// A row of a `.hff`, or its table of groups.
 [[nodiscard]] ExitStatus factors_of_file(const FactorsArguments& arguments, const Terminal& terminal);
 

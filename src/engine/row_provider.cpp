@@ -75,16 +75,20 @@ FormFactorMatrix compute_matrix(RowProvider& provider, const Progress& progress)
     return compute_matrix(provider, patches, progress);
 }
 
+std::uint64_t matrix_memory(double entries_per_row, std::uint64_t rows, std::uint32_t size) {
+    const double bytes =
+        entries_per_row * static_cast<double>(rows) * (sizeof(std::uint32_t) + sizeof(float)) +
+        static_cast<double>(FormFactorMatrix(size).memory_bytes());
+    return static_cast<std::uint64_t>(memory_margin * bytes);
+}
+
 MatrixEstimate estimate_matrix(RowProvider& provider, std::span<const std::uint32_t> patches,
                                std::uint32_t samples) {
     check_patches(patches, provider.size());
     const RowSample sample =
         sample_rows(provider, patches, samples, [](const RowView& row) { return row.columns.size(); });
-    const auto rows = static_cast<double>(patches.size());
-    const double bytes = sample.entries_per_row * rows * (sizeof(std::uint32_t) + sizeof(float)) +
-                         static_cast<double>(FormFactorMatrix(provider.size()).memory_bytes());
-    return {sample.entries_per_row, static_cast<std::uint64_t>(memory_margin * bytes),
-            sample.seconds_per_row * rows};
+    return {sample.entries_per_row, matrix_memory(sample.entries_per_row, patches.size(), provider.size()),
+            sample.seconds_per_row * static_cast<double>(patches.size())};
 }
 
 } // namespace hemi

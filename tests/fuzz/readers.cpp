@@ -1,6 +1,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/baked_mesh_file.hpp"
 #include "hemi/io/factor_file.hpp"
+#include "hemi/io/factor_part_file.hpp"
 #include "hemi/io/output_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
@@ -86,6 +87,21 @@ void seed_hff(const fs::path& folder) {
     io::write_hff(folder / "judged.hff", file);
     file.cuts = {{{1, 1}}, {{{1, 0, 0}, {1, 0, 1}}}};
     io::write_hff(folder / "cut.hff", file);
+}
+
+void seed_part(const fs::path& folder) {
+    const PatchMesh mesh(small_scene());
+    io::FactorPart part;
+    part.end = part.size = 2;
+    part.key = {{"seed", "0"}};
+    part.visibility = part.estimated = true;
+    part.rows = part.reference = small_matrix(true);
+    io::write_factor_part(folder / "a.hff", mesh, part);
+    part.parts = {{1, 0}, {0, 1}};
+    part.visibility = false;
+    part.rows = small_matrix(false);
+    part.reference = FormFactorMatrix(0);
+    io::write_factor_part(folder / "parts.hff", mesh, part);
 }
 
 void seed_hres(const fs::path& folder) {
@@ -317,6 +333,7 @@ const std::map<std::string, Reader> readers{
           io::write_elmer(folder / "a.dat", small_matrix(false), io::ElmerFormat::binary);
       }}},
     {"hff", {"fuzzed.hff", [](const fs::path& path) { (void)io::read_hff(path); }, seed_hff, true}},
+    {"part", {"fuzzed.hff", [](const fs::path& path) { (void)io::read_factor_part(path); }, seed_part, true}},
     {"hres", {"fuzzed.hres", [](const fs::path& path) { (void)io::read_hres(path); }, seed_hres, true}},
     {"rows",
      {"fuzzed.rows",

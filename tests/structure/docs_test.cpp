@@ -177,7 +177,7 @@ TEST_CASE("documentation: every option of every command is on the pages", "[stru
     const std::regex option(R"(\n  (?:-\w, +)?(--[a-z-]+))");
     std::set<std::string> options;
     for (const char* command : {"solve", "factors", "check", "trade", "heat", "exchange", "points", "render",
-                                "view", "bake", "convert", "info", "devices"}) {
+                                "view", "bake", "merge", "convert", "info", "devices"}) {
         const CommandOutcome help = run_command({HEMI_PROGRAM, command, "--help"});
         REQUIRE(help.status == 0);
         for (std::sregex_iterator match(help.out.begin(), help.out.end(), option), end; match != end;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hemi {
@@ -90,6 +91,9 @@ struct DeviceInfo {
 };
 /// Everything that could be used here; makes and destroys a context on each OpenGL device.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
+
+/// A renderer without what does not change its rows: the instruction set of `cpu`.
+[[nodiscard]] std::string renderer_of_rows(std::string_view renderer);
 
 /// What made the loader of OpenGL's functions: "glad 2.0.2".
 [[nodiscard]] std::string opengl_loader();

@@ -63,6 +63,12 @@ struct MatrixEstimate {
     double seconds = 0.0;           ///< for all rows, at the sample's speed
 };
 
+/// Bytes that compute_matrix() needs.
+/// @param entries_per_row  mean
+/// @param rows             that are wanted
+/// @param size             N
+[[nodiscard]] std::uint64_t matrix_memory(double entries_per_row, std::uint64_t rows, std::uint32_t size);
+
 /// What compute_matrix() will need for the rows of `patches`, from up to `samples` of them spread evenly,
 /// which are computed and thrown away.
 [[nodiscard]] MatrixEstimate estimate_matrix(RowProvider& provider, std::span<const std::uint32_t> patches,

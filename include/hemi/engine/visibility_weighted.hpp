@@ -17,6 +17,13 @@ struct VisibilityWeightedEstimate {
     double seconds = 0.0;           ///< for the visibility of all rows, at the sample's speed
 };
 
+/// Bytes that compute_visibility_weighted() needs.
+/// @param entries_per_row  mean of the patches that are not wholly hidden
+/// @param rows             that are wanted
+/// @param size             N
+[[nodiscard]] std::uint64_t visibility_weighted_memory(double entries_per_row, std::uint64_t rows,
+                                                       std::uint32_t size);
+
 /// What compute_visibility_weighted() needs for the rows of `patches`, from up to `samples` of them spread
 /// evenly.
 /// @param visibility  see make_visibility_engine()

@@ -74,6 +74,12 @@ void add_scene(CLI::App& app, SceneOptions& scene, const std::string& name = "SC
     add_scene_options(app, scene);
 }
 
+void add_max_row_error(Options& options, RowOptions& rows) {
+    options.value(
+        "--max-row-error", "T", "largest share of a row that may leak or meet back faces (1e-4)",
+        [&rows](const std::string& text) { rows.max_row_error = parse_positive("--max-row-error", text); });
+}
+
 void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows, bool checks = true) {
     Options options(app, "Scene");
     options.choice<Enclosure>("--enclosure", "KIND", "auto, closed or open; overrides the scene",
@@ -81,9 +87,7 @@ void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows, bool ch
     if (!checks) {
         return;
     }
-    options.value(
-        "--max-row-error", "T", "largest share of a row that may leak or meet back faces (1e-4)",
-        [&rows](const std::string& text) { rows.max_row_error = parse_positive("--max-row-error", text); });
+    add_max_row_error(options, rows);
 }
 
 /// @param rows  whether rows are computed on it, which `cpu` can do; pictures are drawn by OpenGL
@@ -289,6 +293,25 @@ void add_solve(CLI::App& app, SolveArguments& a) {
                "  hemi solve room.obj --patch-size 0.1 --factors room.hff --result room.hres");
 }
 
+RowSelection parse_rows(const std::string& text) {
+    const std::size_t mark = text.find_first_of(":/");
+    if (mark == std::string::npos) {
+        throw InvalidArgument(
+            fmt::format("--rows {}: must be A:B, rows A to B - 1 from 0, or K/N, the K-th of "
+                        "N shares",
+                        text));
+    }
+    RowSelection rows;
+    rows.shares = text[mark] == '/';
+    rows.first = to_index("--rows", text.substr(0, mark), rows.shares ? 1 : 0);
+    rows.second = to_index("--rows", text.substr(mark + 1), 1);
+    if (rows.shares ? rows.first > rows.second : rows.first >= rows.second) {
+        throw InvalidArgument(fmt::format("--rows {}: {} must be {} {}", text, rows.first,
+                                          rows.shares ? "at most" : "below", rows.second));
+    }
+    return rows;
+}
+
 void add_factors(CLI::App& app, FactorsArguments& a) {
     a.scene.reader.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
@@ -310,6 +333,14 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     row->excludes(file);
     row->excludes(app.get_option("--by-group"));
     row->excludes(app.get_option("--error-target"));
+    auto* rows =
+        output.value("--rows", "A:B|K/N",
+                     "rows A to B - 1 (from 0), or the K-th of N shares, into a part for `hemi merge`",
+                     [&a](const std::string& text) { a.selection = parse_rows(text); });
+    rows->needs(file);
+    for (const char* const other : {"--row", "--by-group", "--error-target", "--repair", "--max-row-error"}) {
+        rows->excludes(app.get_option(other));
+    }
     auto* point = output.value(
         "--from-point", "X,Y,Z,NX,NY,NZ",
         "factors from a surface element at a point with a normal to every patch, analytic, largest first",
@@ -515,6 +546,27 @@ void add_bake(CLI::App& app, BakeArguments& a) {
         "  hemi bake room.hres -o room.glb --exposure 0.5 --flat");
 }
 
+void add_merge(CLI::App& app, MergeArguments& a) {
+    app.add_option_function<Words>(
+           "PART", [&a](const Words& parts) { a.parts.assign(parts.begin(), parts.end()); },
+           "all parts of a scene, by `hemi factors --rows`, in any order")
+        ->required()
+        ->option_text(" ")
+        ->type_name(file_type);
+    Options factors(app, "Form factors");
+    add_max_row_error(factors, a.rows);
+    add_repair(app, a.rows.factors.repair);
+    add_max_memory(app, a.rows);
+    Options(app, "Output")
+        .path("-o,--output", "FILE.hff", a.output, "form factors, as one run would have written them")
+        ->required();
+    add_common(app, a.common);
+    app.footer("Examples:\n"
+               "  hemi factors room.obj --rows 1/2 -o part1.hff\n"
+               "  hemi factors room.obj --rows 2/2 -o part2.hff\n"
+               "  hemi merge part1.hff part2.hff -o room.hff");
+}
+
 void add_convert(CLI::App& app, ConvertArguments& a) {
     add_positional(
         app, "IN", a.input,
@@ -639,6 +691,7 @@ std::variant<Arguments, Answer> parse_arguments(int argc, const char* const* arg
     add_command(app, "view", "Window with an orbiting camera", add_view, chosen);
 #endif
     add_command(app, "bake", "Mesh with the solution as vertex colours", add_bake, chosen);
+    add_command(app, "merge", "Form factors from parts that were computed separately", add_merge, chosen);
     add_command(app, "convert", "Form factors from one file format to another", add_convert, chosen);
     add_command(app, "info", "What a file holds and what it would cost", add_info, chosen);
     add_command(app, "devices", "OpenGL devices that can be used", add_devices, chosen);

@@ -118,6 +118,13 @@ struct SolveArguments {
     }
 };
 
+/// `--rows`: rows that a part has.
+struct RowSelection {
+    bool shares = false; ///< `k/n`: the k-th of n equal shares, from 1; else `a:b`: rows a to b - 1, from 0
+    std::uint32_t first = 0;  ///< a, or k
+    std::uint32_t second = 0; ///< b, or n
+};
+
 struct FactorsArguments {
     CommonOptions common;
     SceneOptions scene;
@@ -125,6 +132,7 @@ struct FactorsArguments {
     std::optional<std::filesystem::path> output;
     std::optional<std::filesystem::path> patches;
     std::optional<std::uint32_t> row;
+    std::optional<RowSelection> selection;           ///< a part of the rows
     std::optional<std::array<double, 6>> from_point; ///< position and normal
     bool by_group = false;
 };
@@ -235,6 +243,13 @@ struct BakeArguments {
     Gather gather = Gather::automatic;
 };
 
+struct MergeArguments {
+    CommonOptions common;
+    std::vector<std::filesystem::path> parts;
+    std::optional<std::filesystem::path> output;
+    RowOptions rows; ///< memory, repair of what is reported
+};
+
 struct ConvertArguments {
     CommonOptions common;
     std::filesystem::path input;
@@ -260,7 +275,7 @@ using Arguments =
 #ifdef HEMI_WITH_VIEWER
                  ViewArguments,
 #endif
-                 BakeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
+                 BakeArguments, MergeArguments, ConvertArguments, InfoArguments, DevicesArguments>;
 
 /// Text that was asked for instead of work: help or the version.
 struct Answer {

@@ -1,6 +1,7 @@
 #include "engine/rasteriser/cpu_rows.hpp"
 
 #include "hemi/core/interrupt.hpp"
+#include "hemi/engine/engine.hpp"
 
 #include <fmt/format.h>
 
@@ -183,10 +184,16 @@ private:
     std::uint64_t hemicubes_ = 0;
 };
 
+constexpr std::string_view cpu_name = "hemi CPU rasteriser";
+
 } // namespace
 
 std::string cpu_renderer() {
-    return fmt::format("hemi CPU rasteriser ({})", simd_in_use());
+    return fmt::format("{} ({})", cpu_name, simd_in_use());
+}
+
+std::string renderer_of_rows(std::string_view renderer) {
+    return std::string(renderer.starts_with(cpu_name) ? cpu_name : renderer);
 }
 
 std::unique_ptr<RawRowProvider> make_cpu_engine(std::unique_ptr<const EngineGeometry> geometry,

@@ -46,6 +46,15 @@
 
 namespace hemi {
 
+std::uint64_t visibility_weighted_memory(double entries_per_row, std::uint64_t rows, std::uint32_t size) {
+    const auto count = static_cast<double>(rows);
+    const double matrix =
+        entries_per_row * count * (sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t)) +
+        static_cast<double>(FormFactorMatrix(size).memory_bytes());
+    const double tables = count * size * (sizeof(VisibilitySample) + sizeof(PairVisibility));
+    return static_cast<std::uint64_t>(memory_margin * matrix + tables);
+}
+
 VisibilityWeightedEstimate estimate_visibility_weighted(VisibilityProvider& visibility,
                                                         std::span<const std::uint32_t> patches,
                                                         std::uint32_t samples) {
@@ -53,13 +62,9 @@ VisibilityWeightedEstimate estimate_visibility_weighted(VisibilityProvider& visi
         return static_cast<std::uint64_t>(
             std::count_if(row.shares.begin(), row.shares.end(), [](float share) { return share > 0.0f; }));
     });
-    const auto rows = static_cast<double>(patches.size());
-    const double matrix =
-        sample.entries_per_row * rows * (sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t)) +
-        static_cast<double>(FormFactorMatrix(visibility.size()).memory_bytes());
-    const double tables = rows * visibility.size() * (sizeof(VisibilitySample) + sizeof(PairVisibility));
-    return {sample.entries_per_row, static_cast<std::uint64_t>(memory_margin * matrix + tables),
-            sample.seconds_per_row * rows};
+    return {sample.entries_per_row,
+            visibility_weighted_memory(sample.entries_per_row, patches.size(), visibility.size()),
+            sample.seconds_per_row * static_cast<double>(patches.size())};
 }
 
 FormFactorMatrix compute_visibility_weighted(VisibilityProvider& visibility, const PatchMesh& mesh,

@@ -1,5 +1,8 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/factor_file.hpp"
+#include "hemi/io/factor_part_file.hpp"
+#include "io/factors/patch_parts_chunk.hpp"
+#include "io/factors/provenance_json.hpp"
 #include "io/factors/row_block_chunk.hpp"
 #include "io/formats/chunk_file.hpp"
 #include "io/formats/json_node.hpp"
@@ -19,40 +22,15 @@ namespace {
 
 constexpr ChunkFormat hff_format{"HEMIFF\r\n", 4, "form factors (.hff)"};
 
-/// First rows of the blocks that have a known row.
-std::vector<std::uint32_t> known_blocks(const FormFactorMatrix& factors) {
-    std::vector<std::uint32_t> first_rows;
-    for (const RowBlock& block : factors.blocks()) {
-        if (std::find(block.known.begin(), block.known.end(), 1) != block.known.end()) {
-            first_rows.push_back(block.first_row);
-        }
-    }
-    return first_rows;
-}
-
-constexpr std::string_view no_preset = "none"; // of baseline methods
-
-std::string_view preset_word(const Provenance& provenance) {
-    return provenance.preset ? to_word(*provenance.preset) : no_preset;
-}
-
 Json header(const FormFactors& file) {
     Json head{{"size", file.matrix.size()},
               {"block_rows", FormFactorMatrix::block_rows},
               {"groups", file.groups},
-              {"geometry", fmt::format("{:016x}", file.geometry_hash)},
-              {"preset", preset_word(file.provenance)},
-              {"method", to_word(file.provenance.method)},
-              {"resolution", file.provenance.resolution},
-              {"eye_points", file.provenance.eye_points},
-              {"near_eye_points", file.provenance.near_eye_points},
-              {"shadow_rays", file.provenance.shadow_rays},
-              {"exchange_rule", to_word(file.provenance.exchange_rule)},
-              {"seed", file.provenance.seed},
-              {"renderer", file.provenance.renderer},
-              {"enclosure", to_word(file.enclosure)},
-              {"reference_blocks", known_blocks(file.reference)},
-              {"chosen_for", file.provenance.chosen_for}};
+              {"geometry", fmt::format("{:016x}", file.geometry_hash)}};
+    add_provenance(head, file.provenance);
+    head["enclosure"] = to_word(file.enclosure);
+    head["reference_blocks"] = known_blocks(file.reference);
+    head["chosen_for"] = file.provenance.chosen_for;
     if (file.parts.any()) {
         head["patches"] = file.parts.patches();
     }
@@ -103,19 +81,6 @@ void check(const FormFactors& file) {
     }
 }
 
-template <class Enum>
-Enum read_word(const JsonNode& node) {
-    const std::optional<Enum> value = from_word<Enum>(node.any_text());
-    if (!value) {
-        node.expect(fmt::format("one of {}", fmt::join(words<Enum>(), ", ")));
-    }
-    return *value;
-}
-
-std::uint32_t integer32(const JsonNode& node) {
-    return static_cast<std::uint32_t>(node.integer(std::numeric_limits<std::uint32_t>::max()));
-}
-
 std::uint64_t read_hash(const JsonNode& node) {
     const std::string text = node.any_text();
     std::uint64_t hash = 0;
@@ -162,25 +127,8 @@ Layout read_header(ChunkReader& reader, FormFactors& file) {
     const std::uint32_t size = integer32(head.member("size"));
     file.groups = head.member("groups").texts();
     file.geometry_hash = read_hash(head.member("geometry"));
-    if (head.member("preset").any_text() == no_preset) {
-        file.provenance.preset.reset();
-    } else {
-        file.provenance.preset = read_word<Preset>(head.member("preset"));
-    }
-    file.provenance.method = read_word<Method>(head.member("method"));
-    file.provenance.resolution = integer32(head.member("resolution"));
-    file.provenance.eye_points = integer32(head.member("eye_points"));
-    file.provenance.shadow_rays = integer32(head.member("shadow_rays"));
-    file.provenance.seed = head.member("seed").integer(std::numeric_limits<std::uint64_t>::max());
-    file.provenance.renderer = head.member("renderer").any_text();
+    file.provenance = read_provenance(head);
     file.enclosure = read_word<Enclosure>(head.member("enclosure"));
-    if (head.has("exchange_rule")) {
-        file.provenance.exchange_rule = read_word<ExchangeRule>(head.member("exchange_rule"));
-        file.provenance.near_eye_points = integer32(head.member("near_eye_points"));
-    } else { // files of before: the rule was the preset's
-        file.provenance.exchange_rule =
-            file.provenance.preset == Preset::exact ? ExchangeRule::exact : ExchangeRule::standard;
-    }
     file.provenance.chosen_for = head.member("chosen_for").any_text();
     if (head.has("error")) {
         file.error = read_error(head.member("error"));
@@ -193,27 +141,11 @@ Layout read_header(ChunkReader& reader, FormFactors& file) {
         layout.cut_surfaces = integer32(head.member("cut_surfaces"));
         layout.cut_into_parts = head.member("cut_into_parts").boolean();
     }
-    std::vector<std::uint32_t>& reference_blocks = layout.reference_blocks;
-    const JsonNode blocks = head.member("reference_blocks");
-    for (std::size_t k = 0; k < blocks.size(); ++k) {
-        reference_blocks.push_back(integer32(blocks.element(k)));
-        const std::uint32_t first_row = reference_blocks.back();
-        if (first_row >= size || first_row % FormFactorMatrix::block_rows != 0 ||
-            (k > 0 && first_row <= reference_blocks[k - 1])) {
-            blocks.element(k).expect("the first row of a block, in ascending order");
-        }
-    }
+    layout.reference_blocks = read_first_rows(head.member("reference_blocks"), size);
 
-    Payload areas = reader.chunk("AREA");
-    file.areas = areas.take_array<double>(size);
-    areas.expect_end();
-    for (const double area : file.areas) {
-        if (!(area >= 0.0) || !std::isfinite(area)) {
-            areas.fail(fmt::format("an area of {}; must be finite and not negative", area));
-        }
-    }
+    file.areas = read_areas(reader.chunk("AREA"), size);
     file.matrix = FormFactorMatrix(size);
-    file.reference = FormFactorMatrix(reference_blocks.empty() ? 0 : size);
+    file.reference = FormFactorMatrix(layout.reference_blocks.empty() ? 0 : size);
     return layout;
 }
 
@@ -226,23 +158,6 @@ void read_groups(ChunkReader& reader, FormFactors& file) {
             groups.fail(fmt::format("group {}; there are {}", group, file.groups.size()));
         }
     }
-}
-
-/// @param patches  that rows are parts of
-void read_whose_parts(ChunkReader& reader, std::uint32_t patches, FormFactors& file) {
-    Payload parts = reader.chunk("PART");
-    const auto take = [&](std::size_t count, std::size_t below, const char* what) {
-        std::vector<std::uint32_t> indices = parts.take_array<std::uint32_t>(count);
-        for (const std::uint32_t index : indices) {
-            if (index >= below) {
-                parts.fail(fmt::format("{} {}; there are {}", what, index, below));
-            }
-        }
-        return indices;
-    };
-    file.parts.patch_of = take(file.matrix.size(), patches, "patch");
-    file.parts.group_of = take(patches, file.groups.size(), "group");
-    parts.expect_end();
 }
 
 /// How the patches of a refined mesh are cut; whether it fits a scene is seen with the scene.
@@ -281,26 +196,13 @@ Layout read_beginning(ChunkReader& reader, FormFactors& file) {
     read_groups(reader, file);
     read_touching(reader, file);
     if (layout.patches) {
-        read_whose_parts(reader, *layout.patches, file);
+        file.parts =
+            read_patch_parts(reader.chunk("PART"), file.matrix.size(), *layout.patches, file.groups.size());
     }
     if (layout.cut_surfaces > 0) {
         read_cuts(reader, layout, file);
     }
     return layout;
-}
-
-void read_block(ChunkReader& reader, std::string_view tag, FormFactorMatrix& factors,
-                std::uint32_t first_row) {
-    Payload payload = reader.chunk(tag);
-    RowBlock block = take_row_block(payload);
-    if (block.first_row != first_row) {
-        payload.fail(fmt::format("starts at row {}, where row {} must come", block.first_row, first_row));
-    }
-    try {
-        factors.set_block(std::move(block));
-    } catch (const InvalidArgument& error) {
-        payload.fail(error.what());
-    }
 }
 
 void read_row_errors(ChunkReader& reader, FormFactors& file) {
@@ -347,15 +249,16 @@ void write_hff(const std::filesystem::path& path, const FormFactors& file) {
 }
 
 FormFactors read_hff(const std::filesystem::path& path) {
+    refuse_factor_part(path);
     ChunkReader reader(path, hff_format);
     FormFactors file;
     const Layout layout = read_beginning(reader, file);
     for (std::uint32_t row = 0; row < file.matrix.size();) {
-        read_block(reader, "ROWS", file.matrix, row);
+        set_row_block(reader.chunk("ROWS"), file.matrix, row);
         row += std::min(FormFactorMatrix::block_rows, file.matrix.size() - row);
     }
     for (const std::uint32_t first_row : layout.reference_blocks) {
-        read_block(reader, "REFR", file.reference, first_row);
+        set_row_block(reader.chunk("REFR"), file.reference, first_row);
     }
     if (file.error) {
         read_row_errors(reader, file);
@@ -365,6 +268,7 @@ FormFactors read_hff(const std::filesystem::path& path) {
 }
 
 RowsGeometry read_hff_geometry(const std::filesystem::path& path) {
+    refuse_factor_part(path);
     ChunkReader reader(path, hff_format);
     FormFactors file;
     (void)read_beginning(reader, file);

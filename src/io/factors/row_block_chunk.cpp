@@ -1,8 +1,13 @@
 #include "io/factors/row_block_chunk.hpp"
 
+#include "hemi/core/error.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace hemi::io {
 
@@ -35,6 +40,52 @@ RowBlock take_row_block(Payload& payload) {
         payload.fail(fmt::format("rows from {}: marks of known rows other than 0 and 1", block.first_row));
     }
     return block;
+}
+
+void set_row_block(Payload payload, FormFactorMatrix& matrix, std::uint32_t first_row) {
+    RowBlock block = take_row_block(payload);
+    if (block.first_row != first_row) {
+        payload.fail(fmt::format("starts at row {}, where row {} must come", block.first_row, first_row));
+    }
+    try {
+        matrix.set_block(std::move(block));
+    } catch (const InvalidArgument& error) {
+        payload.fail(error.what());
+    }
+}
+
+std::vector<std::uint32_t> known_blocks(const FormFactorMatrix& matrix) {
+    std::vector<std::uint32_t> first_rows;
+    for (const RowBlock& block : matrix.blocks()) {
+        if (std::find(block.known.begin(), block.known.end(), 1) != block.known.end()) {
+            first_rows.push_back(block.first_row);
+        }
+    }
+    return first_rows;
+}
+
+std::vector<std::uint32_t> read_first_rows(const JsonNode& list, std::uint32_t size) {
+    std::vector<std::uint32_t> first_rows;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        const std::uint64_t first_row = list.element(k).integer(std::numeric_limits<std::uint32_t>::max());
+        if (first_row >= size || first_row % FormFactorMatrix::block_rows != 0 ||
+            (k > 0 && first_row <= first_rows[k - 1])) {
+            list.element(k).expect("the first row of a block, in ascending order");
+        }
+        first_rows.push_back(static_cast<std::uint32_t>(first_row));
+    }
+    return first_rows;
+}
+
+std::vector<double> read_areas(Payload payload, std::uint32_t size) {
+    std::vector<double> areas = payload.take_array<double>(size);
+    payload.expect_end();
+    for (const double area : areas) {
+        if (!(area >= 0.0) || !std::isfinite(area)) {
+            payload.fail(fmt::format("an area of {}; must be finite and not negative", area));
+        }
+    }
+    return areas;
 }
 
 } // namespace hemi::io

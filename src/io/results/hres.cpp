@@ -3,6 +3,7 @@
 #include "io/formats/chunk_file.hpp"
 #include "io/formats/json_node.hpp"
 #include "io/formats/patch_cuts_chunk.hpp"
+#include "io/formats/surface_chunk.hpp"
 
 #include <fmt/format.h>
 
@@ -16,19 +17,6 @@ namespace {
 
 constexpr ChunkFormat hres_format{"HEMIRS\r\n", 2, "a solution (.hres)"};
 constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-
-/// A surface as it lies in the file. The grid is the one that was used, wherever it came from: the patches of
-/// a stored solution must not depend on how a later version cuts surfaces.
-struct StoredSurface {
-    std::array<double, 12> vertices;
-    std::uint32_t vertex_count;
-    std::uint32_t material;
-    std::uint32_t group;
-    std::uint32_t two_sided;
-    std::uint32_t grid_u;
-    std::uint32_t grid_v;
-};
-static_assert(sizeof(StoredSurface) == 12 * 8 + 6 * 4);
 
 Json point(const Vec3& p) {
     return Json::array({p.x, p.y, p.z});
@@ -113,24 +101,6 @@ Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional
                           {"orthographic", camera.orthographic}};
     }
     return head;
-}
-
-std::vector<StoredSurface> stored_surfaces(const PatchMesh& mesh) {
-    std::vector<StoredSurface> result;
-    result.reserve(mesh.surfaces().size());
-    for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
-        const Surface& surface = mesh.surfaces()[s];
-        const Grid grid = mesh.grid(s);
-        StoredSurface stored{
-            {},    surface.vertex_count, surface.material, surface.group, surface.two_sided ? 1u : 0u, grid.u,
-            grid.v};
-        for (std::size_t k = 0; k < stored.vertices.size(); ++k) {
-            const auto axis = static_cast<Vec3::length_type>(k % 3);
-            stored.vertices[k] = k / 3 < surface.vertex_count ? surface.vertices[k / 3][axis] : 0.0;
-        }
-        result.push_back(stored);
-    }
-    return result;
 }
 
 template <class Number>
@@ -286,45 +256,6 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     return sizes;
 }
 
-Surface scene_surface(const StoredSurface& stored) {
-    Surface surface;
-    for (std::size_t k = 0; k < stored.vertices.size(); ++k) {
-        surface.vertices[k / 3][static_cast<Vec3::length_type>(k % 3)] = stored.vertices[k];
-    }
-    surface.vertex_count = stored.vertex_count;
-    surface.material = stored.material;
-    surface.group = stored.group;
-    surface.two_sided = stored.two_sided != 0;
-    surface.patches = Grid{stored.grid_u, stored.grid_v};
-    return surface;
-}
-
-/// @param count    of the surfaces
-/// @param patches  that they have together
-std::vector<Surface> read_surfaces(Payload payload, std::uint64_t count, std::uint64_t all_patches,
-                                   const Subdivision& subdivision) {
-    std::vector<Surface> surfaces;
-    std::uint64_t patches = 0;
-    for (const StoredSurface& stored : payload.take_array<StoredSurface>(count)) {
-        if (stored.vertex_count < 3 || stored.vertex_count > 4 || stored.two_sided > 1) {
-            payload.fail(fmt::format("a surface of {} vertices and {} sides", stored.vertex_count,
-                                     std::uint64_t{stored.two_sided} + 1));
-        }
-        const std::size_t parts = subdivision.parts.empty() ? 0 : subdivision.parts[surfaces.size()].size();
-        const std::uint64_t per_side = parts > 0 ? parts : std::uint64_t{stored.grid_u} * stored.grid_v;
-        patches += per_side <= most ? per_side * (stored.two_sided + 1) : most + 1;
-        if (patches > all_patches) {
-            break;
-        }
-        surfaces.push_back(scene_surface(stored));
-    }
-    if (patches != all_patches) {
-        payload.fail(fmt::format("the surfaces have not the {} patches of the solution", all_patches));
-    }
-    payload.expect_end();
-    return surfaces;
-}
-
 std::vector<std::uint32_t> groups_of_patches(const PatchMesh& mesh) {
     std::vector<std::uint32_t> result;
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
@@ -437,7 +368,7 @@ ResultFile read_hres(const std::filesystem::path& path) {
         result.subdivision.parts = read_parts(reader.chunk("PART"), sizes.surfaces, sizes.patches);
     }
     result.scene.surfaces =
-        read_surfaces(reader.chunk("SURF"), sizes.surfaces, sizes.patches, result.subdivision);
+        read_surfaces(reader.chunk("SURF"), sizes.surfaces, sizes.patches, result.subdivision.parts);
     if (sizes.surfaces_as_read > 0) {
         result.surfaces_as_read =
             read_surfaces(reader.chunk("READ"), sizes.surfaces_as_read, sizes.patches_as_read, {});

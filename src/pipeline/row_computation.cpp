@@ -1,0 +1,83 @@
+#include "pipeline/row_computation.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
+#include "hemi/engine/reference_rows.hpp"
+
+#include <fmt/format.h>
+
+namespace hemi {
+
+namespace {
+
+// Of the time that the rows took, spent on reference rows.
+constexpr double reference_share = 0.08;
+
+} // namespace
+
+FormFactors describe_form_factors(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings) {
+    FormFactors factors;
+    factors.areas.assign(mesh.areas().begin(), mesh.areas().end());
+    factors.groups = mesh.groups();
+    factors.group_of.reserve(mesh.size());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        factors.group_of.push_back(mesh.group(i));
+    }
+    factors.geometry_hash = mesh.geometry_hash();
+    factors.enclosure = scene.enclosure;
+    factors.provenance = provenance_of(settings, mesh.size());
+    factors.matrix = FormFactorMatrix(mesh.size());
+    return factors;
+}
+
+io::CheckpointKey raw_row_key(const FormFactors& factors, const FactorSettings& settings) {
+    const bool hemicubes = settings.method == Method::hemicube;
+    const RowPlan plan = hemicubes ? plan_rows(settings, factors.matrix.size()) : RowPlan();
+    io::CheckpointKey key{{"hemi", HEMI_VERSION},
+                          {"geometry", fmt::format("{:016x}", factors.geometry_hash)},
+                          {"method", std::string(to_word(factors.provenance.method))},
+                          {"rows of", plan.weighted ? "visibility" : "form factors"},
+                          {"resolution", std::to_string(factors.provenance.resolution)},
+                          {"seed", std::to_string(factors.provenance.seed)},
+                          {"eye points", std::to_string(plan.hemicube.eye_points)},
+                          {"eye points near surfaces", std::to_string(plan.hemicube.near_eye_points)},
+                          {"merging", plan.hemicube.merge_lattices ? "on" : "off"}};
+    if (!hemicubes) {
+        key["rays"] = std::to_string(plan_baseline(settings).rays);
+    }
+    return key;
+}
+
+std::string memory_limit_text(const FactorSettings& settings) {
+    return memory_text(memory_limit(settings)) +
+           (settings.max_memory ? "" : ", 80 % of the memory that is free");
+}
+
+void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, const FactorSettings& settings,
+                  Observer& observer) {
+    if (patches.size() <= unsampled_rows) {
+        return;
+    }
+    const MatrixEstimate estimate = estimate_matrix(engine, patches, sampled_rows);
+    observer.detail(fmt::format("{} rows will need about {} and {}", count_text(patches.size()),
+                                memory_text(estimate.memory_bytes), seconds_text(estimate.seconds)));
+    if (estimate.memory_bytes > memory_limit(settings)) {
+        throw OutOfMemory(
+            fmt::format("{} rows of about {:.0f} entries would need {}; the limit is {}. Larger "
+                        "patches, a lower resolution or a higher limit would help",
+                        count_text(patches.size()), estimate.entries_per_row,
+                        memory_text(estimate.memory_bytes), memory_limit_text(settings)),
+            {"patch-size", "resolution", "max-memory"});
+    }
+}
+
+ReferencePlan plan_reference(std::span<const std::uint32_t> known, const FactorSettings& settings,
+                             std::uint32_t size) {
+    FactorSettings hemicubes = settings;
+    hemicubes.method = Method::hemicube;
+    const HemicubeSettings hemicube = plan_rows(hemicubes, size).hemicube;
+    return {reference_settings(hemicube),
+            reference_patches(known, reference_count(hemicube, known.size(), reference_share))};
+}
+
+} // namespace hemi

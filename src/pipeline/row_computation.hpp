@@ -1,0 +1,95 @@
+#pragma once
+
+#include "hemi/core/interrupt.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/engine/touching_faces.hpp"
+#include "hemi/pipeline/form_factors.hpp"
+#include "pipeline/observed_rows.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// What computing all rows and computing a part of them have in common.
+namespace hemi {
+
+// Rows that tell what all of them will need, where there are more than so many.
+inline constexpr std::uint32_t sampled_rows = 64;
+inline constexpr std::size_t unsampled_rows = 256;
+
+/// Form factors of a scene without any row, nor renderer.
+[[nodiscard]] FormFactors describe_form_factors(const Scene& scene, const PatchMesh& mesh,
+                                                const FactorSettings& settings);
+
+/// What raw rows depend on, besides the renderer.
+[[nodiscard]] io::CheckpointKey raw_row_key(const FormFactors& factors, const FactorSettings& settings);
+
+/// The memory that rows may take, and where that comes from.
+[[nodiscard]] std::string memory_limit_text(const FactorSettings& settings);
+/// Says what rows will need, by a sample.
+/// @throws OutOfMemory if they do not fit
+void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, const FactorSettings& settings,
+                  Observer& observer);
+
+/// Better rows by which errors are estimated.
+struct ReferencePlan {
+    HemicubeSettings hemicube;          ///< that they are made by
+    std::vector<std::uint32_t> patches; ///< of which, ascending
+};
+/// @param known  patches that it may be of, ascending
+/// @param size   of the scene, in patches
+[[nodiscard]] ReferencePlan plan_reference(std::span<const std::uint32_t> known,
+                                           const FactorSettings& settings, std::uint32_t size);
+
+/// The provider's part of computed rows: observed, kept, timed.
+/// @tparam Row  RowView or VisibilityRow
+template <class Row>
+class Computation {
+public:
+    Computation(FormFactors& factors, BasicRowProvider<Row>& provider, Observer& observer,
+                RowCheckpoint* checkpoint, io::CheckpointKey key)
+        : factors_(factors), provider_(provider), observer_(observer), checkpoint_(checkpoint),
+          hemicubes_before_(provider.hemicubes()), rows_(provider, observer, checkpoint, std::move(key)) {}
+
+    [[nodiscard]] BasicRowProvider<Row>& rows() { return rows_; }
+
+    [[nodiscard]] Progress progress(Phase phase) {
+        return [this, phase](std::size_t done, std::size_t total) {
+            return observer_.progress(phase, done, total);
+        };
+    }
+    /// The same for rows of the engine, whose time counts.
+    [[nodiscard]] Progress timed_progress(Phase phase) {
+        return [this, phase](std::size_t done, std::size_t total) {
+            factors_.work.seconds = watch_.seconds();
+            return observer_.progress(phase, done, total);
+        };
+    }
+
+    /// All rows have come: what made them, and what it took.
+    void finish(std::size_t patches) {
+        factors_.work.hemicubes = provider_.hemicubes() - hemicubes_before_;
+        factors_.work.rows = patches - (checkpoint_ != nullptr ? checkpoint_->reused() : 0);
+        factors_.provenance.renderer = provider_.renderer();
+    }
+    /// The same, and which patches touch, of rows of F.
+    void finish(const PatchMesh& mesh, std::size_t patches) {
+        finish(patches);
+        factors_.touching = find_touching_faces(factors_.matrix, mesh);
+        stop_if_interrupted();
+    }
+
+private:
+    FormFactors& factors_;
+    BasicRowProvider<Row>& provider_;
+    Observer& observer_;
+    RowCheckpoint* checkpoint_;
+    std::uint64_t hemicubes_before_; ///< of samples
+    Stopwatch watch_;
+    ObservedRows<Row> rows_;
+};
+
+} // namespace hemi
