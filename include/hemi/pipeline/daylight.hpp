@@ -36,6 +36,9 @@ struct DirectIrradiance {
 [[nodiscard]] DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,
                                                   const FormFactorMatrix& factors);
 /// The same of some patches.
+/// @param scene    as in direct_irradiance()
+/// @param mesh     likewise
+/// @param factors  likewise
 /// @param patches  whose rows are known
 /// @return channel c of patches[k] at [k·channels + c]
 [[nodiscard]] DirectIrradiance direct_irradiances(const Scene& scene, const PatchMesh& mesh,

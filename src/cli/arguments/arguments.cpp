@@ -4,11 +4,11 @@
 #include "cli/arguments/options.hpp"
 #include "cli/arguments/picture_arguments.hpp"
 #include "cli/arguments/points_arguments.hpp"
+#include "cli/arguments/row_arguments.hpp"
 #include "cli/arguments/scene_arguments.hpp"
 #include "cli/arguments/usage_errors.hpp"
 #include "cli/arguments/version.hpp"
 #include "hemi/core/error.hpp"
-#include "hemi/engine/engine.hpp"
 #include "hemi/io/scene_reader.hpp"
 
 #include <CLI/CLI.hpp>
@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <memory>
 
 namespace hemi::cli {
@@ -27,14 +26,6 @@ using Words = std::vector<std::string>;
 
 constexpr const char* help_help = "print this help";
 constexpr const char* version_help = "print version, revision, compiler and OpenGL";
-constexpr std::uint64_t any_whole = std::numeric_limits<std::uint64_t>::max();
-constexpr std::uint64_t any_index = std::numeric_limits<std::uint32_t>::max() - 1;
-
-std::uint32_t to_index(std::string_view option, const std::string& text, std::uint64_t lower,
-                       std::uint64_t upper = any_index) {
-    return static_cast<std::uint32_t>(parse_whole(option, text, lower, upper));
-}
-
 void add_positional(CLI::App& app, const std::string& name, std::filesystem::path& target,
                     const std::string& help) {
     app.add_option_function<std::string>(
@@ -90,80 +81,6 @@ void add_enclosure(CLI::App& app, SceneOptions& scene, RowOptions& rows, bool ch
     add_max_row_error(options, rows);
 }
 
-/// @param rows  whether rows are computed on it, which `cpu` can do; pictures are drawn by OpenGL
-void add_device(CLI::App& app, std::string& device, bool rows) {
-    Options(app, "Computing")
-        .value("--device", "NAME",
-               rows ? "auto, cpu, egl, egl:N or osmesa; see `hemi devices`"
-                    : "auto, egl, egl:N or osmesa; see `hemi devices`",
-               [&device, rows](const std::string& text) {
-                   const bool numbered = text.starts_with("egl:");
-                   if (numbered) {
-                       (void)parse_whole("--device egl:", text.substr(4), 0, 1000);
-                   } else {
-                       (void)parse_choice("--device", text,
-                                          rows ? Words{"auto", "cpu", "egl", "egl:N", "osmesa"}
-                                               : Words{"auto", "egl", "egl:N", "osmesa"});
-                       if (text == "egl:N") {
-                           throw InvalidArgument("--device egl:N: N stands for a number, such as egl:0");
-                       }
-                   }
-                   device = text;
-               })
-        ->type_name(rows ? "auto|cpu|egl|osmesa" : "auto|egl|osmesa");
-}
-
-/// How hemicubes are drawn, whatever their settings.
-void add_drawing(CLI::App& app, RowOptions& rows) {
-    Options options(app, "Form factors");
-    options.value(
-        "--seed", "N", "seed of the rotation of every hemicube (0)",
-        [&rows](const std::string& text) { rows.factors.seed = parse_whole("--seed", text, 0, any_whole); });
-    options.flag("--no-merge", rows.factors.merge_lattices,
-                 "draw every patch separately, even in coplanar lattices", false);
-    add_device(app, rows.factors.engine.device, true);
-    Options(app, "Computing")
-        .value("--jobs", "N", "threads on cpu, worker processes on OpenGL (one per core; on a GPU four)",
-               [&rows](const std::string& text) {
-                   rows.factors.engine.jobs = to_index("--jobs", text, 1, 1024);
-               });
-}
-
-void add_rows(CLI::App& app, RowOptions& rows) {
-    Options options(app, "Form factors");
-    options.choice<Preset>("--preset", "NAME",
-                           "fast, default or exact: unoccluded factors times visibility; plain: the textbook "
-                           "hemicube",
-                           rows.factors.preset);
-    options.choice<Method>("--method", "NAME",
-                           "hemicube (the default); baseline methods, all slow: direct and contour (both "
-                           "unoccluded), montecarlo, hemisphere",
-                           rows.factors.method);
-    options.value(
-        "--rays", "N", "montecarlo: rays a patch, best a power of two (16384)",
-        [&rows](const std::string& text) { rows.factors.rays = to_index("--rays", text, 1, 1u << 31); });
-    options.value("--eye-points", "K", "sample points per patch: 1, 4, 9 ... 64 (as the preset says)",
-                  [&rows](const std::string& text) {
-                      rows.factors.eye_points = to_index("--eye-points", text, 1);
-                      check_eye_points(*rows.factors.eye_points);
-                  });
-    options.value("--resolution", "R",
-                  "texels along a full hemicube edge: even, 2 to 4096 (as the preset says; plain: 128)",
-                  [&rows](const std::string& text) {
-                      rows.factors.resolution = to_index("--resolution", text, 2, 4096);
-                      if (*rows.factors.resolution % 2 != 0) {
-                          throw InvalidArgument(fmt::format("--resolution {}: must be even, for example {}",
-                                                            text, *rows.factors.resolution + 1));
-                      }
-                  });
-    options.value("--shadow-rays", "N",
-                  "rays between patches that partly see each other, 0 to 4096 (as the preset says)",
-                  [&rows](const std::string& text) {
-                      rows.factors.shadow_rays = to_index("--shadow-rays", text, 0, 4096);
-                  });
-    add_drawing(app, rows);
-}
-
 void add_repair(CLI::App& app, std::optional<Repair>& repair) {
     Options(app, "Form factors")
         .choice<Repair>(
@@ -205,7 +122,7 @@ void add_refinement(CLI::App& app, RowOptions& rows, RefinementOptions& a, bool 
         ->needs(app.get_option("--error-target"));
     auto* refine =
         options.value("--refine", "N", "cut patches where it tells, until there are N",
-                      [&a](const std::string& text) { a.patches = to_index("--refine", text, 1); });
+                      [&a](const std::string& text) { a.patches = parse_index("--refine", text, 1); });
     options.value("--budget", "TIME", "cut no more patches after this time, such as 30s or 5m",
                   [&a](const std::string& text) { a.budget = parse_duration("--budget", text); });
     refine->excludes(app.get_option("--method"))->excludes(app.get_option("--no-estimate"));
@@ -293,25 +210,6 @@ void add_solve(CLI::App& app, SolveArguments& a) {
                "  hemi solve room.obj --patch-size 0.1 --factors room.hff --result room.hres");
 }
 
-RowSelection parse_rows(const std::string& text) {
-    const std::size_t mark = text.find_first_of(":/");
-    if (mark == std::string::npos) {
-        throw InvalidArgument(
-            fmt::format("--rows {}: must be A:B, rows A to B - 1 from 0, or K/N, the K-th of "
-                        "N shares",
-                        text));
-    }
-    RowSelection rows;
-    rows.shares = text[mark] == '/';
-    rows.first = to_index("--rows", text.substr(0, mark), rows.shares ? 1 : 0);
-    rows.second = to_index("--rows", text.substr(mark + 1), 1);
-    if (rows.shares ? rows.first > rows.second : rows.first >= rows.second) {
-        throw InvalidArgument(fmt::format("--rows {}: {} must be {} {}", text, rows.first,
-                                          rows.shares ? "at most" : "below", rows.second));
-    }
-    return rows;
-}
-
 void add_factors(CLI::App& app, FactorsArguments& a) {
     a.scene.reader.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff");
@@ -328,7 +226,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     add_resume(app, a.rows, file);
     output.path("--patches", "FILE.csv", a.patches, "area, centre, normal, environment share of every patch");
     auto* row = output.value("--row", "I", "print one row, largest first, with names",
-                             [&a](const std::string& text) { a.row = to_index("--row", text, 0); });
+                             [&a](const std::string& text) { a.row = parse_index("--row", text, 0); });
     output.flag("--by-group", a.by_group, "sum over named groups: a table, or with -o FILE.csv the file");
     row->excludes(file);
     row->excludes(app.get_option("--by-group"));
@@ -583,7 +481,7 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
                        "--row",
                        [&a](const Words& all) {
                            for (const std::string& text : all) {
-                               a.rows.push_back(to_index("--row", text, 0));
+                               a.rows.push_back(parse_index("--row", text, 0));
                                if (std::count(a.rows.begin(), a.rows.end(), a.rows.back()) > 1) {
                                    throw InvalidArgument(fmt::format("--row {}: is given twice", text));
                                }

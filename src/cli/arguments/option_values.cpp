@@ -119,6 +119,11 @@ std::uint64_t parse_whole(std::string_view option, const std::string& text, std:
     return value;
 }
 
+std::uint32_t parse_index(std::string_view option, const std::string& text, std::uint32_t lower,
+                          std::uint32_t upper) {
+    return static_cast<std::uint32_t>(parse_whole(option, text, lower, upper));
+}
+
 double parse_duration(std::string_view option, const std::string& text) {
     const std::size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
     const auto value = to_number(std::string_view(text).substr(0, digits));

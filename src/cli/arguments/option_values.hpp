@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +25,9 @@ namespace hemi::cli {
 /// A whole number from `lower` to `upper`.
 [[nodiscard]] std::uint64_t parse_whole(std::string_view option, const std::string& text, std::uint64_t lower,
                                         std::uint64_t upper);
+/// The same, of what is counted by 32 bits.
+[[nodiscard]] std::uint32_t parse_index(std::string_view option, const std::string& text, std::uint32_t lower,
+                                        std::uint32_t upper = std::numeric_limits<std::uint32_t>::max() - 1);
 /// A time in seconds: a number, with s, m (or min) or h behind it, or bare. Above 0.
 [[nodiscard]] double parse_duration(std::string_view option, const std::string& text);
 /// Memory: a number and K, M, G or T (powers of 1024, as KiB …), KB, MB … (powers of 1000), or bytes.
