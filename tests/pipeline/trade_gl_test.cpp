@@ -263,7 +263,7 @@ TEST_CASE("trade: smaller patches are slower and better, and the front is what n
           "[pipeline][gl][slow]") {
     const Scene scene = lamp_and_sheet(16, 1);
     const PatchMesh mesh(scene);
-    const Trade trade = measure_trade(scene, mesh, {}, false, settings_of(), 2.0);
+    const Trade trade = measure_trade(scene, mesh, {}, false, settings_of(), 6.0);
     INFO(trade.unanswered);
     REQUIRE(trade.answer_reference);
     REQUIRE_FALSE(trade.answers.empty());
