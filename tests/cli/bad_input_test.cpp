@@ -1,5 +1,6 @@
 #include "cli/program.hpp"
 #include "support/command.hpp"
+#include "support/places.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,5 @@
 #include "cli/heat_scenes.hpp"
+#include "support/places.hpp"
 
 #include <catch2/catch.hpp>
 

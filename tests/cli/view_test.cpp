@@ -1,4 +1,5 @@
 #include "cli/program.hpp"
+#include "support/places.hpp"
 #include "support/virtual_display.hpp"
 
 #include <catch2/catch.hpp>

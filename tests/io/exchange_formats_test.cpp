@@ -1,6 +1,7 @@
 #include "hemi/io/factor_file.hpp"
 
 #include "io_fixtures.hpp"
+#include "support/places.hpp"
 
 #include <clocale>
 #include <cstdlib>

@@ -1,6 +1,7 @@
 #include "hemi/io/scene_reader.hpp"
 
 #include "io_fixtures.hpp"
+#include "support/places.hpp"
 
 namespace hemi::io_test {
 

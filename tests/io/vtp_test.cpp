@@ -1,6 +1,7 @@
 #include "hemi/io/vtp_file.hpp"
 
 #include "io_fixtures.hpp"
+#include "support/places.hpp"
 
 #include <nlohmann/json.hpp>
 

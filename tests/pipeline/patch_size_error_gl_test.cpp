@@ -1,5 +1,6 @@
 #include "support/device.hpp"
 #include "support/group_irradiance.hpp"
+#include "support/places.hpp"
 #include "support/scenes.hpp"
 
 #include "hemi/core/buried.hpp"

@@ -1,5 +1,6 @@
 #include "cli/program.hpp"
 #include "support/picture_difference.hpp"
+#include "support/places.hpp"
 #include "support/png.hpp"
 
 #include <catch2/catch.hpp>

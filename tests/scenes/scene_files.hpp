@@ -1,6 +1,7 @@
 #pragma once
 
 #include "support/device.hpp"
+#include "support/places.hpp"
 
 #include "hemi/core/diagnostics.hpp"
 #include "hemi/engine/engine.hpp"

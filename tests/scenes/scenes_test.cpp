@@ -4,6 +4,7 @@
 #include "hemi/scene/imprint.hpp"
 #include "support/accuracy_row.hpp"
 #include "support/command.hpp"
+#include "support/places.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,5 +1,6 @@
 #include "structure/source_tree.hpp"
 #include "support/command.hpp"
+#include "support/places.hpp"
 
 #include <catch2/catch.hpp>
 

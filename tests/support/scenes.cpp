@@ -1,4 +1,5 @@
 #include "support/scenes.hpp"
+#include "support/places.hpp"
 
 #include "hemi/io/scene_reader.hpp"
 

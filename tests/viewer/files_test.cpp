@@ -1,3 +1,4 @@
+#include "support/places.hpp"
 #include "viewer/workplace.hpp"
 
 #include "hemi/io/result_file.hpp"

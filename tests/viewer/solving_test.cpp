@@ -5,6 +5,7 @@
 #include "hemi/core/diagnostics.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "support/places.hpp"
 
 #include <array>
 #include <cmath>

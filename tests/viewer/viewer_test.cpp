@@ -1,3 +1,4 @@
+#include "support/places.hpp"
 #include "viewer/workplace.hpp"
 
 using namespace hemi::viewer_test;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "support/places.hpp"
 #include "support/virtual_display.hpp"
 
 #include "hemi/io/factor_file.hpp"
