@@ -53,7 +53,8 @@ FormFactorMatrix compute_rows(FormFactors& factors, BasicRowProvider<Row>& engin
     std::iota(patches.begin(), patches.end(), rows.first);
     if (settings.method == Method::hemicube) {
         RawRows<Row> sampled(engine);
-        check_memory(sampled, patches, settings, observer);
+        check_memory(sampled, patches, settings, observer,
+                     "Fewer rows in a part, larger patches or a higher limit");
         stop_if_interrupted();
     }
     io::CheckpointKey key = raw_row_key(factors, settings);
@@ -83,10 +84,17 @@ std::string add_reference(io::FactorPart& part, const PatchMesh& mesh, const Fac
     return fmt::format("by {} rows of {}", all.size(), renderer_of_rows(engine->renderer()));
 }
 
-/// Parts of one scene, and what they hold besides rows.
+/// A part without its rows and its mesh, which is that of all.
 struct KnownPart {
     std::filesystem::path file;
-    io::FactorPart part; ///< no rows
+    io::FactorPart part;
+    std::uint64_t bytes; ///< of the file, no less than it takes in memory
+};
+
+/// Parts of one scene.
+struct KnownParts {
+    io::FactorPart mesh;          ///< of all of them: what one of them holds besides rows
+    std::vector<KnownPart> parts; ///< by their first rows
 };
 
 std::vector<std::uint32_t> surface_groups(const io::FactorPart& part) {
@@ -98,19 +106,14 @@ std::vector<std::uint32_t> surface_groups(const io::FactorPart& part) {
     return groups;
 }
 
-/// @throws InputError if the parts are not of one scene by one renderer with one group of settings
-void check_same_run(const KnownPart& first, const KnownPart& other) {
+/// @throws InputError if two parts are not of one scene by one renderer with one group of settings
+void check_same_run(const std::filesystem::path& a_file, const io::FactorPart& a,
+                    const std::filesystem::path& b_file, const io::FactorPart& b) {
     const std::string files =
-        fmt::format("{}: a part of another run than {}", other.file.string(), first.file.string());
-    for (const auto& [name, value] : first.part.key) {
-        const auto found = other.part.key.find(name);
-        const std::string here = found == other.part.key.end() ? "nothing" : found->second;
-        if (here != value) {
-            throw InputError(fmt::format("{}: {} {}, there {}", files, name, here, value));
-        }
+        fmt::format("{}: a part of another run than {}", b_file.string(), a_file.string());
+    if (const auto found = io::difference(b.key, a.key)) {
+        throw InputError(fmt::format("{}: {} {}, there {}", files, found->name, found->here, found->there));
     }
-    const io::FactorPart& a = first.part;
-    const io::FactorPart& b = other.part;
     if (a.size != b.size || a.groups != b.groups || surface_groups(a) != surface_groups(b) ||
         a.parts != b.parts) {
         throw InputError(fmt::format("{}: its patches are in other groups", files));
@@ -151,20 +154,27 @@ void check_all_rows(std::span<const KnownPart> parts) {
     }
 }
 
-/// The parts in the order of their rows, without these.
-std::vector<KnownPart> describe_parts(Paths files) {
+KnownParts describe_parts(Paths files) {
     if (files.empty()) {
         throw InvalidArgument("no parts to merge");
     }
-    std::vector<KnownPart> parts;
+    KnownParts known;
     for (const std::filesystem::path& file : files) {
-        parts.push_back({file, io::read_factor_part(file, io::FactorPartContent::description)});
-        check_same_run(parts.front(), parts.back());
+        io::FactorPart part = io::read_factor_part(file, io::FactorPartContent::description);
+        if (known.parts.empty()) {
+            known.mesh = part;
+        } else {
+            check_same_run(files.front(), known.mesh, file, part);
+        }
+        part.groups = {}; // once is enough of what takes as much as the scene
+        part.surfaces = {};
+        part.parts = {};
+        known.parts.push_back({file, std::move(part), std::filesystem::file_size(file)});
     }
-    std::stable_sort(parts.begin(), parts.end(),
+    std::stable_sort(known.parts.begin(), known.parts.end(),
                      [](const KnownPart& a, const KnownPart& b) { return a.part.first < b.part.first; });
-    check_all_rows(parts);
-    return parts;
+    check_all_rows(known.parts);
+    return known;
 }
 
 /// The scene, as far as form factors depend on it.
@@ -179,17 +189,16 @@ Scene scene_of(const io::FactorPart& part) {
     return scene;
 }
 
-PatchMesh mesh_of(const KnownPart& known) {
+PatchMesh mesh_of(const std::filesystem::path& file, const io::FactorPart& part) {
     try {
-        PatchMesh mesh(scene_of(known.part));
-        const auto stored = known.part.key.find("geometry");
-        if (stored == known.part.key.end() ||
-            stored->second != fmt::format("{:016x}", mesh.geometry_hash())) {
+        PatchMesh mesh(scene_of(part));
+        const auto stored = part.key.find("geometry");
+        if (stored == part.key.end() || stored->second != fmt::format("{:016x}", mesh.geometry_hash())) {
             throw InputError("its patches are not those that its rows are of");
         }
         return mesh;
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", known.file.string(), error.what()));
+        throw InputError(fmt::format("{}: {}", file.string(), error.what()));
     }
 }
 
@@ -277,14 +286,18 @@ private:
 void check_merge_memory(std::span<const KnownPart> parts, const FactorSettings& settings) {
     const io::FactorPart& first = parts.front().part;
     std::uint64_t entries = 0;
+    std::uint64_t largest = 0;
     for (const KnownPart& known : parts) {
         entries += known.part.entries;
+        largest = std::max(largest, known.bytes);
     }
     const double a_row = static_cast<double>(entries) / first.size;
-    const std::uint64_t needed = first.visibility ? visibility_weighted_memory(a_row, first.size, first.size)
-                                                  : matrix_memory(a_row, first.size, first.size);
+    const std::uint64_t needed =
+        largest + (first.visibility ? visibility_weighted_memory(a_row, first.size, first.size)
+                                    : matrix_memory(a_row, first.size, first.size));
     if (needed > memory_limit(settings)) {
-        throw OutOfMemory(fmt::format("{} of {} would need {}; the limit is {}. {} would help",
+        throw OutOfMemory(fmt::format("{} of {} and the largest part would need {}; the limit is {}. {} "
+                                      "would help",
                                       first.visibility ? "the pairs" : "the rows",
                                       plural(first.size, "patch", "patches"), memory_text(needed),
                                       memory_limit_text(settings),
@@ -305,7 +318,11 @@ io::FactorPart compute_factor_part(const Scene& scene, const PatchMesh& mesh, Ro
                                           count_text(mesh.size())),
                               {"rows"});
     }
+    if (!mesh.parts().empty()) {
+        throw InvalidArgument("rows of patches that were cut further cannot be computed in parts");
+    }
     FormFactors factors = describe_form_factors(scene, mesh, settings);
+    note_unoccluded(settings.method, observer);
     io::FactorPart part;
     part.first = rows.first;
     part.end = rows.end;
@@ -315,6 +332,15 @@ io::FactorPart compute_factor_part(const Scene& scene, const PatchMesh& mesh, Ro
     const RowPlan plan = hemicubes ? plan_rows(settings, mesh.size()) : RowPlan();
     part.visibility = plan.weighted.has_value();
     if (part.visibility) {
+        const std::uint64_t pairs = visibility_weighted_memory(0.0, mesh.size(), mesh.size());
+        if (pairs > memory_limit(settings)) {
+            observer.warning(
+                fmt::format("merging all parts will need more than {} for the pairs of {}; the limit here is "
+                            "{}. Parts of --preset plain need less",
+                            memory_text(pairs), plural(mesh.size(), "patch", "patches"),
+                            memory_limit_text(settings)),
+                "max-memory");
+        }
         const auto engine = make_visibility_provider(mesh, plan.hemicube, settings);
         part.rows = compute_rows(factors, *engine, rows, settings, observer, checkpoint);
     } else {
@@ -335,13 +361,15 @@ io::FactorPart compute_factor_part(const Scene& scene, const PatchMesh& mesh, Ro
 }
 
 FormFactors merge_factor_parts(Paths files, const FactorSettings& settings, Observer& observer) {
-    const std::vector<KnownPart> parts = describe_parts(files);
+    KnownParts known = describe_parts(files);
+    const std::vector<KnownPart>& parts = known.parts;
     check_merge_memory(parts, settings);
     const io::FactorPart& first = parts.front().part;
-    const PatchMesh mesh = mesh_of(parts.front());
-    FormFactors factors = describe_form_factors(scene_of(first), mesh, {});
+    const PatchMesh mesh = mesh_of(files.front(), known.mesh);
+    FormFactors factors = describe_form_factors(scene_of(known.mesh), mesh, {});
     factors.provenance = first.provenance;
-    factors.parts = first.parts;
+    factors.parts = std::move(known.mesh.parts);
+    note_unoccluded(first.provenance.method, observer);
     factors.work.from_file = true;
     const auto progress = [&observer](Phase phase) {
         return [&observer, phase](std::size_t done, std::size_t total) {

@@ -48,9 +48,7 @@ FormFactors compute_baseline_rows(const Scene& scene, const PatchMesh& mesh,
                                   std::span<const std::uint32_t> patches, const FactorSettings& settings,
                                   Observer& observer, RowCheckpoint* checkpoint) {
     FormFactors factors = describe_form_factors(scene, mesh, settings);
-    if (settings.method == Method::direct || settings.method == Method::contour) {
-        observer.note(fmt::format("method {} finds unoccluded factors", to_word(settings.method)));
-    }
+    note_unoccluded(settings.method, observer);
     const auto provider = make_row_provider(mesh, settings);
     Computation<RowView> computation(factors, *provider, observer, checkpoint,
                                      raw_row_key(factors, settings));

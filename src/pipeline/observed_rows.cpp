@@ -47,7 +47,7 @@ std::vector<std::uint32_t> ObservedRows<Row>::resume(std::span<const std::uint32
     });
     if (checkpoint_->reused_ > 0) {
         observer_.note(fmt::format("{} of {} taken from the checkpoint {}", count_text(checkpoint_->reused_),
-                                   plural(size(), "row", "rows"), checkpoint_->path().string()));
+                                   plural(patches.size(), "row", "rows"), checkpoint_->path().string()));
     }
     std::vector<std::uint32_t> missing;
     std::copy_if(patches.begin(), patches.end(), std::back_inserter(missing),

@@ -489,6 +489,20 @@ private:
         return errors;
     }
 
+    /// What rows let through too much of the sky, W/m²: channel c of the k-th row at [k·channels + c]; empty
+    /// where there is none.
+    [[nodiscard]] std::vector<double> sky_errors(std::span<const std::uint32_t> rows) const {
+        if (!scene_.sky) {
+            return {};
+        }
+        std::vector<double> errors = direct_irradiances(scene_, mesh_, factors_.matrix, rows).sky;
+        const std::vector<double> better = direct_irradiances(scene_, mesh_, factors_.reference, rows).sky;
+        for (std::size_t k = 0; k < errors.size(); ++k) {
+            errors[k] -= better[k];
+        }
+        return errors;
+    }
+
     /// SampledErrors of the sampled rows' irradiance, times area and importance: channel c of group g at
     /// [g·channels + c].
     [[nodiscard]] std::vector<SampledSum> factor_error_sums() const {
@@ -498,6 +512,7 @@ private:
         }
         const IrradianceErrors errors = irradiance_errors(factors_.matrix, factors_.reference, channels_,
                                                           solution_.radiosity, scene_.environment);
+        const std::vector<double> sky = sky_errors(errors.rows);
         double known = 0.0;
         for (std::uint32_t i = 0; i < mesh_.size(); ++i) {
             known += factors_.matrix.known(i) ? 1.0 : 0.0;
@@ -507,8 +522,9 @@ private:
             const std::uint32_t i = errors.rows[k];
             const std::span<const double> importance = importance_.of(i);
             for (std::size_t column = 0; column < sums.size(); ++column) {
+                const std::size_t value = k * channels_ + column % channels_;
                 sums[column].add(mesh_.areas()[i] * importance[column] *
-                                     errors.errors[k * channels_ + column % channels_],
+                                     (errors.errors[value] + (sky.empty() ? 0.0 : sky[value])),
                                  weight);
             }
         }

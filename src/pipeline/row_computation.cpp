@@ -53,8 +53,14 @@ std::string memory_limit_text(const FactorSettings& settings) {
            (settings.max_memory ? "" : ", 80 % of the memory that is free");
 }
 
+void note_unoccluded(Method method, Observer& observer) {
+    if (method == Method::direct || method == Method::contour) {
+        observer.note(fmt::format("method {} finds unoccluded factors", to_word(method)));
+    }
+}
+
 void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, const FactorSettings& settings,
-                  Observer& observer) {
+                  Observer& observer, std::string_view advice) {
     if (patches.size() <= unsampled_rows) {
         return;
     }
@@ -63,10 +69,9 @@ void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, c
                                 memory_text(estimate.memory_bytes), seconds_text(estimate.seconds)));
     if (estimate.memory_bytes > memory_limit(settings)) {
         throw OutOfMemory(
-            fmt::format("{} rows of about {:.0f} entries would need {}; the limit is {}. Larger "
-                        "patches, a lower resolution or a higher limit would help",
+            fmt::format("{} rows of about {:.0f} entries would need {}; the limit is {}. {} would help",
                         count_text(patches.size()), estimate.entries_per_row,
-                        memory_text(estimate.memory_bytes), memory_limit_text(settings)),
+                        memory_text(estimate.memory_bytes), memory_limit_text(settings), advice),
             {"patch-size", "resolution", "max-memory"});
     }
 }

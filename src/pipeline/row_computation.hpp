@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,9 +31,14 @@ inline constexpr std::size_t unsampled_rows = 256;
 /// The memory that rows may take, and where that comes from.
 [[nodiscard]] std::string memory_limit_text(const FactorSettings& settings);
 /// Says what rows will need, by a sample.
+/// @param advice  what would help if they do not fit
 /// @throws OutOfMemory if they do not fit
 void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, const FactorSettings& settings,
-                  Observer& observer);
+                  Observer& observer,
+                  std::string_view advice = "Larger patches, a lower resolution or a higher limit");
+
+/// Says so where a method does not know what is hidden.
+void note_unoccluded(Method method, Observer& observer);
 
 /// Better rows by which errors are estimated.
 struct ReferencePlan {

@@ -14,7 +14,7 @@ namespace hemi {
 
 namespace {
 
-constexpr double reference_share = 0.06;    // of the budget
+constexpr double share_of_reference = 0.06; // of the budget
 constexpr double least_factors_share = 0.1; // for form factors, whatever solutions took
 constexpr double max_sample_share = 0.5;    // of what time is left, for all rows after a sample
 
@@ -94,7 +94,7 @@ public:
         Trade trade;
         trade.entries = all_entries(base_, mesh_.size());
         const auto patches = all_patches(mesh_.size());
-        trade.reference = find_reference(mesh_, patches, base_, reference_share * budget_, observer_);
+        trade.reference = find_reference(mesh_, patches, base_, share_of_reference * budget_, observer_);
         observer_.note(fmt::format("reference: {} by {} sample points of resolution {}, in {}",
                                    plural(trade.reference.patches.size(), "row", "rows"),
                                    trade.reference.settings.eye_points, trade.reference.settings.resolution,

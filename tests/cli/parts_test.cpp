@@ -1,9 +1,11 @@
 #include "cli/program.hpp"
+#include "support/command.hpp"
 #include "support/places.hpp"
 
 #include <catch2/catch.hpp>
 
 using namespace hemi::cli_test;
+using hemi::test::run_command;
 
 namespace {
 
@@ -168,9 +170,55 @@ TEST_CASE("Parts: an interrupted one goes on from its checkpoint, and no other d
     const Outcome other = run_hemi(with(command, {"--rows", "2/2", "--resume"}));
     CHECK(other.status == 3);
     CHECK(other.err_has("this checkpoint holds rows of another run: rows 0:768, here 768:1536"));
+    const Outcome whole = run_hemi(with(command, {"--resume"}));
+    CHECK(whole.status == 3);
+    CHECK(whole.err_has("this checkpoint holds rows of another run: rows 0:768, here nothing"));
     const Outcome resumed = run_hemi(with(command, {"--rows", "1/2", "--resume"}));
     INFO(resumed.err);
     CHECK(resumed.status == 0);
-    CHECK(resumed.err_has("taken from the checkpoint"));
+    CHECK(resumed.err_has("of 768 rows taken from the checkpoint"));
     CHECK(directory.names() == Words{"a.hff", "cube.json"});
+}
+
+TEST_CASE("Parts: JSON says which rows there are, and what came of the merge", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(2)); // 24 patches
+    const auto part = [&](const std::string& rows, const std::string& file) {
+        return run_hemi({"factors", scene, "--device", "cpu", "--json", "--rows", rows, "-o",
+                         directory.path(file)})
+            .json();
+    };
+    const Json first = part("0:10", "a.hff");
+    CHECK(first["schema"] == "hemi/factors-part/1");
+    CHECK(first["rows"] == Json({0, 10}));
+    CHECK(first["size"] == 24);
+    CHECK(part("10:24", "b.hff")["rows"] == Json({10, 24}));
+    const Outcome run = run_hemi(
+        {"merge", "--json", directory.path("b.hff"), directory.path("a.hff"), "-o", directory.path("F.hff")});
+    INFO(run.err);
+    const Json merged = run.json();
+    CHECK(merged["schema"] == "hemi/merge/1");
+    CHECK(merged["merged"] == 2);
+    CHECK(merged["patches"] == 24);
+    CHECK(merged["row_sum"]["mean"].get<double>() == Approx(1.0).margin(1e-4));
+
+    const Outcome refused = run_hemi({"merge", "--max-memory", "1", directory.path("a.hff"),
+                                      directory.path("b.hff"), "-o", directory.path("G.hff")});
+    CHECK(refused.status == 1);
+    CHECK(refused.err_has("the pairs of 24 patches and the largest part would need"));
+    CHECK(!directory.has("G.hff"));
+}
+
+TEST_CASE("Parts: the script that shares rows out among processes compares them with one run", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(2));
+    const std::string program = HEMI_SOURCE_DIR "/tools/parts";
+    const auto run =
+        run_command({"env", "HEMI_PROGRAM=" HEMI_PROGRAM, program, "-n", "3", scene, "--device", "cpu"});
+    INFO(run.out);
+    CHECK(run.status == 0);
+    CHECK(run.out.find("3 parts merged") != std::string::npos);
+    CHECK(run.out.find("equal to those of one process") != std::string::npos);
+    CHECK(run_command({"env", "HEMI_PROGRAM=" HEMI_PROGRAM, program, "-n", "3", scene, "--device", "nowhere"})
+              .status != 0);
 }

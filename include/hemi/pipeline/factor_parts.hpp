@@ -27,16 +27,18 @@ struct RowRange {
 /// @param settings    how; all parts must have the same
 /// @param observer    gets progress and may cancel
 /// @param checkpoint  where finished rows are kept, or null
-/// @return all but FactorPart::parts
-/// @throws InvalidArgument for a range that is empty or goes beyond the mesh; as compute_form_factors
+/// @return all but FactorPart::groups and FactorPart::surfaces, which are the mesh's, and FactorPart::parts
+/// @throws InvalidArgument for a range that is empty or goes beyond the mesh, and for a mesh of patches that
+///   were cut further; as compute_form_factors
 [[nodiscard]] io::FactorPart compute_factor_part(const Scene& scene, const PatchMesh& mesh, RowRange rows,
                                                  const FactorSettings& settings,
                                                  Observer& observer = no_observer(),
                                                  RowCheckpoint* checkpoint = nullptr);
 
-/// Raw form factors of a scene whose rows are in parts: to the bit those of one run with the same renderer.
-/// The instruction set of the CPU rasteriser does not count; of several, the first part's is named.
-/// Memory: as compute_visibility_weighted() for all rows, and the largest part.
+/// Raw form factors of a scene whose rows are in parts: to the bit those of one run with the same renderer,
+/// the CPU rasteriser or software OpenGL (a GPU may draw a few texels another way). The instruction set of
+/// the CPU rasteriser does not count; of several, the first part's is named. Memory: as
+/// compute_visibility_weighted() for all rows, and the largest part.
 /// @param files     the parts, in any order
 /// @param settings  max_memory of them, nothing else
 /// @param observer  gets progress and may cancel

@@ -18,8 +18,9 @@ EmbreeScene::Quad EmbreeScene::quad(std::span<const Vec3> polygon) {
 
 EmbreeScene::EmbreeScene(const Bounds& bounds, std::span<const Quad> polygons, RTCSceneFlags flags)
     : centre_(bounds.centre()), scale_(2.0 / bounds.diagonal()) {
-    // One thread: the trees are small, and rays are traced by the caller's threads.
-    device_ = rtcNewDevice("threads=1");
+    // One thread: the trees are small, and rays are traced by the caller's threads. AVX2, so that rays which
+    // graze an edge meet the same on processors with more.
+    device_ = rtcNewDevice("threads=1,max_isa=avx2");
     if (device_ == nullptr) {
         throw Error(
             fmt::format("Embree: no device (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));

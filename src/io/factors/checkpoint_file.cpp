@@ -83,6 +83,21 @@ void forget(FormFactorMatrix& rows, std::uint32_t row) {
 
 } // namespace
 
+std::optional<KeyDifference> difference(const CheckpointKey& here, const CheckpointKey& there) {
+    const auto value = [](const CheckpointKey& key, const std::string& name) {
+        const auto found = key.find(name);
+        return found == key.end() ? "nothing" : found->second;
+    };
+    CheckpointKey names = here;
+    names.insert(there.begin(), there.end());
+    for (const auto& [name, _] : names) {
+        if (value(here, name) != value(there, name)) {
+            return KeyDifference{name, value(here, name), value(there, name)};
+        }
+    }
+    return std::nullopt;
+}
+
 CheckpointFile::CheckpointFile(const std::filesystem::path& output, bool resume) : path_(output) {
     path_ += ".rows";
     const auto leave_alone = [&](const std::string& why) {
@@ -132,14 +147,11 @@ void CheckpointFile::start(const CheckpointKey& key, std::uint32_t size,
     } catch (const InputError&) { // it was killed before there was a row
     }
     if (stored) {
-        for (const auto& [name, value] : key) {
-            if ((*stored)[name] != value) {
-                throw InputError(fmt::format("{}: this checkpoint holds rows of another run: {} {}, here {}; "
-                                             "do not resume from it, and it is "
-                                             "replaced",
-                                             path_.string(), name, (*stored)[name], value),
-                                 {"resume"});
-            }
+        if (const auto found = difference(key, *stored)) {
+            throw InputError(fmt::format("{}: this checkpoint holds rows of another run: {} {}, here {}; do "
+                                         "not resume from it, and it is replaced",
+                                         path_.string(), found->name, found->there, found->here),
+                             {"resume"});
         }
         FormFactorMatrix rows(size);
         std::vector<bool> seen(size, false);

@@ -6,12 +6,21 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace hemi::io {
 
 /// What the rows of a checkpoint belong to: names and values, all of which must be equal for rows to be used.
 using CheckpointKey = std::map<std::string, std::string>;
+
+/// Two keys that differ, told by the first name of which they do; what has none has the value "nothing".
+struct KeyDifference {
+    std::string name;
+    std::string here;
+    std::string there;
+};
+[[nodiscard]] std::optional<KeyDifference> difference(const CheckpointKey& here, const CheckpointKey& there);
 
 /// Finished blocks of raw rows, kept beside a file of form factors while that is not complete, so that a run
 /// that was killed can be taken up again: FILE.rows.

@@ -72,7 +72,7 @@ Layout read_header(const JsonNode& head, FactorPart& part) {
     part.enclosure = read_word<Enclosure>(head.member("enclosure"));
     part.provenance = read_provenance(head);
     part.groups = head.member("groups").texts();
-    part.entries = head.member("entries").integer(std::uint64_t{1} << 62);
+    part.entries = head.member("entries").integer(std::uint64_t{part.end - part.first} * part.size);
     Layout layout;
     layout.surfaces = integer32(head.member("surfaces"));
     layout.blocks = read_first_rows(head.member("blocks"), part.size);
@@ -92,6 +92,20 @@ bool fits(const FactorPart& part, const FormFactorMatrix& rows, bool all) {
         }
     }
     return true;
+}
+
+/// @throws InputError unless visible shares are at most 1
+void check_shares(const ChunkReader& reader, const FormFactorMatrix& rows) {
+    for (const RowBlock& block : rows.blocks()) {
+        const auto above =
+            std::find_if(block.values.begin(), block.values.end(), [](float share) { return share > 1.0f; });
+        if (above != block.values.end()) {
+            const auto entry = static_cast<std::uint64_t>(above - block.values.begin());
+            const auto next = std::upper_bound(block.begin.begin(), block.begin.end(), entry);
+            reader.fail(fmt::format("row {}: a visible share of {}; must be at most 1",
+                                    block.first_row + (next - block.begin.begin()) - 1, *above));
+        }
+    }
 }
 
 /// Whether every entry has what a row of its kind needs.
@@ -115,6 +129,10 @@ void read_rows(ChunkReader& reader, const Layout& layout, FactorPart& part) {
     if (!has_kind(part.rows, part.visibility) || !has_kind(part.reference, true)) {
         reader.fail("its rows are of another kind than it says");
     }
+    if (part.visibility) {
+        check_shares(reader, part.rows);
+    }
+    check_shares(reader, part.reference);
 }
 
 } // namespace

@@ -17,7 +17,7 @@ constexpr double largest_emissivity = 0.999;
 
 /// "program version format enclosure script-F N", filled up to 30 characters, which is how View3D's readers
 /// take it.
-std::string header(const FormFactors& file, View3dFormat format) {
+std::string header_line(const FormFactors& file, View3dFormat format) {
     return fmt::format("{:<30}",
                        fmt::format("hemi {} {} {} 0 {}", HEMI_VERSION, format == View3dFormat::text ? 0 : 1,
                                    file.enclosure == Enclosure::closed ? 1 : 0, file.matrix.size()));
@@ -31,7 +31,7 @@ double emissivity_of(std::span<const double> emissivity, std::size_t patch) {
 void write_text(const std::filesystem::path& path, const FormFactors& file,
                 std::span<const double> emissivity) {
     TextOutput output(path);
-    output.print(FMT_COMPILE("{}\n"), header(file, View3dFormat::text));
+    output.print(FMT_COMPILE("{}\n"), header_line(file, View3dFormat::text));
     const std::uint32_t size = file.matrix.size();
     for (std::uint32_t i = 0; i < size; ++i) {
         output.print(FMT_COMPILE("{}{:.9g}"), i == 0 ? "" : " ", file.areas[i]);
@@ -57,7 +57,7 @@ void write_text(const std::filesystem::path& path, const FormFactors& file,
 void write_binary(const std::filesystem::path& path, const FormFactors& file,
                   std::span<const double> emissivity) {
     OutputFile output(path);
-    output.write(header(file, View3dFormat::binary) + "\r\n");
+    output.write(header_line(file, View3dFormat::binary) + "\r\n");
     const std::uint32_t size = file.matrix.size();
     std::vector<float> line(size);
     const auto write_line = [&] { output.write(line.data(), line.size() * sizeof(float)); };

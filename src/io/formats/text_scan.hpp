@@ -38,6 +38,9 @@ private:
 /// Takes the next word (ended by blanks or tabs) off the front of `rest`; empty when there is none.
 std::string_view next_word(std::string_view& rest);
 
+/// `text` with the letters of ASCII as capitals, for words that count in any case.
+[[nodiscard]] std::string upper_case(std::string_view text);
+
 /// The number that `word` spells from end to end, if it does and is finite. Whatever the locale.
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
 

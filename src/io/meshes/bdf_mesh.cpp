@@ -20,23 +20,16 @@ constexpr std::size_t name_width = 8;
 constexpr std::size_t most_fields =
     24; // of a card, its continuations with it: more than any that is read has
 
-std::string upper(std::string_view text) {
-    std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    return result;
-}
-
-struct ElementType {
+struct BdfElementType {
     std::string_view name;
     std::uint32_t corners;
     bool curved;
 };
 
 /// Shells; the first nodes of each are its corners.
-constexpr std::array element_types{ElementType{"CTRIA3", 3, false}, ElementType{"CTRIAR", 3, false},
-                                   ElementType{"CTRIA6", 3, true},  ElementType{"CQUAD4", 4, false},
-                                   ElementType{"CQUADR", 4, false}, ElementType{"CQUAD8", 4, true}};
+constexpr std::array bdf_element_types{BdfElementType{"CTRIA3", 3, false}, BdfElementType{"CTRIAR", 3, false},
+                                       BdfElementType{"CTRIA6", 3, true},  BdfElementType{"CQUAD4", 4, false},
+                                       BdfElementType{"CQUADR", 4, false}, BdfElementType{"CQUAD8", 4, true}};
 
 /// Elements that are no surfaces. Other names that begin with C are no elements: CORD2R, CONM2 and the like.
 constexpr std::array other_elements{"CTETRA", "CHEXA",  "CPENTA", "CPYRAM", "CPYRA",  "CBAR",   "CBEAM",
@@ -48,7 +41,7 @@ struct Node {
     Vec3 point;
 };
 
-struct Element {
+struct BdfElement {
     std::uint64_t number;
     std::size_t line;
     std::uint64_t property;
@@ -110,10 +103,10 @@ private:
 
     [[nodiscard]] bool begins_bulk() const {
         std::string_view rest = line_;
-        return upper(next_word(rest)) == "BEGIN" && upper(trim(rest)).starts_with("BULK");
+        return upper_case(next_word(rest)) == "BEGIN" && upper_case(trim(rest)).starts_with("BULK");
     }
 
-    [[nodiscard]] bool is_end() const { return upper(trim(line_)).starts_with("ENDDATA"); }
+    [[nodiscard]] bool is_end() const { return upper_case(trim(line_)).starts_with("ENDDATA"); }
 
     /// Goes to the first line of bulk data: what is before BEGIN BULK, if it is there, is of the analysis.
     void skip_control() {
@@ -204,10 +197,10 @@ private:
         return name == "GRID" || name == "GRDSET" || find_type(name) != nullptr;
     }
 
-    [[nodiscard]] static const ElementType* find_type(const std::string& name) {
-        const auto* const found = std::find_if(element_types.begin(), element_types.end(),
-                                               [&](const ElementType& type) { return type.name == name; });
-        return found == element_types.end() ? nullptr : found;
+    [[nodiscard]] static const BdfElementType* find_type(const std::string& name) {
+        const auto* const found = std::find_if(bdf_element_types.begin(), bdf_element_types.end(),
+                                               [&](const BdfElementType& type) { return type.name == name; });
+        return found == bdf_element_types.end() ? nullptr : found;
     }
 
     void read_card() {
@@ -219,14 +212,14 @@ private:
         std::string_view name =
             trim(line_.substr(0, std::min({name_width, line_.find(','), line_.find('\t')})));
         name = name.substr(0, name.find_first_of(" *"));
-        card.name = upper(name);
+        card.name = upper_case(name);
         const bool wanted = is_read(card.name);
         std::string_view mark;
         for (bool first = true; first || continues(); first = false) {
             if (wanted) {
                 const Fields fields = split(card);
                 if (!first && mark.size() > 1 && fields.name.size() > 1 &&
-                    upper(mark.substr(1)) != upper(fields.name.substr(1))) {
+                    upper_case(mark.substr(1)) != upper_case(fields.name.substr(1))) {
                     fail(
                         lines_.number(),
                         fmt::format("goes on as {}, the line before as {}; lines that go on must follow each "
@@ -249,7 +242,7 @@ private:
     }
 
     void take(const Card& card) {
-        if (const ElementType* const type = find_type(card.name)) {
+        if (const BdfElementType* const type = find_type(card.name)) {
             take_element(card, *type);
         } else if (card.name == "GRID") {
             take_node(card);
@@ -317,8 +310,8 @@ private:
         nodes_.push_back({number, card.line, {real(card, 2), real(card, 3), real(card, 4)}});
     }
 
-    void take_element(const Card& card, const ElementType& type) {
-        Element element{number_of(card, 0, "element"), card.line, 0, {}, type.corners};
+    void take_element(const Card& card, const BdfElementType& type) {
+        BdfElement element{number_of(card, 0, "element"), card.line, 0, {}, type.corners};
         element.property = card.field(1).empty() ? element.number : number_of(card, 1, "property");
         for (std::uint32_t c = 0; c < type.corners; ++c) {
             element.corners[c] = number_of(card, 2 + c, "node");
@@ -343,7 +336,7 @@ private:
         nodes_.erase(std::unique(nodes_.begin(), nodes_.end(), same), nodes_.end());
     }
 
-    [[nodiscard]] const Vec3& point_of(const Element& element, std::uint64_t number) const {
+    [[nodiscard]] const Vec3& point_of(const BdfElement& element, std::uint64_t number) const {
         std::size_t place = nodes_.empty() ? 0 : static_cast<std::size_t>(number - nodes_.front().number);
         if (place >= nodes_.size() || nodes_[place].number != number) {
             const auto found =
@@ -362,7 +355,7 @@ private:
     void refuse_twins() const {
         std::vector<std::pair<std::uint64_t, std::size_t>> numbers;
         numbers.reserve(elements_.size());
-        for (const Element& element : elements_) {
+        for (const BdfElement& element : elements_) {
             numbers.emplace_back(element.number, element.line);
         }
         std::sort(numbers.begin(), numbers.end());
@@ -380,7 +373,7 @@ private:
         faces_.reserve(elements_.size(), elements_.size());
         const std::uint32_t material = faces_.material("", 0);
         std::map<std::uint64_t, std::uint32_t> groups;
-        for (const Element& element : elements_) {
+        for (const BdfElement& element : elements_) {
             std::array<Vec3, 4> corners{};
             for (std::uint32_t c = 0; c < element.count; ++c) {
                 corners[c] = point_of(element, element.corners[c]);
@@ -414,7 +407,7 @@ private:
     Diagnostics& diagnostics_;
     FaceBuilder faces_;
     std::vector<Node> nodes_;
-    std::vector<Element> elements_;
+    std::vector<BdfElement> elements_;
     std::map<std::string, std::pair<std::uint64_t, std::size_t>> left_out_; ///< by type: count, first line
     std::uint64_t curved_ = 0;
 };

@@ -21,39 +21,31 @@ namespace {
 
 constexpr std::uint64_t most_faces = 10'000'000; // instances share parts: a small file can ask for any number
 
-/// Names and words count in any case.
-std::string upper(std::string_view text) {
-    std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    return result;
-}
-
-struct ElementType {
+struct InpElementType {
     std::string_view name;
     std::uint32_t nodes;
     std::uint32_t corners;
 };
 
 /// Shells, membranes, rigid and other surfaces in space; the first nodes of each are its corners.
-constexpr std::array element_types{
-    ElementType{"S3", 3, 3},      ElementType{"S3R", 3, 3},    ElementType{"S3RS", 3, 3},
-    ElementType{"S3T", 3, 3},     ElementType{"S3RT", 3, 3},   ElementType{"STRI3", 3, 3},
-    ElementType{"STRI65", 6, 3},  ElementType{"S4", 4, 4},     ElementType{"S4R", 4, 4},
-    ElementType{"S4RS", 4, 4},    ElementType{"S4RSW", 4, 4},  ElementType{"S4R5", 4, 4},
-    ElementType{"S4T", 4, 4},     ElementType{"S4RT", 4, 4},   ElementType{"S6", 6, 3},
-    ElementType{"S8", 8, 4},      ElementType{"S8R", 8, 4},    ElementType{"S8R5", 8, 4},
-    ElementType{"S8RT", 8, 4},    ElementType{"S9R5", 9, 4},   ElementType{"DS3", 3, 3},
-    ElementType{"DS4", 4, 4},     ElementType{"DS6", 6, 3},    ElementType{"DS8", 8, 4},
-    ElementType{"R3D3", 3, 3},    ElementType{"R3D4", 4, 4},   ElementType{"M3D3", 3, 3},
-    ElementType{"M3D4", 4, 4},    ElementType{"M3D4R", 4, 4},  ElementType{"M3D6", 6, 3},
-    ElementType{"M3D8", 8, 4},    ElementType{"M3D8R", 8, 4},  ElementType{"M3D9", 9, 4},
-    ElementType{"M3D9R", 9, 4},   ElementType{"SFM3D3", 3, 3}, ElementType{"SFM3D4", 4, 4},
-    ElementType{"SFM3D4R", 4, 4}, ElementType{"SFM3D6", 6, 3}, ElementType{"SFM3D8", 8, 4},
-    ElementType{"SFM3D8R", 8, 4}, ElementType{"F3D3", 3, 3},   ElementType{"F3D4", 4, 4},
+constexpr std::array inp_element_types{
+    InpElementType{"S3", 3, 3},      InpElementType{"S3R", 3, 3},    InpElementType{"S3RS", 3, 3},
+    InpElementType{"S3T", 3, 3},     InpElementType{"S3RT", 3, 3},   InpElementType{"STRI3", 3, 3},
+    InpElementType{"STRI65", 6, 3},  InpElementType{"S4", 4, 4},     InpElementType{"S4R", 4, 4},
+    InpElementType{"S4RS", 4, 4},    InpElementType{"S4RSW", 4, 4},  InpElementType{"S4R5", 4, 4},
+    InpElementType{"S4T", 4, 4},     InpElementType{"S4RT", 4, 4},   InpElementType{"S6", 6, 3},
+    InpElementType{"S8", 8, 4},      InpElementType{"S8R", 8, 4},    InpElementType{"S8R5", 8, 4},
+    InpElementType{"S8RT", 8, 4},    InpElementType{"S9R5", 9, 4},   InpElementType{"DS3", 3, 3},
+    InpElementType{"DS4", 4, 4},     InpElementType{"DS6", 6, 3},    InpElementType{"DS8", 8, 4},
+    InpElementType{"R3D3", 3, 3},    InpElementType{"R3D4", 4, 4},   InpElementType{"M3D3", 3, 3},
+    InpElementType{"M3D4", 4, 4},    InpElementType{"M3D4R", 4, 4},  InpElementType{"M3D6", 6, 3},
+    InpElementType{"M3D8", 8, 4},    InpElementType{"M3D8R", 8, 4},  InpElementType{"M3D9", 9, 4},
+    InpElementType{"M3D9R", 9, 4},   InpElementType{"SFM3D3", 3, 3}, InpElementType{"SFM3D4", 4, 4},
+    InpElementType{"SFM3D4R", 4, 4}, InpElementType{"SFM3D6", 6, 3}, InpElementType{"SFM3D8", 8, 4},
+    InpElementType{"SFM3D8R", 8, 4}, InpElementType{"F3D3", 3, 3},   InpElementType{"F3D4", 4, 4},
 };
 
-struct Element {
+struct InpElement {
     std::array<Vec3, 4> corners;
     std::uint32_t count;
     std::uint64_t number;
@@ -70,7 +62,7 @@ struct Side {
 /// What a *PART has, or the file itself.
 struct Part {
     std::unordered_map<std::uint64_t, Vec3> nodes;
-    std::vector<Element> elements;
+    std::vector<InpElement> elements;
     std::unordered_map<std::uint64_t, std::size_t> numbers; ///< of elements -> index
     std::map<std::string, std::vector<std::uint64_t>> sets; ///< of elements, by upper-case names
     std::unordered_map<std::uint64_t, Side> sides;          ///< of elements that are in a surface
@@ -175,7 +167,7 @@ private:
         } else if (keyword.name == "SURFACE") {
             read_surface(keyword);
         } else if (keyword.name == "PART") {
-            part_ = &parts_[upper(value_of(keyword, "NAME"))];
+            part_ = &parts_[upper_case(value_of(keyword, "NAME"))];
             skip_data();
         } else if (keyword.name == "END PART") {
             part_ = &root_;
@@ -204,7 +196,7 @@ private:
         }
         Keyword keyword;
         std::string_view rest = text;
-        keyword.name = upper(next_field(rest));
+        keyword.name = upper_case(next_field(rest));
         while (!rest.empty()) {
             const std::string_view field = next_field(rest);
             const std::size_t equals = std::min(field.find('='), field.size());
@@ -212,7 +204,7 @@ private:
             if (value.size() > 1 && value.starts_with('"') && value.ends_with('"')) {
                 value = value.substr(1, value.size() - 2);
             }
-            keyword.values[upper(trim(field.substr(0, equals)))] = to_utf8(value);
+            keyword.values[upper_case(trim(field.substr(0, equals)))] = to_utf8(value);
         }
         return keyword;
     }
@@ -256,7 +248,7 @@ private:
 
     void read_nodes(const Keyword& keyword) {
         const auto system = keyword.values.find("SYSTEM");
-        if (system != keyword.values.end() && upper(system->second) != "R") {
+        if (system != keyword.values.end() && upper_case(system->second) != "R") {
             fail(fmt::format("nodes in the system {}; must be R, rectangular", in_quotes(system->second)));
         }
         while (next_data()) {
@@ -273,12 +265,13 @@ private:
     }
 
     void read_elements(const Keyword& keyword) {
-        const std::string type = upper(value_of(keyword, "TYPE"));
-        const auto* const known = std::find_if(element_types.begin(), element_types.end(),
-                                               [&](const ElementType& other) { return other.name == type; });
+        const std::string type = upper_case(value_of(keyword, "TYPE"));
+        const auto* const known =
+            std::find_if(inp_element_types.begin(), inp_element_types.end(),
+                         [&](const InpElementType& other) { return other.name == type; });
         const auto set = keyword.values.find("ELSET");
         const std::string set_name = set == keyword.values.end() ? "" : set->second;
-        if (known == element_types.end()) {
+        if (known == inp_element_types.end()) {
             const std::size_t line = lines_.number();
             std::uint64_t count = 0;
             bool goes_on = false;
@@ -295,8 +288,8 @@ private:
         }
     }
 
-    void read_element(const ElementType& type, const std::string& set) {
-        Element element{{}, type.corners, 0, lines_.number(), set};
+    void read_element(const InpElementType& type, const std::string& set) {
+        InpElement element{{}, type.corners, 0, lines_.number(), set};
         std::string_view rest = line_;
         element.number = number_of(next_field(rest), "element");
         for (std::uint32_t c = 0; c < type.nodes; ++c) {
@@ -326,14 +319,14 @@ private:
         }
         curved_ += type.nodes > type.corners ? 1 : 0;
         if (!set.empty()) {
-            part_->sets[upper(set)].push_back(element.number);
+            part_->sets[upper_case(set)].push_back(element.number);
         }
         part_->elements.push_back(std::move(element));
     }
 
     /// The elements of a set; none where there is no such set.
     [[nodiscard]] static std::span<const std::uint64_t> elements_of(const Part& part, std::string_view set) {
-        const auto found = part.sets.find(upper(set));
+        const auto found = part.sets.find(upper_case(set));
         return found == part.sets.end() ? std::span<const std::uint64_t>() : found->second;
     }
 
@@ -343,7 +336,7 @@ private:
         const auto placed = keyword.values.find("INSTANCE");
         std::vector<std::uint64_t> members;
         const bool is_placed = placed != keyword.values.end();
-        Part& part = is_placed ? placed_sets_[upper(placed->second)] : *part_;
+        Part& part = is_placed ? placed_sets_[upper_case(placed->second)] : *part_;
         while (next_data()) {
             std::string_view rest = line_;
             if (range) {
@@ -364,9 +357,9 @@ private:
         for (const std::uint64_t element : members) {
             part.set_of.emplace(element, name);
         }
-        auto& set = part.sets[upper(name)];
+        auto& set = part.sets[upper_case(name)];
         if (is_placed && set.empty()) {
-            placed_in_[upper(name)].push_back(upper(placed->second));
+            placed_in_[upper_case(name)].push_back(upper_case(placed->second));
         }
         set.insert(set.end(), members.begin(), members.end());
     }
@@ -405,7 +398,7 @@ private:
     void read_surface(const Keyword& keyword) {
         const std::string name = value_of(keyword, "NAME");
         const auto type = keyword.values.find("TYPE");
-        if (type != keyword.values.end() && upper(type->second) != "ELEMENT") {
+        if (type != keyword.values.end() && upper_case(type->second) != "ELEMENT") {
             skip_data();
             return;
         }
@@ -413,16 +406,16 @@ private:
         while (next_data()) {
             std::string_view rest = line_;
             const std::string_view word = next_field(rest);
-            const Side side{name, upper(next_field(rest)) == "SNEG"};
+            const Side side{name, upper_case(next_field(rest)) == "SNEG"};
             if (const auto number = parse_integer<std::uint64_t>(word)) {
                 mark(part_->sides, *number, side); // of which instance it would be is not said
                 continue;
             }
-            if (!done.emplace(upper(word), side.negative).second) {
+            if (!done.emplace(upper_case(word), side.negative).second) {
                 continue;
             }
             mark(part_->sides, elements_of(*part_, word), side);
-            const auto placed = placed_in_.find(upper(word));
+            const auto placed = placed_in_.find(upper_case(word));
             if (placed == placed_in_.end()) {
                 continue;
             }
@@ -450,12 +443,12 @@ private:
 
     void read_instance(const Keyword& keyword) {
         const std::string part = value_of(keyword, "PART");
-        const auto found = parts_.find(upper(part));
+        const auto found = parts_.find(upper_case(part));
         if (found == parts_.end()) {
             fail(fmt::format("part {}; there is no *PART of that name above", in_quotes(part)));
         }
         Instance instance{value_of(keyword, "NAME"), &found->second};
-        if (!instance_of_.emplace(upper(instance.name), instances_.size()).second) {
+        if (!instance_of_.emplace(upper_case(instance.name), instances_.size()).second) {
             fail(fmt::format("instance {} is there twice", in_quotes(instance.name)));
         }
         placed_faces_ += found->second.elements.size() + 1;
@@ -486,7 +479,7 @@ private:
     }
 
     void add_faces(const Instance& instance) {
-        for (const Element& element : instance.part->elements) {
+        for (const InpElement& element : instance.part->elements) {
             const Side side = side_of(instance, element);
             std::array<Vec3, 4> corners{};
             for (std::uint32_t c = 0; c < element.count; ++c) {
@@ -498,7 +491,7 @@ private:
     }
 
     /// The surface that an element is in, else the set of its *ELEMENT, else its first *ELSET.
-    [[nodiscard]] Side side_of(const Instance& instance, const Element& element) const {
+    [[nodiscard]] Side side_of(const Instance& instance, const InpElement& element) const {
         if (const auto found = instance.sides.find(element.number); found != instance.sides.end()) {
             return found->second;
         }

@@ -14,7 +14,7 @@ namespace hemi::io {
 
 namespace {
 
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t absent = std::numeric_limits<std::uint32_t>::max();
 
 /// Receives what the loader finds, in the file's order.
 class MeshBuilder {
@@ -24,13 +24,13 @@ public:
 
     void group(std::string_view name) {
         group_name_ = trim(name).empty() ? "default" : to_utf8(trim(name));
-        group_ = none;
+        group_ = absent;
     }
 
     void material(std::string_view name) {
         material_name_ = to_utf8(trim(name));
         material_line_ = lines_.line();
-        material_ = none;
+        material_ = absent;
     }
 
     void face(std::span<const tinyobj::index_t> indices) {
@@ -41,10 +41,10 @@ public:
             corners_.push_back(vertices[n > 0 ? static_cast<std::size_t>(n) - 1
                                               : vertices.size() - static_cast<std::size_t>(-n)]);
         }
-        if (group_ == none) {
+        if (group_ == absent) {
             group_ = faces_.group(group_name_);
         }
-        if (material_ == none) {
+        if (material_ == absent) {
             material_ = faces_.material(material_name_, material_line_);
         }
         faces_.add(corners_, group_, material_, {lines_.line(), 0});
@@ -64,8 +64,8 @@ private:
     std::string group_name_ = "default";
     std::string material_name_;
     std::size_t material_line_ = 0;
-    std::uint32_t group_ = none; ///< index of group_name_ once a face is in it
-    std::uint32_t material_ = none;
+    std::uint32_t group_ = absent; ///< index of group_name_ once a face is in it
+    std::uint32_t material_ = absent;
     std::vector<Vec3> corners_; // kept between faces for their memory
 };
 
