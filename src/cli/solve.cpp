@@ -295,8 +295,8 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
     const std::optional<LightBalance> balance =
         light_balance(factors, values, solution.radiosity, flux_weights(loaded.scene));
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
-    Report report =
-        solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, balance, seconds);
+    Report report = solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, balance,
+                                 seconds, terminal.verbose());
     report.text += refinement.text + picture.text;
     report.json.update(refinement.json);
     outputs.show(report, arguments.common.json, terminal);

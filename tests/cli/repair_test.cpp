@@ -111,7 +111,7 @@ TEST_CASE("solve: chooses the solver, says why, and is right in a furnace of ref
 
     const std::string bright = directory.write("bright.json", bright_cube(3, 0.95));
     CHECK(run_hemi(quick({"solve", bright, "--json"})).json()["solver"]["name"] == "gauss-seidel");
-    CHECK(run_hemi(quick({"solve", bright})).out_has("not reciprocal"));
+    CHECK(run_hemi(quick({"solve", bright, "-v"})).out_has("not reciprocal"));
     const Outcome refused = run_hemi(quick({"solve", bright, "--solver", "cg"}));
     CHECK(refused.status == 2);
     CHECK(refused.err_has("--repair"));

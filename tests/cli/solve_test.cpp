@@ -156,7 +156,8 @@ TEST_CASE("solve: the summary has patches, renderer, row sums, sweeps, residual,
           "[cli]") {
     const Directory directory;
     const std::string picture = directory.path("a.png");
-    const Outcome run = run_hemi(quick({"solve", directory.write("cube.json", coloured(3)), "-o", picture}));
+    const std::string scene = directory.write("cube.json", coloured(3));
+    const Outcome run = run_hemi(quick({"solve", scene, "-o", picture, "-v"}));
     REQUIRE(run.status == 0);
     for (const char* text :
          {"54 patches", "6 surfaces", "6 groups", "renderer", "/s", "a row", "row sums", "dominance",
@@ -165,6 +166,67 @@ TEST_CASE("solve: the summary has patches, renderer, row sums, sweeps, residual,
         CHECK(run.out_has(text));
     }
     CHECK(run.out_has(picture));
+    const Outcome brief = run_hemi(quick({"solve", scene, "-o", picture}));
+    for (const char* text : {"group", "irradiance W/m²", "(all)", "values are sums over ", "error ",
+                             "balance ", "seconds ", "picture "}) {
+        INFO(text);
+        CHECK(brief.out_has(text));
+    }
+    for (const char* text : {"renderer", "row sums", "residual", "dominance"}) {
+        INFO(text);
+        CHECK_FALSE(brief.out_has(text));
+    }
+}
+
+TEST_CASE("solve: the table of groups has the light of each, as the JSON has", "[cli]") {
+    const Directory directory;
+    Json room = cube(2); // 1 W/m² of one wall of a cube
+    room["unit"] = "cm";
+    const std::string scene = directory.write("room.json", room);
+    const Json found = run_hemi(quick({"solve", scene, "--json", "--preset", "default", "--result",
+                                       directory.path("a.hres")}))
+                           .json();
+    REQUIRE(found["light"].size() == 6);
+    CHECK(found["weights"] == Json({1.0}));
+    double in = 0.0;
+    double out = 0.0;
+    double absorbed = 0.0;
+    for (std::size_t g = 0; g < 6; ++g) {
+        const Json& light = found["light"][g];
+        CHECK(light["group"] == found["groups"][g]);
+        CHECK(light["area"].get<double>() == Approx(1e-4));
+        CHECK(light["radiosity"].get<double>() == Approx(found["radiosity"][g][0].get<double>()));
+        CHECK(light["min"].get<double>() <= light["radiosity"].get<double>());
+        CHECK(light["max"].get<double>() >= light["radiosity"].get<double>());
+        CHECK(light["in"].get<double>() == Approx(1e-4 * light["irradiance"].get<double>()));
+        in += light["in"].get<double>();
+        out += light["out"].get<double>();
+        absorbed +=
+            light["in"].get<double>() + 1e-4 * light["exitance"].get<double>() - light["out"].get<double>();
+    }
+    CHECK(in == Approx(out).epsilon(1e-6)); // it is closed
+    CHECK(absorbed == Approx(found["balance"]["absorbed"].get<double>()).epsilon(1e-6));
+    const Outcome table = run_hemi(quick({"solve", scene, "--preset", "default"}));
+    CHECK(table.out_has("in W"));
+    CHECK_FALSE(table.out_has("sums over")); // one channel
+
+    room["materials"]["lamp"] = {{"reflectance", 0.5}};
+    room["groups"] = {{"ceiling", {{"luminous_flux", 3000}}}};
+    const Outcome lit = run_hemi(quick({"solve", directory.write("lit.json", room)}));
+    CHECK(lit.out_has("irradiance lx"));
+    CHECK(lit.out_has("in lm"));
+
+    Json many = cube(1);
+    for (int k = 0; k < 50; ++k) {
+        Json post = many["surfaces"][0];
+        post["name"] = fmt::format("post {}", k);
+        const double at = 0.01 * (k + 1);
+        post["polygon"] = {
+            {at, 0.5, 0.5}, {at + 0.005, 0.5, 0.5}, {at + 0.005, 0.505, 0.5}, {at, 0.505, 0.5}};
+        many["surfaces"].push_back(post);
+    }
+    const Outcome listed = run_hemi(quick({"solve", directory.write("many.json", many), "--no-estimate"}));
+    CHECK(listed.out_has("16 groups with less light are not listed; --json has all"));
 }
 
 TEST_CASE("solve: factors are stored once and used again with other materials", "[cli]") {
@@ -230,7 +292,7 @@ TEST_CASE("solve: a dash writes to stdout and the summary goes to stderr", "[cli
     const Outcome picture = run_hemi(quick({"solve", scene, "-o", "-", "--size", "40x30"}));
     CHECK(picture.status == 0);
     CHECK(picture.out.substr(0, 8) == png_signature);
-    CHECK(picture.err_has("gauss-seidel"));
+    CHECK(picture.err_has("balance"));
 
     const Outcome table = run_hemi(quick({"solve", scene, "--radiosity", "-", "-q"}));
     CHECK(table.out.rfind("index,group,area,cx,cy,cz,nx,ny,nz,exitance_red", 0) == 0);

@@ -73,7 +73,7 @@ TEST_CASE("solve, factors: an estimate of errors is told, stored and shown", "[c
     }
     CHECK(run_hemi({"info", directory.path("a.hres"), "--json"}).json()["error"] == whole);
     const Outcome told =
-        run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "-o", directory.path("a.png")});
+        run_hemi({"solve", scene, "--factors", directory.path("a.hff"), "-o", directory.path("a.png"), "-v"});
     CHECK(told.out_has("the reflected light is within"));
     CHECK(told.out_has("cut in four"));
     CHECK(told.out_has("mean irradiance of groups within"));

@@ -5,7 +5,9 @@
 #include "cli/report/group_sizes.hpp"
 #include "cli/report/scene_report.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/pipeline/group_light.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
+#include "hemi/scene/light_unit.hpp"
 
 #include <fmt/format.h>
 
@@ -101,6 +103,17 @@ std::string advice(const SolutionError& error, const PatchMesh& mesh) {
     return fmt::format("most of it from the patches' size: {} would halve it", by);
 }
 
+std::string percent_text(double share) {
+    return fmt::format("{:.2g} %", 100.0 * share);
+}
+
+std::string error_sentence(const SolutionError& error) {
+    return fmt::format("the reflected light is within {} (rms) of the exact one: patch size {}, form factors "
+                       "{}, solver {}",
+                       percent_text(error.vertices.rms), percent_text(error.patch_size),
+                       percent_text(error.factors), percent_text(error.solver));
+}
+
 /// How far the solution is from the exact one; empty where that was not estimated.
 Report solution_error_report(const Solution& solution, const PatchMesh& mesh) {
     Report report;
@@ -109,14 +122,9 @@ Report solution_error_report(const Solution& solution, const PatchMesh& mesh) {
     if (!error) {
         return report;
     }
-    const auto percent = [](double share) { return fmt::format("{:.2g} %", 100.0 * share); };
     const auto json = [](const FieldError& of) { return Json{{"rms", of.rms}, {"p95", of.percentile95}}; };
     report.add(
-        "error",
-        fmt::format("the reflected light is within {} (rms) of the exact one: patch size {}, form "
-                    "factors {}, solver {}",
-                    percent(error->vertices.rms), percent(error->patch_size), percent(error->factors),
-                    percent(error->solver)),
+        "error", error_sentence(*error),
         {{"error",
           {{"vertices", json(error->vertices)},
            {"field", json(error->field)},
@@ -126,8 +134,8 @@ Report solution_error_report(const Solution& solution, const PatchMesh& mesh) {
            {"patches_sampled", solution.patch_size_error->sampled}}}});
     report.add("",
                fmt::format("within {} on 95 % of the area; as one constant a patch {} and {}; from {}",
-                           percent(error->vertices.percentile95), percent(error->field.rms),
-                           percent(error->field.percentile95),
+                           percent_text(error->vertices.percentile95), percent_text(error->field.rms),
+                           percent_text(error->field.percentile95),
                            plural(solution.patch_size_error->sampled, "patch", "patches") + " cut in four"));
     if (const std::string worst = worst_group(error->groups, mesh.groups()); !worst.empty()) {
         report.add("", worst);
@@ -152,6 +160,37 @@ Report solution_report(const Solution& solution, const PatchMesh& mesh) {
     report.add(solution_error_report(solution, mesh));
     report.add(error_report(solution.factor_error, solution.error, !solution.patch_size_error));
     return report;
+}
+
+/// How far the solution is from the exact one, and what would make it better.
+std::string brief_error(const Solution& solution, const PatchMesh& mesh) {
+    const auto error = solution_error(solution);
+    if (!error) {
+        return error_report(solution.factor_error, solution.error, true).text;
+    }
+    std::string text = summary_line("error", error_sentence(*error));
+    if (const std::string smaller = advice(*error, mesh); !smaller.empty()) {
+        text += summary_line("", smaller);
+    }
+    return text;
+}
+
+/// Which groups are listed: all, or of very many those that send out most.
+/// @param all  groups, and last their total
+std::vector<bool> groups_to_show(const std::vector<GroupLight>& all) {
+    constexpr std::size_t most_listed = 40;
+    const std::size_t count = all.size() - 1;
+    std::vector<bool> shown(count, count <= most_listed);
+    if (count > most_listed) {
+        std::vector<std::size_t> order(count);
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return all[a].leaving > all[b].leaving; });
+        for (std::size_t k = 0; k < most_listed; ++k) {
+            shown[order[k]] = true;
+        }
+    }
+    return shown;
 }
 
 /// Means over the groups.
@@ -227,9 +266,62 @@ Report light_balance_report(const std::optional<LightBalance>& balance, double m
     return report;
 }
 
+Report light_report(const LoadedScene& loaded, const Solution& solution) {
+    const Scene& scene = loaded.scene;
+    const std::vector<double> weights = flux_weights(scene);
+    const std::vector<GroupLight> all =
+        group_light(loaded.mesh, patch_values(scene, loaded.mesh), solution, weights);
+    const double square_metres = std::pow(scene.unit.value_or(1.0), 2.0);
+    const std::string power = scene.photometric ? " lm" : " W";
+    const std::string flux = " " + flux_density_unit(scene);
+    Table table({"group", "area m²", "exitance" + flux, "irradiance " + irradiance_unit(scene),
+                 "radiosity" + flux, "min", "max", "in" + power, "out" + power});
+    Json json = Json::array();
+    const auto add = [&](const std::string& name, const GroupLight& light) {
+        table.add({name, number_text(square_metres * light.area), value_text(light.exitance),
+                   value_text(light.irradiance), value_text(light.radiosity), value_text(light.least),
+                   value_text(light.most), value_text(square_metres * light.received),
+                   number_text(square_metres * light.leaving)});
+    };
+    const auto& names = loaded.mesh.groups();
+    const std::vector<bool> shown = groups_to_show(all);
+    for (std::size_t g = 0; g < names.size(); ++g) {
+        const GroupLight& light = all[g];
+        json.push_back({{"group", names[g]},
+                        {"area", square_metres * light.area},
+                        {"exitance", value_json(light.exitance)},
+                        {"irradiance", value_json(light.irradiance)},
+                        {"radiosity", value_json(light.radiosity)},
+                        {"min", value_json(light.least)},
+                        {"max", value_json(light.most)},
+                        {"in", value_json(square_metres * light.received)},
+                        {"out", square_metres * light.leaving}});
+        if (shown[g]) {
+            add(names[g], light);
+        }
+    }
+    add("(all)", all.back());
+    Report report;
+    report.text = table.text();
+    if (const auto left = std::count(shown.begin(), shown.end(), false); left > 0) {
+        report.text +=
+            fmt::format("{} with less light {} not listed; --json has all\n",
+                        plural(static_cast<std::size_t>(left), "group", "groups"), left == 1 ? "is" : "are");
+    }
+    if (scene.channels.size() > 1) {
+        const bool luminance =
+            std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 1.0; });
+        report.text += fmt::format("values are sums over {}{}\n", fmt::join(scene.channels, ", "),
+                                   luminance ? ", by their shares of luminance" : "");
+    }
+    report.text += "\n";
+    report.json = {{"light", std::move(json)}, {"weights", weights}};
+    return report;
+}
+
 Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
                     const Solution& solution, const std::optional<LightBalance>& balance,
-                    const Seconds& seconds) {
+                    const Seconds& seconds, bool in_full) {
     Report report = scene_size_report(loaded);
     report.add(rows);
     report.add(repair_report(factors, seconds["repair"]));
@@ -238,15 +330,26 @@ Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const
                                     loaded.scene.photometric ? " lm" : ""));
     report.json["photometric"] = loaded.scene.photometric;
     report.add(seconds.report());
+    const Report light = light_report(loaded, solution);
+    if (!in_full) {
+        report.text = brief_error(solution, loaded.mesh) +
+                      light_balance_report(balance, loaded.scene.unit.value_or(1.0),
+                                           loaded.scene.photometric ? " lm" : "")
+                          .text +
+                      seconds.report().text;
+    }
+    report.text = light.text + report.text;
+    report.json.update(light.json);
     report.json.update(group_means_json(loaded, factors.matrix, solution));
     report.json["reciprocity"] =
         factors.matrix.all_known()
             ? reciprocity_json(factors.repair->reciprocity_after, factors.parts.patch_of)
             : Json(nullptr);
-    report.select("hemi/solve/1", {"renderer", "patches",        "parts",       "channels",    "groups",
-                                   "areas",    "radiosity",      "exitance",    "environment", "blocked",
-                                   "solver",   "row_sum",        "reciprocity", "repair",      "chosen_for",
-                                   "error",    "error_estimate", "balance",     "photometric", "seconds"});
+    report.select("hemi/solve/1",
+                  {"renderer",       "patches",  "parts",       "channels", "groups",     "areas",
+                   "radiosity",      "exitance", "environment", "blocked",  "light",      "weights",
+                   "solver",         "row_sum",  "reciprocity", "repair",   "chosen_for", "error",
+                   "error_estimate", "balance",  "photometric", "seconds"});
     return report;
 }
 

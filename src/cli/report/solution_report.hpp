@@ -11,12 +11,17 @@
 /// Report of a solution.
 namespace hemi::cli {
 
-/// Report of `hemi solve`, without the picture.
+/// What the light does at every group.
+[[nodiscard]] Report light_report(const LoadedScene& loaded, const Solution& solution);
+
+/// Report of `hemi solve`, without the picture: a table of the groups; the error, the balance of the light
+/// and the time.
 /// @param rows     report of the rows
 /// @param balance  of the light, where it is known
+/// @param in_full  the text has all other numbers as well, as the JSON has
 [[nodiscard]] Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
                                   const Solution& solution, const std::optional<LightBalance>& balance,
-                                  const Seconds& seconds);
+                                  const Seconds& seconds, bool in_full);
 /// Where the light goes.
 /// @param metres  in a unit of the scene
 /// @param unit    behind powers; may be empty
