@@ -62,7 +62,7 @@ ExitStatus bake_scene(const BakeArguments& arguments, const Outputs& outputs, co
     settings.estimate_error = false;
     FormFactors factors = compute_raw_form_factors(
         loaded.scene, loaded.mesh, reflecting_patches(loaded.scene, loaded.mesh), settings, observer);
-    prepare_form_factors(factors, settings.repair);
+    prepare_form_factors(factors, settings.repair, observer);
     const EnclosureFinding enclosure = find_leaks(factors, arguments.rows.max_row_error);
     report_buried(row_sums(factors.matrix), terminal);
     Solution solution =

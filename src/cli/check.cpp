@@ -31,8 +31,7 @@ FormFactors read_file(const CheckArguments& arguments) {
     return factors;
 }
 
-FormFactors compute(const CheckArguments& arguments, const LoadedScene& loaded, const Terminal& terminal) {
-    TerminalObserver observer(terminal);
+FormFactors compute(const CheckArguments& arguments, const LoadedScene& loaded, Observer& observer) {
     FactorSettings settings = arguments.rows.factors;
     settings.estimate_error = false;
     return compute_raw_form_factors(loaded.scene, loaded.mesh, all_patches(loaded.mesh.size()), settings,
@@ -42,16 +41,17 @@ FormFactors compute(const CheckArguments& arguments, const LoadedScene& loaded, 
 } // namespace
 
 ExitStatus run(const CheckArguments& arguments, const Terminal& terminal) {
+    TerminalObserver observer(terminal);
     std::optional<LoadedScene> loaded;
     FormFactors factors;
     if (io::is_scene_file(arguments.scene.path)) {
         loaded = load_scene(arguments.scene, terminal);
-        factors = compute(arguments, *loaded, terminal);
+        factors = compute(arguments, *loaded, observer);
     } else {
         factors = read_file(arguments);
     }
     const Stopwatch watch;
-    prepare_form_factors(factors, arguments.rows.factors.repair);
+    prepare_form_factors(factors, arguments.rows.factors.repair, observer);
     const double repair_seconds = watch.seconds();
     const PatchNames names =
         loaded ? loaded->names() : PatchNames{factors.groups, factors.group_of, {}, factors.parts.patch_of};

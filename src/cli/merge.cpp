@@ -26,7 +26,7 @@ ExitStatus run(const MergeArguments& arguments, const Terminal& terminal) {
     io::write_hff(*arguments.output, factors);
     seconds["merge"] = merge_watch.seconds();
     const Stopwatch repair_watch;
-    prepare_form_factors(factors, arguments.rows.factors.repair);
+    prepare_form_factors(factors, arguments.rows.factors.repair, observer);
     seconds["repair"] = repair_watch.seconds();
     const double max_row_error = arguments.rows.max_row_error;
     const RowSums sums = row_sums(factors.matrix);

@@ -103,7 +103,7 @@ Solved solve(const SolveArguments& arguments, const LoadedScene& loaded, Observe
     seconds["estimate"] = factors.work.reference_seconds;
     seconds["factors"] = rows_watch.seconds() - factors.work.reference_seconds;
     const Stopwatch repair_watch;
-    prepare_form_factors(factors, arguments.rows.factors.repair);
+    prepare_form_factors(factors, arguments.rows.factors.repair, observer);
     seconds["repair"] = repair_watch.seconds();
     const Stopwatch solve_watch;
     Solution solution = solve_radiosity(loaded.scene, loaded.mesh, factors, arguments.solver, observer,
@@ -111,6 +111,39 @@ Solved solve(const SolveArguments& arguments, const LoadedScene& loaded, Observe
     seconds["solve"] = solution.seconds;
     seconds["estimate"] += solve_watch.seconds() - solution.seconds;
     return {std::move(factors), std::move(solution)};
+}
+
+/// Whether an output holds the radiosity at vertices.
+bool gathers(const SolveArguments& arguments) {
+    const bool is_drawn = arguments.picture.output && !arguments.picture.flat && !arguments.picture.quantity;
+    return arguments.result || is_drawn;
+}
+
+/// What the work consists of.
+std::vector<Phase> phases_of(const SolveArguments& arguments, const LoadedScene& loaded) {
+    const FactorSettings& settings = arguments.rows.factors;
+    const bool weighted =
+        settings.method == Method::hemicube && plan_rows(settings, loaded.mesh.size()).weighted.has_value();
+    std::vector<Phase> phases;
+    if (!has_rows(arguments)) {
+        if (weighted) {
+            phases = {Phase::visibility, Phase::pairs};
+        }
+        phases.push_back(Phase::form_factors);
+    }
+    if (settings.repair.value_or(weighted ? Repair::closure : Repair::none) == Repair::closure) {
+        phases.push_back(Phase::closure);
+    }
+    phases.push_back(Phase::radiosity);
+    if (gathers(arguments) &&
+        (arguments.gather == Gather::on ||
+         (arguments.gather == Gather::automatic && weighted && settings.preset != Preset::fast))) {
+        phases.push_back(Phase::gather);
+    }
+    if (settings.estimate_error) {
+        phases.push_back(Phase::patch_size);
+    }
+    return phases;
 }
 
 Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loaded, Observer& observer,
@@ -207,8 +240,7 @@ void estimate_patch_size(const SolveArguments& arguments, const LoadedScene& loa
 /// Finds the radiosity at vertices where an output holds it.
 void gather(const SolveArguments& arguments, const LoadedScene& loaded, const FormFactors& factors,
             Observer& observer, Solution& solution, Seconds& seconds) {
-    const bool is_drawn = arguments.picture.output && !arguments.picture.flat && !arguments.picture.quantity;
-    if (!arguments.result && !is_drawn) {
+    if (!gathers(arguments)) {
         return;
     }
     const Stopwatch watch;
@@ -253,6 +285,9 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         (void)choose_camera(loaded.scene, loaded.mesh, arguments.picture);
     }
     TerminalObserver observer(terminal);
+    if (!arguments.refines() && !arguments.rows.error_target) { // which go over some phases again
+        observer.plan(phases_of(arguments, loaded));
+    }
     Report refinement;
     std::string missed;
     auto [factors, solution] =

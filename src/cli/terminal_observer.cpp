@@ -4,9 +4,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 
 namespace hemi::cli {
+
+std::string TerminalObserver::title(Phase phase) const {
+    const auto at = std::find(plan_.begin(), plan_.end(), phase);
+    return at == plan_.end() ? std::string(to_word(phase))
+                             : fmt::format("{}/{} {}", at - plan_.begin() + 1, plan_.size(), to_word(phase));
+}
 
 bool TerminalObserver::progress(Phase phase, std::size_t done, std::size_t total) {
     if (phase == Phase::error_estimate) { // over in a moment, and -v tells
@@ -16,7 +23,9 @@ bool TerminalObserver::progress(Phase phase, std::size_t done, std::size_t total
     if (!bar_ || phase_ != phase) {
         phase_ = phase;
         bar_.reset();
-        bar_.emplace(terminal_, std::string(to_word(phase)), phase == Phase::radiosity ? "" : "rows");
+        const bool counts =
+            phase != Phase::closure && phase != Phase::radiosity && phase != Phase::patch_size;
+        bar_.emplace(terminal_, title(phase), counts ? "rows" : "");
     }
     const bool go_on = bar_->update(done, total);
     if (done >= total) {

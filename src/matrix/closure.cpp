@@ -2,6 +2,7 @@
 
 #include "core/parallel_for.hpp"
 #include "hemi/core/buried.hpp"
+#include "hemi/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,10 +31,11 @@ double visibility(std::uint8_t code) {
 } // namespace
 
 Closure::Closure(std::vector<RowBlock>& blocks, std::span<const double> areas, bool with_visibility,
-                 const RepairSettings& settings)
+                 const RepairSettings& settings, const Progress& progress)
     : blocks_(blocks), areas_(areas), with_visibility_(with_visibility), settings_(settings),
-      cuts_(slice_rows(blocks)), pairs_(blocks, static_cast<std::uint32_t>(areas.size()), 1),
-      gap_(areas.size(), 0.0), diagonal_(areas.size(), 0.0), multiplier_(areas.size(), 0.0) {
+      progress_(progress), cuts_(slice_rows(blocks)),
+      pairs_(blocks, static_cast<std::uint32_t>(areas.size()), 1), gap_(areas.size(), 0.0),
+      diagonal_(areas.size(), 0.0), multiplier_(areas.size(), 0.0) {
     for (const RowBlock& block : blocks) {
         all_known_ = all_known_ && std::find(block.known.begin(), block.known.end(), 0) == block.known.end();
     }
@@ -188,6 +190,7 @@ std::uint32_t Closure::find_multipliers(double tolerance) {
             best = gap;
             multiplier_ = l;
         }
+        tell(best);
         ++since;
         if (best < min_progress * mark) {
             mark = best;
@@ -195,6 +198,20 @@ std::uint32_t Closure::find_multipliers(double tolerance) {
         }
     }
     return iteration;
+}
+
+void Closure::tell(double gap) {
+    if (!progress_) {
+        return;
+    }
+    // Conjugate gradients make gaps smaller by about the same share in every step.
+    first_gap_ = std::max(first_gap_, gap);
+    const double whole = std::log(first_gap_ / settings_.tolerance);
+    const double done = whole > 0.0 && gap > 0.0 ? std::log(first_gap_ / gap) / whole : 1.0;
+    told_ = std::max(told_, static_cast<std::size_t>(100.0 * std::clamp(done, 0.0, 0.99)));
+    if (!progress_(told_, 100)) {
+        throw Cancelled();
+    }
 }
 
 /// x of an entry with its multipliers; of a held one its bound.
@@ -323,6 +340,9 @@ void Closure::run(RepairReport& report) {
         exact = exact || none;
     }
     report.largest_change = std::max(report.largest_change, write().largest_change);
+    if (progress_ && !progress_(100, 100)) {
+        throw Cancelled();
+    }
 }
 
 } // namespace hemi

@@ -15,9 +15,9 @@ class Closure {
 public:
     /// @param blocks  all rows, every pair of known rows stored both ways
     Closure(std::vector<RowBlock>& blocks, std::span<const double> areas, bool with_visibility,
-            const RepairSettings& settings);
+            const RepairSettings& settings, const Progress& progress);
 
-    /// Adds what was done to the report.
+    /// Adds what was done to the report. @throws Cancelled
     void run(RepairReport& report);
 
 private:
@@ -31,6 +31,8 @@ private:
     void find_gaps();
     void find_diagonal();
     std::uint32_t find_multipliers(double tolerance);
+    /// Says how far the whole is when no row misses its target by more than `gap`. @throws Cancelled
+    void tell(double gap);
     /// Puts pairs that the multipliers drive out of their bounds there. @return what was held
     Tally hold_at_bounds();
     Tally write();
@@ -47,6 +49,9 @@ private:
     std::span<const double> areas_;
     bool with_visibility_;
     const RepairSettings& settings_;
+    const Progress& progress_;
+    double first_gap_ = 0.0; // that there was before anything was done
+    std::size_t told_ = 0;   // per cent
     bool all_known_ = true;
     std::vector<std::uint32_t> cuts_;
     PairProduct pairs_;

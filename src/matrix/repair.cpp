@@ -189,7 +189,7 @@ void average_pairs(std::vector<RowBlock>& blocks, std::span<const double> areas)
 } // namespace
 
 RepairReport repair(FormFactorMatrix& factors, std::span<const double> areas, Repair repair,
-                    const RepairSettings& settings) {
+                    const RepairSettings& settings, const Progress& progress) {
     check_areas(factors, areas);
     check_settings(settings);
     RepairReport report;
@@ -206,7 +206,7 @@ RepairReport repair(FormFactorMatrix& factors, std::span<const double> areas, Re
         average_pairs(blocks, areas);
     }
     if (repair == Repair::closure) {
-        Closure(blocks, areas, with_visibility, settings).run(report);
+        Closure(blocks, areas, with_visibility, settings, progress).run(report);
     }
     parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {

@@ -145,7 +145,7 @@ void add_reference_rows(FormFactors& factors, const PatchMesh& mesh, const Facto
 FormFactors compute_form_factors(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,
                                  Observer& observer) {
     FormFactors factors = compute_raw_form_factors(scene, mesh, all_patches(mesh.size()), settings, observer);
-    prepare_form_factors(factors, settings.repair);
+    prepare_form_factors(factors, settings.repair, observer);
     return factors;
 }
 
@@ -156,7 +156,7 @@ FormFactors compute_form_factors(const Scene& scene, const PatchMesh& mesh, Pres
     return compute_form_factors(scene, mesh, settings, observer);
 }
 
-void prepare_form_factors(FormFactors& factors, std::optional<Repair> wanted) {
+void prepare_form_factors(FormFactors& factors, std::optional<Repair> wanted, Observer& observer) {
     if (!factors.repair) {
         mark_touching_faces_buried(factors.matrix, factors.touching, factors.enclosure);
         const Repair chosen =
@@ -165,7 +165,10 @@ void prepare_form_factors(FormFactors& factors, std::optional<Repair> wanted) {
         if (factors.provenance.exchange_rule == ExchangeRule::exact) {
             settings.unoccluded_error = exact_unoccluded_error;
         }
-        factors.repair = repair(factors.matrix, factors.areas, chosen, settings);
+        factors.repair = repair(factors.matrix, factors.areas, chosen, settings,
+                                [&observer](std::size_t done, std::size_t total) {
+                                    return observer.progress(Phase::closure, done, total);
+                                });
     }
     estimate_error(factors);
 }

@@ -49,6 +49,14 @@ std::uint64_t bytes_of(std::uint64_t rows, std::uint64_t columns) {
     return rows * columns * pair + columns * patch;
 }
 
+/// Progress of one of four parts of the estimate: rows, pairs, factors, importance for groups.
+Progress part(Observer& observer, std::size_t index) {
+    return [&observer, index](std::size_t done, std::size_t total) {
+        return observer.progress(Phase::patch_size, 25 * index + 25 * done / std::max<std::size_t>(total, 1),
+                                 100);
+    };
+}
+
 class PatchSizeEstimator {
 public:
     PatchSizeEstimator(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
@@ -97,11 +105,9 @@ public:
         RowPlan plan = plan_rows(settings, mesh_.size());
         plan.hemicube.seed = ~plan.hemicube.seed; // not the rows that the solution rests on
         const auto engine = make_visibility_provider(fine, plan.hemicube, settings);
-        const Progress go_on = [&](std::size_t done, std::size_t total) {
-            return observer.progress(Phase::error_estimate, done, total);
-        };
-        const FormFactorMatrix factors = compute_visibility_weighted(
-            *engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure, go_on, go_on, go_on);
+        const FormFactorMatrix factors =
+            compute_visibility_weighted(*engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure,
+                                        part(observer, 0), part(observer, 1), part(observer, 2));
         direct_ = direct_irradiances(scene_, fine, factors, rows);
         rows_ = std::move(rows);
         near_ = patches_near_surfaces(mesh_);
@@ -319,10 +325,7 @@ private:
             return;
         }
         try {
-            importance_ = GroupImportance(factors_, reflectance_, channels_,
-                                          [&observer](std::size_t done, std::size_t total) {
-                                              return observer.progress(Phase::error_estimate, done, total);
-                                          });
+            importance_ = GroupImportance(factors_, reflectance_, channels_, part(observer, 3));
         } catch (const NotConverged& error) {
             observer.detail(fmt::format("errors of groups are not estimated: {}", error.what()));
             return;

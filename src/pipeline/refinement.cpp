@@ -318,7 +318,7 @@ private:
 
     void solve() {
         result_.factors = result_.raw;
-        prepare_form_factors(result_.factors, settings_.repair);
+        prepare_form_factors(result_.factors, settings_.repair, observer_);
         result_.solution =
             solve_radiosity(scene_, result_.mesh, result_.factors, solver_, observer_, with_irradiance_);
     }

@@ -138,7 +138,7 @@ TargetResult factors_to_target(const Scene& scene, const PatchMesh& mesh, const 
         const Stopwatch watch;
         result.raw = search.compute(candidate);
         result.factors = result.raw;
-        prepare_form_factors(result.factors, base.repair);
+        prepare_form_factors(result.factors, base.repair, observer);
         result.factor_seconds += watch.seconds();
         if (search.met(result.factors.error ? result.factors.error->row_rms : 0.0)) {
             return result;
@@ -166,7 +166,7 @@ TargetResult solve_to_target(const Scene& scene, const PatchMesh& mesh,
         result.raw = search.compute(*candidate);
         result.factor_seconds = watch.seconds();
         result.factors = result.raw;
-        prepare_form_factors(result.factors, base.repair);
+        prepare_form_factors(result.factors, base.repair, observer);
         result.solution = solve_radiosity(scene, mesh, result.factors, solver, observer, with_irradiance);
         if (search.met(result.solution.error ? result.solution.error->rms : 0.0)) {
             return result;

@@ -8,8 +8,8 @@ bool WorkProgress::set(Phase phase, std::size_t done, std::size_t total) {
     constexpr std::chrono::milliseconds interval{100};
     const Clock::time_point now = Clock::now();
     const std::string title(to_word(phase));
-    const bool counts =
-        phase != Phase::radiosity && phase != Phase::preview && phase != Phase::error_estimate;
+    const bool counts = phase != Phase::closure && phase != Phase::radiosity && phase != Phase::preview &&
+                        phase != Phase::error_estimate && phase != Phase::patch_size;
     const std::lock_guard lock(mutex_);
     bool tell = now - told_ >= interval;
     if (title_ != title) {

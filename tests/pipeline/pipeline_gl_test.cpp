@@ -167,8 +167,8 @@ TEST_CASE("pipeline: the observer hears of every phase and every row, and can ca
     Recorder recorder;
     const FormFactors factors = compute_form_factors(scene, mesh, on_osmesa(Preset::standard), recorder);
     (void)solve_radiosity(scene, mesh, factors, {}, recorder);
-    const std::vector<Phase> expected{Phase::visibility, Phase::pairs, Phase::form_factors,
-                                      Phase::error_estimate, Phase::radiosity};
+    const std::vector<Phase> expected{Phase::visibility,     Phase::pairs,   Phase::form_factors,
+                                      Phase::error_estimate, Phase::closure, Phase::radiosity};
     CHECK(recorder.phases == expected);
     CHECK(recorder.visibility_rows == mesh.size());
     CHECK(recorder.factor_rows == 0);

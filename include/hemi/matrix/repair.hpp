@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/names.hpp"
+#include "hemi/core/progress.hpp"
 #include "hemi/matrix/balance.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
 
@@ -79,8 +80,9 @@ struct RepairReport {
 /// @param areas     N areas
 /// @param repair    what is made true; none only measures
 /// @param settings  tolerances and limits
-/// @throws InvalidArgument for areas or settings that do not fit.
+/// @param progress  of closure, an estimate in per cent
+/// @throws InvalidArgument for areas or settings that do not fit; Cancelled, after which there are no rows
 RepairReport repair(FormFactorMatrix& factors, std::span<const double> areas, Repair repair,
-                    const RepairSettings& settings = {});
+                    const RepairSettings& settings = {}, const Progress& progress = {});
 
 } // namespace hemi

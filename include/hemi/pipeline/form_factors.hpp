@@ -60,7 +60,10 @@ void add_reference_rows(FormFactors& factors, const PatchMesh& mesh, const Facto
 /// Nothing but the estimate changes where it was done before.
 /// @param factors  raw; changed in place
 /// @param wanted   what is enforced; empty: closure where factors have visibility, nothing in plain rows
-void prepare_form_factors(FormFactors& factors, std::optional<Repair> wanted = {});
+/// @param observer  gets progress and may cancel
+/// @throws Cancelled; the factors then have no rows any more
+void prepare_form_factors(FormFactors& factors, std::optional<Repair> wanted = {},
+                          Observer& observer = no_observer());
 
 /// Estimates the error of the rows as they are now, by the reference rows; none where there are none.
 void estimate_error(FormFactors& factors);

@@ -17,9 +17,11 @@ enum class Phase {
     visibility,     ///< hemicubes for visibilities; units are rows
     pairs,          ///< both directions of every pair are combined; units are rows
     form_factors,   ///< factors of all pairs, or plain rows; units are rows
-    radiosity,      ///< sweeps; `done` is an estimate in per cent
+    closure,        ///< rows are balanced; `done` is an estimate in per cent
+    radiosity,      ///< sweeps; likewise
     gather,         ///< radiosity at vertices; units are vertices
     error_estimate, ///< better rows of a sample
+    patch_size,     ///< what the patches' size does, on a sample; in per cent
     preview,        ///< a coarse solution; units are rows
     points,         ///< values at points; units are rows
 };
@@ -29,11 +31,13 @@ template <>
 struct Names<Phase> {
     /// Every value with its word.
     static constexpr NamedValue<Phase> table[] = {{Phase::visibility, "visibility"},
-                                                  {Phase::pairs, "pairs"},
+                                                  {Phase::pairs, "combining pairs"},
                                                   {Phase::form_factors, "form factors"},
-                                                  {Phase::radiosity, "radiosity"},
-                                                  {Phase::gather, "gather"},
-                                                  {Phase::error_estimate, "estimate of errors"},
+                                                  {Phase::closure, "closing rows"},
+                                                  {Phase::radiosity, "solving"},
+                                                  {Phase::gather, "gathering"},
+                                                  {Phase::error_estimate, "comparing rows"},
+                                                  {Phase::patch_size, "estimating the error"},
                                                   {Phase::preview, "coarse preview"},
                                                   {Phase::points, "points"}};
 };
