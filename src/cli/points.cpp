@@ -265,7 +265,7 @@ Lit light_of_scene(const PointsArguments& arguments, Observer& observer, const T
         leave_sky(arguments, loaded.scene);
     }
     seconds["load"] = loaded.seconds;
-    find(loaded.patches());
+    find(loaded.as_read ? PatchMesh(loaded.uncut()) : loaded.mesh);
     return heat ? light_by_heat(arguments, loaded, observer, terminal, seconds)
                 : light(arguments, loaded, observer, terminal, seconds);
 }

@@ -201,7 +201,7 @@ TEST_CASE("HRES: lies with a right checksum are noticed, and cost no memory", "[
         {1, counts, raw(5u), "chunk SURF: a surface of 5 vertices"},
         {1, counts + 4, raw(2u), "material"},
         {1, counts + 8, raw(2u), "group"},
-        {1, counts + 12, raw(2u), "3 sides"},
+        {1, counts + 12, raw(4u), "sides 4"},
         {1, counts + 16, raw(4u), "chunk SURF: the surfaces have not the"},
         {1, counts + 16, raw(0xFFFFFFFFFFFFFFFFu), "chunk SURF: the surfaces have not the"},
         {1, counts + 16, raw(0u), "chunk SURF: the surfaces have not the"},

@@ -22,14 +22,17 @@ struct ResultFile {
     Subdivision subdivision; ///< how surfaces were cut, for write_hres()
     Solution solution; ///< in a file all but the exitance, which the scene's materials have: patch_values()
     /// The surfaces as they were read, each with its own grid, where those of the scene are what is left of
-    /// them (imprint()); else none.
+    /// them, or pieces of faces (imprint()); else none.
     std::vector<Surface> surfaces_as_read = {};
-    PatchParts parts = {}; ///< which of their patches those of the scene are parts of; none without them
+    /// Which patches of their whole faces those of the scene are parts of; none without them.
+    PatchParts parts = {};
 
     /// The scene with the surfaces as they were read.
     [[nodiscard]] Scene scene_as_read() const;
 };
 
+    /// The patches that results are about: those of whole faces as they were read.
+    [[nodiscard]] PatchMesh patches_as_read() const;
 /// Writes `.hres`.
 /// @throws InvalidArgument for arrays of other lengths and values that are not finite; IoError
 void write_hres(const std::filesystem::path& path, const ResultFile& result);

@@ -283,6 +283,7 @@ std::vector<Number> read_array(ChunkReader& reader, std::string_view tag, std::u
             payload.fail("a value that is not finite");
         }
     }
+/// @param unknown  values that are not a number are sound
     return values;
 }
 
@@ -300,7 +301,7 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     if (!result.surfaces_as_read.empty()) {
         as_read.emplace(result.scene_as_read());
         check_array(result.parts.patch_of, mesh.size(), "the patches that parts are of");
-        check_patches_as_read({result.parts.patch_of, groups_of_patches(*as_read)});
+        check_patches_as_read({result.parts.patch_of, groups_of_patches(as_read->whole_faces().mesh)});
     }
     const std::size_t patches = mesh.size();
     const std::size_t values = patches * result.scene.channels.size();
@@ -331,6 +332,17 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     writer.chunk("HEAD", {bytes_of(json_text(header(result, mesh, as_read)))});
     if (!mesh.parts().empty()) {
         writer.chunk("PART", {bytes_of(stored_parts(mesh.parts()))});
+PatchMesh ResultFile::patches_as_read() const {
+    return surfaces_as_read.empty() ? PatchMesh(scene, subdivision)
+                                    : PatchMesh(scene_as_read()).whole_faces().mesh;
+}
+
+void complete_solution(ResultFile& result, const PatchMesh& mesh) {
+    if (result.solution.exitance.empty()) {
+        result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+    }
+}
+
     }
     writer.chunk("SURF", {bytes_of(stored_surfaces(mesh))});
     if (as_read) {
@@ -379,7 +391,7 @@ ResultFile read_hres(const std::filesystem::path& path) {
         if (sizes.surfaces_as_read > 0) {
             const Scene as_read = result.scene_as_read();
             validate(as_read);
-            result.parts.group_of = groups_of_patches(PatchMesh(as_read));
+            result.parts.group_of = groups_of_patches(PatchMesh(as_read).whole_faces().mesh);
             check_patches_as_read(result.parts);
         }
         if (sizes.parts) {

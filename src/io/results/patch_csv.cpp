@@ -157,7 +157,7 @@ void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& re
         write_patch_table(path, mesh, arrays);
         return;
     }
-    const PatchMesh as_read(result.scene_as_read());
+    const PatchMesh as_read = result.patches_as_read();
     write_patch_table(path, as_read, arrays, places_left(as_read, mesh, result.parts));
 }
 
