@@ -39,6 +39,8 @@ struct Piece {
     bool whole = true;      ///< all of that cell
     bool front = true;
     bool back = true;
+    /// A one-sided face lies over it in its plane that looks the other way, and its own face is one-sided.
+    bool faced = false;
 
     [[nodiscard]] bool is_left() const { return front || back; }
 };
@@ -245,10 +247,17 @@ private:
                 if (contains(face(other), normal(other), centre, tolerance_)) {
                     const bool before = piece.is_left();
                     cover(f, other, piece);
+                    piece.faced = piece.faced || faces(f, other);
                     cut_[f].covered_by = before && !piece.is_left() ? other : cut_[f].covered_by;
                 }
             }
         }
+    }
+
+    /// Whether both faces, which lie in one plane, are one-sided and look different ways.
+    [[nodiscard]] bool faces(std::uint32_t f, std::uint32_t other) const {
+        return !scene_.surfaces[f].two_sided && !scene_.surfaces[other].two_sided &&
+               glm::dot(normal(other), normal(f)) < 0.0;
     }
 
     /// What face `other` covers of a piece of face `f` that it lies over, in its plane.
@@ -331,7 +340,7 @@ private:
             Piece& piece = face.pieces[k];
             bool front = piece.front && stays(k, false);
             const bool back = piece.back && stays(k, true);
-            if (front && is_faced(f, piece) && look(k, true).only_backs()) {
+            if (front && piece.faced && look(k, true).only_backs()) {
                 front = false; // face to face with the body behind
             }
             any_changed = any_changed || front != piece.front || back != piece.back;
@@ -366,16 +375,6 @@ private:
             cut_[side.face].buried = true;
         }
         return !left.empty();
-    }
-
-    /// Whether a one-sided face lies over a piece of a one-sided face in its plane that looks the other way.
-    [[nodiscard]] bool is_faced(std::uint32_t f, const Piece& piece) const {
-        const auto& coplanar = cut_[f].contacts.coplanar;
-        return !scene_.surfaces[f].two_sided &&
-               std::any_of(coplanar.begin(), coplanar.end(), [&](std::uint32_t other) {
-                   return !scene_.surfaces[other].two_sided && glm::dot(normal(other), normal(f)) < 0.0 &&
-                          contains(face(other), normal(other), area_centroid(piece.corners), tolerance_);
-               });
     }
 
     /// Faces that share a corner with one that is buried in part may be buried whole.
