@@ -88,6 +88,10 @@ void check_formats(const ConvertArguments& arguments) {
                 fmt::format("{}: a stored solution can be written as .vtp, or as .csv, the radiosity "
                             "of every patch; `hemi bake` makes .glb and .ply, `hemi render` pictures",
                             arguments.output.string()));
+    if (!arguments.zone.empty() && output != ".idf") {
+        throw InvalidArgument(
+            fmt::format("--zone is for EnergyPlus' .idf, and OUT is {}", arguments.output.string()));
+    }
         }
         if (arguments.factors && output != ".vtp") {
             throw InvalidArgument("--factors and --row are for a .hres that becomes a .vtp");
@@ -159,7 +163,7 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
         file = merge_parts(std::move(file));
     }
     Diagnostics diagnostics;
-    io::write_factors(arguments.output, file, {}, diagnostics);
+    io::write_factors(arguments.output, file, {{}, arguments.zone}, diagnostics);
     terminal.warn(diagnostics);
     if (format.extension != ".hff") {
         report_losses(arguments, format, from_hff, repaired, terminal);

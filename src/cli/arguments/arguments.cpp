@@ -478,6 +478,9 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
     auto* factors =
         paraview.path("--factors", "FILE.hff", a.factors, "for .vtp: form factors with the rows of --row");
     auto* row = app.add_option_function<Words>(
+    Options(app, "EnergyPlus")
+        .value("--zone", "NAME", "for .idf: the zone that the surfaces close in; default: the name of OUT",
+               [&a](const std::string& text) { a.zone = text; });
                        "--row",
                        [&a](const Words& all) {
                            for (const std::string& text : all) {
