@@ -36,7 +36,7 @@ Report file_info(const std::filesystem::path& path) {
     if (extension == ".hres") {
         io::ResultFile result = io::read_hres(path);
         const PatchMesh mesh(result.scene, result.subdivision);
-        result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+        io::complete_solution(result, mesh);
         Report more;
         const bool has_parts = result.parts.any();
         const Scene scene = result.scene_as_read();

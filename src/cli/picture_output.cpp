@@ -31,7 +31,7 @@ namespace {
 
 } // namespace
 
-void add_picture_output(Outputs& outputs, const PictureOptions& options) {
+void add_picture_output(Outputs& outputs, const PictureOptions& options, bool heat) {
     if (!options.quantity && (!options.of_quantities.empty() || options.logarithmic || !options.legend)) {
         throw InvalidArgument(
             fmt::format("{} needs --show with a quantity, such as irradiance{}",
@@ -43,7 +43,10 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options) {
     if (options.quantity && (options.exposure || options.tone_mapping_given)) {
         throw InvalidArgument("--exposure and --tone-mapping do not apply to quantities; --range does");
     }
-    if (options.quantity && is_of_heat(*options.quantity)) {
+    if (options.celsius && options.quantity != Quantity::temperature) {
+        throw InvalidArgument("--celsius needs --show temperature");
+    }
+    if (!heat && options.quantity && is_of_heat(*options.quantity)) {
         throw InvalidArgument(fmt::format("--show {}: `hemi heat SCENE -o FILE.png --show {}` finds it",
                                           to_word(*options.quantity), to_word(*options.quantity)));
     }

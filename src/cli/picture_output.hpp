@@ -17,8 +17,10 @@
 /// Pictures as solve and render make them.
 namespace hemi::cli {
 
-/// Tests the picture's path. @throws as Outputs::add
-void add_picture_output(Outputs& outputs, const PictureOptions& options);
+/// Tests the picture's path.
+/// @param heat  whether quantities of heat may be known
+/// @throws as Outputs::add
+void add_picture_output(Outputs& outputs, const PictureOptions& options, bool heat = false);
 
 /// Channels shown as red, green and blue: those of `--show`, else the only one or all three.
 /// @param quantities  whether the one word might have been meant to be a quantity's

@@ -17,7 +17,7 @@ ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
         options.output = arguments.input.filename().replace_extension(".png");
     }
     Outputs outputs;
-    add_picture_output(outputs, options);
+    add_picture_output(outputs, options, true);
     outputs.refuse_with_json(arguments.common.json);
     if (extension_of(arguments.input) != ".hres") {
         throw InvalidArgument(
@@ -28,7 +28,7 @@ ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
     const Stopwatch load_watch;
     io::ResultFile result = io::read_hres(arguments.input);
     const PatchMesh mesh(result.scene, result.subdivision);
-    result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+    io::complete_solution(result, mesh);
     seconds["load"] = load_watch.seconds();
     const Stopwatch render_watch;
     Report report = write_picture(result.scene, mesh, result.solution, options, arguments.device);

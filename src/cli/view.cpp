@@ -129,7 +129,9 @@ private:
         input.picture = picture_settings(options);
         input.automatic_exposure = !options.exposure;
         input.solution = std::move(solution);
-        input.solution.exitance = patch_values(*mesh, scene->materials, &Material::exitance);
+        if (input.solution.exitance.empty()) {
+            input.solution.exitance = patch_values(*mesh, scene->materials, &Material::exitance);
+        }
         input.scene = std::move(scene);
         input.mesh = std::move(mesh);
         return input;
@@ -248,7 +250,7 @@ private:
         viewer::ViewerInput input =
             describe(path, scene, std::make_shared<const PatchMesh>(*scene, result.subdivision),
                      std::move(result.solution));
-        input.command = "hemi render " + viewer::quoted(path.string());
+        input.command = input.heat_command = "hemi render " + viewer::quoted(path.string());
         return input;
     }
 

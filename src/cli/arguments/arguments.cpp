@@ -241,7 +241,8 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     }
     auto* point = output.value(
         "--from-point", "X,Y,Z,NX,NY,NZ",
-        "factors from a surface element at a point with a normal to every patch, analytic, largest first",
+        "another name of `hemi points` for one point with a normal, by patch: factors from a surface element "
+        "there to every patch, analytic, largest first",
         [&a](const std::string& text) {
             const std::vector<std::string> numbers = parse_list(text);
             if (numbers.size() != 6) {
