@@ -344,13 +344,7 @@ std::size_t shown_column(const PointsArguments& arguments, const PointColumns& c
 
 /// Of a column: that of irradiances, or by its name; shares have none.
 std::string unit_of(const std::string& column, const std::string& irradiance) {
-    if (column.starts_with("irradiance")) {
-        return irradiance;
-    }
-    if (column.starts_with("daylight_factor")) {
-        return "%";
-    }
-    return column.ends_with("_temperature") || column.starts_with("plane_") ? "K" : "";
+    return column.starts_with("irradiance") ? irradiance : unit_of_column(column);
 }
 
 /// Writes the map. @return report of it

@@ -3,6 +3,7 @@
 #include "cli/loaded_scene.hpp"
 #include "cli/output_paths.hpp"
 #include "cli/picture_output.hpp"
+#include "cli/point_source.hpp"
 #include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/result_file.hpp"
@@ -33,7 +34,7 @@ const std::vector<std::string>& window_options() {
     static const std::vector<std::string> names{"--size",         "--camera",       "--flat",   "--exposure",
                                                 "--tone-mapping", "--orthographic", "--backs",  "--outlines",
                                                 "--samples",      "--background",   "--script", "--controls",
-                                                "--up",           "--show"};
+                                                "--up",           "--show",         "--points", "--column"};
     return names;
 }
 
@@ -134,6 +135,12 @@ private:
         }
         input.scene = std::move(scene);
         input.mesh = std::move(mesh);
+        if (arguments_.dots.points) {
+            auto points = std::make_shared<const PointTable>(read_point_table(*arguments_.dots.points));
+            input.dots_column = dots_column(arguments_.dots, *points);
+            input.points = std::move(points);
+            input.points_file = *arguments_.dots.points;
+        }
         return input;
     }
 

@@ -157,6 +157,17 @@ std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool
     return added;
 }
 
+void add_dots(CLI::App& app, DotOptions& dots) {
+    Options options(app, "Points");
+    auto* points = options.path("--points", "FILE.csv", dots.points,
+                                "points as coloured dots: columns x, y, z, and those of a quantity, as `hemi "
+                                "points -o FILE.csv` writes them");
+    options
+        .value("--column", "NAME", "column that the dots show (the first beside the positions and normals)",
+               [&dots](const std::string& text) { dots.column = text; })
+        ->needs(points);
+}
+
 void add_gather(CLI::App& app, Gather& gather) {
     Options(app, "Picture")
         .choice<Gather>("--gather", "auto|on|off",
@@ -172,6 +183,9 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bo
     if (quantities) {
         const std::vector<CLI::Option*> of_them = add_quantities(app, picture);
         added.insert(added.end(), of_them.begin(), of_them.end());
+        if (stored) {
+            add_celsius(app, picture);
+        }
     }
     added.push_back(Options(app, "Picture")
                         .choice<ToneMapping>("--tone-mapping", "NAME", "filmic (the default) or linear",
@@ -182,9 +196,6 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bo
     for (CLI::Option* option : added) {
         if (output != nullptr) {
             option->needs(output);
-        }
-        if (stored) {
-            add_celsius(app, picture);
         }
     }
     if (scene != nullptr) {

@@ -10,6 +10,7 @@
 /// What the command line says of pictures.
 namespace hemi::cli {
 
+struct DotOptions;
 struct HeatPicture;
 struct PictureOptions;
 struct SceneOptions;
@@ -19,6 +20,8 @@ struct SceneOptions;
 /// @param heat        whether that may be one of heat
 std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool quantities = false,
                                     bool heat = false);
+/// `--points` and `--column`.
+void add_dots(CLI::App& app, DotOptions& dots);
 /// `--gather`.
 void add_gather(CLI::App& app, Gather& gather);
 /// All of a picture of light.
