@@ -526,7 +526,9 @@ void PatchMesh::measure_face(std::uint32_t face, const PatchMesh& pieces, std::u
         areas_[i] = area;
         centres_[i] = centre / area;
     }
-    surface_normals_[face] = glm::normalize(normal);
+    if (glm::length(normal) > 0.0) { // else that of the first piece
+        surface_normals_[face] = glm::normalize(normal);
+    }
 }
 
 double PatchMesh::rounding() const {

@@ -45,7 +45,9 @@ struct Dots {
 [[nodiscard]] PictureMesh with_dots(PictureMesh mesh, const Dots& dots, const PictureSettings& settings);
 
 /// Draws the dots' legend into the lower left of `srgb`, as draw_false_colours() does it.
-/// @param below  legends that it stands above
+/// @param picture  is drawn into
+/// @param dots     as they are in it
+/// @param below    legends that it stands above
 /// @return whether there was room, and something to tell
 bool draw_dots_legend(Picture& picture, const Dots& dots, std::uint32_t below = 0);
 

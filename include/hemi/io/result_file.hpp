@@ -36,7 +36,8 @@ struct ResultFile {
 };
 
 /// Gives a solution that was read the exitance of the scene's materials, unless it has one of its own.
-/// @param mesh  of the result
+/// @param result  gets it
+/// @param mesh    of the result
 void complete_solution(ResultFile& result, const PatchMesh& mesh);
 
 /// Writes `.hres`. Of patches that are buried, heat has no net flux, which is not a number; radiosity and
