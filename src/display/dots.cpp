@@ -15,20 +15,20 @@ namespace hemi {
 
 namespace {
 
-using Colour = std::array<float, 3>;
-using Triangles = std::vector<std::array<Vec3, 3>>;
+using DotColour = std::array<float, 3>;
+using TriangleList = std::vector<std::array<Vec3, 3>>;
 
 constexpr double share_of_scene = 0.0045;
 constexpr double share_of_distance = 0.25;
 /// So many have a rim, and are round.
 constexpr std::size_t most_round = 500;
-constexpr double rim = 1.25;
-constexpr Colour white{0.9F, 0.9F, 0.9F};
-constexpr Colour grey{0.16F, 0.16F, 0.16F};
+constexpr double rim_radius = 1.25;
+constexpr DotColour without_column{0.9F, 0.9F, 0.9F};
+constexpr DotColour without_value{0.16F, 0.16F, 0.16F};
 
 /// Outwards, of radius 1.
-Triangles octahedron() {
-    Triangles result;
+TriangleList octahedron() {
+    TriangleList result;
     for (int k = 0; k < 8; ++k) {
         const double x = (k & 1) != 0 ? -1.0 : 1.0;
         const double y = (k & 2) != 0 ? -1.0 : 1.0;
@@ -42,10 +42,10 @@ Triangles octahedron() {
 }
 
 /// The octahedron with every triangle cut in sixteen.
-Triangles ball() {
-    Triangles result = octahedron();
+TriangleList ball() {
+    TriangleList result = octahedron();
     for (int round = 0; round < 2; ++round) {
-        Triangles finer;
+        TriangleList finer;
         for (const auto& [a, b, c] : result) {
             const Vec3 ab = glm::normalize(a + b);
             const Vec3 bc = glm::normalize(b + c);
@@ -73,7 +73,7 @@ float before_display(float value, const PictureSettings& settings) {
     return static_cast<float>(settings.exposure > 0.0 ? x / settings.exposure : 0.0);
 }
 
-void add(PictureMesh& mesh, const Vec3& at, double radius, const Triangles& shape, const Colour& colour,
+void add(PictureMesh& mesh, const Vec3& at, double radius, const TriangleList& shape, const DotColour& colour,
          bool inwards) {
     for (const std::array<Vec3, 3>& triangle : shape) {
         for (std::size_t k = 0; k < 4; ++k) {
@@ -120,14 +120,14 @@ Dots make_dots(const PointTable& table, std::optional<std::size_t> column, const
 
 PictureMesh with_dots(PictureMesh mesh, const Dots& dots, const PictureSettings& settings) {
     const bool round = dots.positions.size() <= most_round;
-    const Triangles shape = round ? ball() : octahedron();
+    const TriangleList shape = round ? ball() : octahedron();
     const bool coloured = !dots.shown.values.empty();
     const ColourScale scale = coloured ? scale_of(dots.shown) : ColourScale{};
     for (std::size_t k = 0; k < dots.positions.size(); ++k) {
-        Colour colour = white;
+        DotColour colour = without_column;
         if (coloured) {
             const double value = dots.shown.values[k];
-            colour = std::isnan(value) ? grey : scale_colour(scale.position(value), scale.map);
+            colour = std::isnan(value) ? without_value : scale_colour(scale.position(value), scale.map);
         }
         for (float& channel : colour) {
             channel = before_display(channel, settings);
@@ -135,7 +135,7 @@ PictureMesh with_dots(PictureMesh mesh, const Dots& dots, const PictureSettings&
         add(mesh, dots.positions[k], dots.radius, shape, colour, false);
         // Of a shell that is turned inside out, what lies behind the ball is seen around it.
         if (round && !settings.backs) {
-            add(mesh, dots.positions[k], rim * dots.radius, shape, {0.0F, 0.0F, 0.0F}, true);
+            add(mesh, dots.positions[k], rim_radius * dots.radius, shape, {0.0F, 0.0F, 0.0F}, true);
         }
         mesh.bounds.add(dots.positions[k]);
     }
