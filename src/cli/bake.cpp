@@ -86,7 +86,7 @@ void bake_result(const BakeArguments& arguments, const Outputs& outputs, const T
                    path);
     io::ResultFile result = io::read_hres(path);
     const PatchMesh mesh(result.scene, result.subdivision);
-    result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+    io::complete_solution(result, mesh);
     write_baked(arguments, outputs, result.scene, mesh, result.solution, terminal);
 }
 

@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace hemi::cli {
@@ -50,6 +52,10 @@ void write_cells(const ConvertArguments& arguments, const io::ResultFile& result
             arrays.push_back(io::row_array(factors, row));
         }
     }
+    for (io::CellArray& array : arrays) { // the format has numbers only
+        std::replace_if(
+            array.values.begin(), array.values.end(), [](double value) { return std::isnan(value); }, 0.0);
+    }
     io::write_vtp(arguments.output, mesh, arrays);
     std::vector<std::string> names;
     for (const io::CellArray& array : arrays) {
@@ -82,6 +88,10 @@ void convert_result(const ConvertArguments& arguments, const Terminal& terminal)
 void check_formats(const ConvertArguments& arguments) {
     const std::string input = extension_of(arguments.input);
     const std::string output = extension_of(arguments.output);
+    if (!arguments.zone.empty() && output != ".idf") {
+        throw InvalidArgument(
+            fmt::format("--zone is for EnergyPlus' .idf, and OUT is {}", arguments.output.string()));
+    }
     if (input == ".hres") {
         if (output != ".vtp" && output != ".csv" && !is_standard_output(arguments.output)) {
             throw InvalidArgument(
@@ -159,7 +169,7 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
         file = merge_parts(std::move(file));
     }
     Diagnostics diagnostics;
-    io::write_factors(arguments.output, file, {}, diagnostics);
+    io::write_factors(arguments.output, file, {{}, arguments.zone}, diagnostics);
     terminal.warn(diagnostics);
     if (format.extension != ".hff") {
         report_losses(arguments, format, from_hff, repaired, terminal);

@@ -20,7 +20,7 @@ struct Stored {
 
     explicit Stored(const std::filesystem::path& path)
         : result(io::read_hres(path)), mesh(result.scene, result.subdivision) {
-        result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+        io::complete_solution(result, mesh);
     }
     [[nodiscard]] SolutionOf solution() const { return {result.scene, mesh, result.solution}; }
 };

@@ -111,6 +111,8 @@ ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
     }
     if (arguments.from_point) {
         check_point_options(arguments, is_scene);
+        terminal.note("--from-point is another name of `hemi points`, for one point and by patch; that has "
+                      "many points, factors to groups, the sky and the light");
         const LoadedScene loaded = load_scene(arguments.scene, terminal);
         show(point_report(loaded, *arguments.from_point), arguments.common.json);
         return ExitStatus::ok;

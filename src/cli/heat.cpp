@@ -109,6 +109,9 @@ Outputs check_outputs(const HeatArguments& arguments) {
                                               to_word(*arguments.picture.picture.quantity)));
         }
     }
+    if (arguments.result) {
+        outputs.add("--result", *arguments.result, {".hres"});
+    }
     if (arguments.fluxes) {
         outputs.add("--fluxes", *arguments.fluxes, {".csv"}, true);
     }
@@ -116,29 +119,10 @@ Outputs check_outputs(const HeatArguments& arguments) {
     return outputs;
 }
 
-/// What is known of the mesh's patches, for those that results are about: means by area over parts of which
-/// it is known, of temperatures that of the fourth power; nothing of those of which nothing is left.
+/// What is known of the mesh's patches, for those that results are about.
 std::vector<io::CellArray> of_patches(std::vector<io::CellArray> arrays, const LoadedScene& loaded) {
-    if (!loaded.as_read) {
-        return arrays;
-    }
-    for (io::CellArray& array : arrays) {
-        const bool is_temperature = array.name == "temperature";
-        std::vector<double> known;
-        for (double& value : array.values) {
-            known.push_back(std::isfinite(value) ? 1.0 : 0.0);
-            value = known.back() == 0.0 ? 0.0 : is_temperature ? std::pow(value, 4.0) : value;
-        }
-        const std::size_t components = std::max<std::size_t>(array.components.size(), 1);
-        array.values = loaded.means(array.values, components);
-        known = loaded.means(known, components);
-        for (std::size_t k = 0; k < array.values.size(); ++k) {
-            double& value = array.values[k];
-            value /= known[k]; // not a number where nothing is
-            value = is_temperature ? std::sqrt(std::sqrt(value)) : value;
-        }
-    }
-    return arrays;
+    return loaded.as_read ? io::means_of_cells(std::move(arrays), loaded.as_read->parts, loaded.mesh.areas())
+                          : arrays;
 }
 
 void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, const HeatProblem& problem,
@@ -168,6 +152,22 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
         }
         io::write_vtp(*arguments.output, loaded.mesh, arrays);
     }
+}
+
+void write_result(const std::filesystem::path& path, const LoadedScene& loaded, const FormFactors& factors,
+                  const HeatProblem& problem, const HeatSolution& solution) {
+    const auto channels = static_cast<std::uint32_t>(loaded.scene.channels.size());
+    Solution stored = heat_as_solution(factors, problem, solution, channels);
+    stored.method = SolverMethod::conjugate_gradient;
+    stored.sweeps = solution.iterations;
+    stored.residual = solution.residual;
+    stored.renderer = factors.provenance.renderer;
+    io::ResultFile file = loaded.result(std::move(stored));
+    file.scene = scene_of_heat(std::move(file.scene), problem);
+    for (Surface& surface : file.surfaces_as_read) {
+        surface.heat = no_heat;
+    }
+    io::write_hres(path, file);
 }
 
 /// In false colours. @return what `heat` reports of it
@@ -228,6 +228,9 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
                                                       : "solved one by one: the problem is not linear"));
     }
     write_patches(arguments, loaded, problem, solution);
+    if (arguments.result) {
+        write_result(*arguments.result, loaded, factors, problem, solution);
+    }
     Report picture;
     if (arguments.output && is_picture(*arguments.output)) {
         picture = draw_heat(arguments, loaded, factors, problem, solution);

@@ -25,9 +25,9 @@ Report scene_info(const InfoArguments& arguments, const Terminal& terminal) {
         loaded.uncut(), loaded.patches(),
         loaded.as_read ? std::span<const double>(loaded.as_read->left.areas) : loaded.mesh.areas(), more);
     report.json["kind"] = "scene";
-    report.select("hemi/info/1",
-                  {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "channels", "bounds",
-                   "enclosure", "environment", "camera", "imprint", "groups", "materials", "estimate"});
+    report.select("hemi/info/1", {"kind", "name", "surfaces", "triangles", "quadrilaterals", "polygons",
+                                  "patches", "channels", "bounds", "enclosure", "environment", "camera",
+                                  "imprint", "groups", "materials", "estimate"});
     return report;
 }
 
@@ -36,11 +36,11 @@ Report file_info(const std::filesystem::path& path) {
     if (extension == ".hres") {
         io::ResultFile result = io::read_hres(path);
         const PatchMesh mesh(result.scene, result.subdivision);
-        result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+        io::complete_solution(result, mesh);
         Report more;
         const bool has_parts = result.parts.any();
         const Scene scene = result.scene_as_read();
-        const PatchMesh patches = has_parts ? PatchMesh(scene) : mesh;
+        const PatchMesh patches = result.patches_as_read();
         if (has_parts) {
             more.add("parts", count_text(mesh.size()));
         }
@@ -51,9 +51,11 @@ Report file_info(const std::filesystem::path& path) {
         report.json["kind"] = "result";
         report.json["parts"] = mesh.size();
         report.select("hemi/info/1",
-                      {"kind", "name", "surfaces", "triangles", "quadrilaterals", "patches", "parts",
-                       "channels", "bounds", "enclosure", "environment", "camera", "groups", "materials",
-                       "renderer", "solver", "chosen_for", "error", "error_estimate"});
+                      {"kind",        "name",        "surfaces",   "triangles", "quadrilaterals",
+                       "polygons",    "patches",     "parts",      "channels",  "bounds",
+                       "enclosure",   "environment", "camera",     "groups",    "materials",
+                       "renderer",    "solver",      "chosen_for", "error",     "error_estimate",
+                       "temperature", "net_flux"});
         return report;
     }
     if (extension == ".hff") {

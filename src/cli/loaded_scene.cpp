@@ -49,8 +49,17 @@ PatchMesh make_mesh(const Scene& scene, const SceneOptions& options) {
     }
 }
 
+std::vector<Surface> surfaces_with_grids(const PatchMesh& mesh) {
+    std::vector<Surface> surfaces(mesh.surfaces().begin(), mesh.surfaces().end());
+    for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
+        surfaces[s].patches = mesh.grid(s);
+    }
+    return surfaces;
+}
+
 /// Faces that stand on others are as people build them; faces in the place of others are a mistake, mostly.
 void warn_of_overlaps(const Imprint& cut, const Scene& as_read, const Terminal& terminal) {
+    const std::vector<std::uint32_t> numbers = face_numbers(as_read.surfaces);
     const auto warn = [&](Imprint::What what, const char* one, const char* many) {
         std::size_t count = 0;
         const Imprint::Finding* first = nullptr;
@@ -61,7 +70,8 @@ void warn_of_overlaps(const Imprint& cut, const Scene& as_read, const Terminal& 
         }
         if (first != nullptr) {
             const auto name = [&](std::uint32_t face) {
-                return fmt::format("face {} of {}", face, as_read.groups[as_read.surfaces[face].group]);
+                return fmt::format("face {} of {}", numbers[face],
+                                   as_read.groups[as_read.surfaces[face].group]);
             };
             terminal.warn(fmt::format("{}: {} by {}{}", plural(count, one, many), name(first->face),
                                       name(first->other), count > 1 ? ", ..." : ""));
@@ -79,7 +89,8 @@ void warn_of_turned_faces(const Scene& scene, const Terminal& terminal) {
         terminal.warn(fmt::format(
             "{} turned against the others: face {} of {}{}; --orient in or out turns them",
             plural(turned.size(), "face of a watertight body is", "faces of watertight bodies are"),
-            turned[0], scene.groups[scene.surfaces[turned[0]].group], turned.size() > 1 ? ", ..." : ""));
+            face_numbers(scene.surfaces)[turned[0]], scene.groups[scene.surfaces[turned[0]].group],
+            turned.size() > 1 ? ", ..." : ""));
     }
 }
 
@@ -112,12 +123,15 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     PatchMesh mesh = make_mesh(scene, options);
     Subdivision subdivision = options.subdivision;
     std::optional<SceneAsRead> as_read;
-    if (auto cut = options.imprint ? imprint(scene, subdivision) : std::nullopt) {
+    if (auto cut = imprint(scene, subdivision, options.imprint)) {
         warn_of_overlaps(*cut, scene, terminal);
-        PatchMesh parts(cut->scene);
-        io::PatchPlaces left = io::places_left(mesh, parts, cut->parts);
+        std::vector<Surface> surfaces = surfaces_with_grids(mesh);
+        PatchMesh whole = mesh.whole_faces().mesh;
+        mesh = PatchMesh(cut->scene);
+        io::PatchPlaces left = io::places_left(whole, mesh, cut->parts);
         as_read = {std::exchange(scene, std::move(cut->scene)),
-                   std::exchange(mesh, std::move(parts)),
+                   std::move(surfaces),
+                   std::move(whole),
                    std::move(cut->parts),
                    std::move(left),
                    std::move(cut->findings),
@@ -136,7 +150,8 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
 
 void LoadedScene::adopt(PatchMesh other, const CoarseMesh& begin, bool parts) {
     if (has_whole_faces() && !parts) {
-        SceneAsRead before = as_read ? std::move(*as_read) : SceneAsRead{scene, mesh, {}, {}, {}, 0.0};
+        SceneAsRead before = as_read ? std::move(*as_read)
+                                     : SceneAsRead{scene, surfaces_with_grids(mesh), mesh, {}, {}, {}, 0.0};
         before.parts = parts_of_faces(other, begin, before.mesh);
         before.left = io::places_left(before.mesh, other, before.parts);
         as_read = std::move(before);
@@ -169,10 +184,7 @@ std::vector<double> LoadedScene::means(std::span<const double> values, std::size
 io::ResultFile LoadedScene::result(Solution solution) const {
     io::ResultFile file{scene, subdivision, std::move(solution)};
     if (as_read) {
-        file.surfaces_as_read = as_read->scene.surfaces;
-        for (std::uint32_t s = 0; s < file.surfaces_as_read.size(); ++s) {
-            file.surfaces_as_read[s].patches = as_read->mesh.grid(s);
-        }
+        file.surfaces_as_read = as_read->surfaces;
         file.parts = as_read->parts;
     }
     return file;

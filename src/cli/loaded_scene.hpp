@@ -19,11 +19,12 @@
 /// The scene that a command line names.
 namespace hemi::cli {
 
-/// A scene before its faces were cut, where they touch or to meet an error. Its patches are what results are
-/// about.
+/// A scene before its faces were cut, where they touch or to meet an error. Patches of its whole faces are
+/// what results are about.
 struct SceneAsRead {
     Scene scene;
-    PatchMesh mesh;
+    std::vector<Surface> surfaces;          ///< of the scene, each with its own subdivision
+    PatchMesh mesh;                         ///< see WholeFaces::mesh
     PatchParts parts;                       ///< those of the patches that are computed with
     io::PatchPlaces left;                   ///< areas and centres of what is left of the patches
     std::vector<Imprint::Finding> findings; ///< what was done

@@ -31,7 +31,7 @@ namespace {
 
 } // namespace
 
-void add_picture_output(Outputs& outputs, const PictureOptions& options) {
+void add_picture_output(Outputs& outputs, const PictureOptions& options, bool heat) {
     if (!options.quantity && (!options.of_quantities.empty() || options.logarithmic || !options.legend)) {
         throw InvalidArgument(
             fmt::format("{} needs --show with a quantity, such as irradiance{}",
@@ -43,7 +43,10 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options) {
     if (options.quantity && (options.exposure || options.tone_mapping_given)) {
         throw InvalidArgument("--exposure and --tone-mapping do not apply to quantities; --range does");
     }
-    if (options.quantity && is_of_heat(*options.quantity)) {
+    if (options.celsius && options.quantity != Quantity::temperature) {
+        throw InvalidArgument("--celsius needs --show temperature");
+    }
+    if (!heat && options.quantity && is_of_heat(*options.quantity)) {
         throw InvalidArgument(fmt::format("--show {}: `hemi heat SCENE -o FILE.png --show {}` finds it",
                                           to_word(*options.quantity), to_word(*options.quantity)));
     }
@@ -132,7 +135,8 @@ PictureSettings picture_settings(const PictureOptions& options) {
 }
 
 Report write_false_colours(const Scene& scene, const PatchMesh& mesh, FalseColours shown,
-                           const PictureOptions& options, const std::string& device, std::string_view word) {
+                           const PictureOptions& options, const std::string& device, std::string_view word,
+                           const Dots* dots) {
     if (options.celsius) {
         show_in_celsius(shown);
     }
@@ -143,8 +147,9 @@ Report write_false_colours(const Scene& scene, const PatchMesh& mesh, FalseColou
     shown.map = options.map;
     shown.logarithmic = options.logarithmic;
     shown.legend = options.legend;
-    const Picture picture = draw_false_colours(mesh, shown, choose_camera(scene, mesh, options),
-                                               picture_settings(options), device == "cpu" ? "auto" : device);
+    const Picture picture =
+        draw_false_colours(mesh, shown, choose_camera(scene, mesh, options), picture_settings(options),
+                           device == "cpu" ? "auto" : device, dots);
     hemi::write_picture(*options.output, picture);
     const std::string path = options.output->string();
     Report report;
@@ -160,11 +165,11 @@ Report write_false_colours(const Scene& scene, const PatchMesh& mesh, FalseColou
 }
 
 Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
-                     const PictureOptions& options, const std::string& device) {
+                     const PictureOptions& options, const std::string& device, const Dots* dots) {
     if (options.quantity) {
         Report report = write_false_colours(
             scene, mesh, patch_quantity(*options.quantity, scene, mesh, solution, options.channel), options,
-            device, to_word(*options.quantity));
+            device, to_word(*options.quantity), dots);
         if (*options.quantity == Quantity::radiosity && is_uniform(solution) &&
             !is_dark(solution.radiosity, scene.environment)) {
             report.add("light", light_note(scene, solution));
@@ -177,6 +182,7 @@ Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& 
     settings.camera = choose_camera(scene, mesh, options);
     settings.show = channels_to_show(scene.channels, options.show);
     settings.device = device;
+    settings.dots = dots;
     const DrawnPicture drawn = draw_solution(scene, mesh, solution, settings);
     hemi::write_picture(*options.output, drawn.picture);
     const std::string path = options.output->string();

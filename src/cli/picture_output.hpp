@@ -3,6 +3,7 @@
 #include "cli/arguments/arguments.hpp"
 #include "cli/output_paths.hpp"
 #include "cli/report/report.hpp"
+#include "hemi/display/dots.hpp"
 #include "hemi/display/false_colours.hpp"
 #include "hemi/display/picture.hpp"
 #include "hemi/scene/patch_mesh.hpp"
@@ -17,8 +18,10 @@
 /// Pictures as solve and render make them.
 namespace hemi::cli {
 
-/// Tests the picture's path. @throws as Outputs::add
-void add_picture_output(Outputs& outputs, const PictureOptions& options);
+/// Tests the picture's path.
+/// @param heat  whether quantities of heat may be known
+/// @throws as Outputs::add
+void add_picture_output(Outputs& outputs, const PictureOptions& options, bool heat = false);
 
 /// Channels shown as red, green and blue: those of `--show`, else the only one or all three.
 /// @param quantities  whether the one word might have been meant to be a quantity's
@@ -37,15 +40,18 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options);
 
 /// Draws and writes values of patches in false colours, as the options for quantities say.
 /// @param word  what they are, for the report
+/// @param dots  in the picture; may be null
 /// @return as write_picture()
 [[nodiscard]] Report write_false_colours(const Scene& scene, const PatchMesh& mesh, FalseColours shown,
                                          const PictureOptions& options, const std::string& device,
-                                         std::string_view word);
+                                         std::string_view word, const Dots* dots = nullptr);
 
 /// Draws and writes the picture.
 /// @return the line "picture" and the keys "picture" (path), "width", "height", "exposure" and "quantity"
+/// @param dots  in the picture; may be null
 /// @throws NoDevice, GlError, IoError
 [[nodiscard]] Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& solution,
-                                   const PictureOptions& options, const std::string& device);
+                                   const PictureOptions& options, const std::string& device,
+                                   const Dots* dots = nullptr);
 
 } // namespace hemi::cli

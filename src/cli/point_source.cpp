@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace hemi::cli {
 
@@ -56,6 +57,14 @@ std::optional<std::array<std::size_t, 3>> find_columns(const std::filesystem::pa
     return found;
 }
 
+void refuse_repeated(const std::filesystem::path& path, const io::TextTable& table) {
+    for (auto name = table.columns.begin(); name != table.columns.end(); ++name) {
+        if (std::find(table.columns.begin(), name, *name) != name) {
+            throw InputError(fmt::format("{}: two columns \"{}\"", path.string(), *name));
+        }
+    }
+}
+
 } // namespace
 
 std::vector<Receiver> read_points(const std::filesystem::path& path) {
@@ -68,10 +77,8 @@ std::vector<Receiver> read_points(const std::filesystem::path& path) {
                                          "where they have normals, nx, ny, nz",
                                          path.string(), *name));
         }
-        if (std::find(table.columns.begin(), name, *name) != name) {
-            throw InputError(fmt::format("{}: two columns \"{}\"", path.string(), *name));
-        }
     }
+    refuse_repeated(path, table);
     const auto positions = find_columns(path, table, position_columns);
     const auto normals = find_columns(path, table, normal_columns);
     if (!positions) {
@@ -97,6 +104,68 @@ std::vector<Receiver> read_points(const std::filesystem::path& path) {
         point.normal = glm::normalize(normal / largest);
     }
     return points;
+}
+
+PointTable read_point_table(const std::filesystem::path& path) {
+    const io::TextTable table = io::read_table(path);
+    refuse_repeated(path, table);
+    const auto positions = find_columns(path, table, position_columns);
+    if (!positions) {
+        throw InputError(fmt::format("{}: no columns x, y, z", path.string()));
+    }
+    if (table.rows.empty()) {
+        throw InputError(fmt::format("{}: no points", path.string()));
+    }
+    PointTable points;
+    std::vector<std::size_t> value_columns;
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        const std::string& name = table.columns[c];
+        const auto is = [&name](const std::vector<std::string>& names) {
+            return std::find(names.begin(), names.end(), name) != names.end();
+        };
+        if (!is(position_columns) && !is(normal_columns)) {
+            value_columns.push_back(c);
+            points.columns.push_back({name, unit_of_column(name), {}});
+        }
+    }
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        points.positions.push_back(vector_in(path, table, row, *positions));
+        for (std::size_t k = 0; k < value_columns.size(); ++k) {
+            points.columns[k].values.push_back(table.rows[row][value_columns[k]].empty()
+                                                   ? std::numeric_limits<double>::quiet_NaN()
+                                                   : number_in(path, table, row, value_columns[k]));
+        }
+    }
+    return points;
+}
+
+std::optional<std::size_t> dots_column(const DotOptions& options, const PointTable& table) {
+    std::vector<std::string> names;
+    for (const PointTable::Column& column : table.columns) {
+        names.push_back(column.name);
+    }
+    if (options.column.empty()) {
+        return names.empty() ? std::nullopt : std::optional<std::size_t>(0);
+    }
+    const auto found = std::find(names.begin(), names.end(), options.column);
+    if (found == names.end()) {
+        throw InvalidArgument(fmt::format("--column {}: {} has no such column of values{}", options.column,
+                                          options.points->string(),
+                                          did_you_mean_or_list(options.column, names)));
+    }
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+Dots read_dots(const DotOptions& options, const Bounds& scene) {
+    const PointTable table = read_point_table(*options.points);
+    return make_dots(table, dots_column(options, table), scene);
+}
+
+std::string unit_of_column(std::string_view name) {
+    if (name.starts_with("daylight_factor")) {
+        return "%";
+    }
+    return name.ends_with("_temperature") || name.starts_with("plane_") ? "K" : "";
 }
 
 PointGrid points_of_grid(const PatchMesh& mesh, const PointsArguments::Grid& wanted) {

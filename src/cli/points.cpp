@@ -265,7 +265,7 @@ Lit light_of_scene(const PointsArguments& arguments, Observer& observer, const T
         leave_sky(arguments, loaded.scene);
     }
     seconds["load"] = loaded.seconds;
-    find(loaded.patches());
+    find(loaded.as_read ? PatchMesh(loaded.uncut()) : loaded.mesh);
     return heat ? light_by_heat(arguments, loaded, observer, terminal, seconds)
                 : light(arguments, loaded, observer, terminal, seconds);
 }
@@ -280,16 +280,27 @@ Lit light_of_result(const PointsArguments& arguments, Seconds& seconds,
     refuse_all_but(arguments.common,
                    std::vector<std::string>{"--points", "--grid", "--spheres", "--output", "--by-group",
                                             "--show", "--range", "--no-legend", "--preset", "--resolution",
-                                            "--shadow-rays", "--seed", "--no-merge", "--device", "--jobs"},
+                                            "--shadow-rays", "--seed", "--no-merge", "--device", "--jobs",
+                                            "--person", "--facing", "--absorptance"},
                    path);
     const Stopwatch watch;
     const io::ResultFile result = io::read_hres(path);
+    const bool heat = !result.solution.temperature.empty();
+    if (arguments.posture && !heat) {
+        throw InvalidArgument(fmt::format("--person needs temperatures, which {} does not have: `hemi heat "
+                                          "SCENE --result FILE.hres` stores them",
+                                          path.string()));
+    }
     PatchMesh mesh(result.scene, result.subdivision);
     find(result.surfaces_as_read.empty() ? mesh : PatchMesh(result.scene_as_read()));
-    Radiation radiation = radiation_of(mesh, patch_values(result.scene, mesh), result.solution);
+    Radiation radiation = heat ? radiation_of(result.scene, result.solution)
+                               : radiation_of(mesh, patch_values(result.scene, mesh), result.solution);
     seconds["load"] = watch.seconds();
-    Lit lit{std::move(mesh), result.scene.enclosure, result.scene.channels, std::move(radiation),
-            false,           ExitStatus::ok};
+    Lit lit{std::move(mesh), result.scene.enclosure, result.scene.channels, std::move(radiation), heat,
+            ExitStatus::ok};
+    if (heat && lit.radiation.channels == 1) {
+        lit.channels = {"total"};
+    }
     add_sun_and_sky(result.scene, lit);
     return lit;
 }
@@ -333,13 +344,7 @@ std::size_t shown_column(const PointsArguments& arguments, const PointColumns& c
 
 /// Of a column: that of irradiances, or by its name; shares have none.
 std::string unit_of(const std::string& column, const std::string& irradiance) {
-    if (column.starts_with("irradiance")) {
-        return irradiance;
-    }
-    if (column.starts_with("daylight_factor")) {
-        return "%";
-    }
-    return column.ends_with("_temperature") || column.starts_with("plane_") ? "K" : "";
+    return column.starts_with("irradiance") ? irradiance : unit_of_column(column);
 }
 
 /// Writes the map. @return report of it

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/output_paths.hpp"
 #include "cli/picture_output.hpp"
+#include "cli/point_source.hpp"
 #include "cli/report/seconds.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
@@ -17,8 +18,14 @@ ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
         options.output = arguments.input.filename().replace_extension(".png");
     }
     Outputs outputs;
-    add_picture_output(outputs, options);
+    add_picture_output(outputs, options, true);
     outputs.refuse_with_json(arguments.common.json);
+    if (arguments.dots.points) {
+        outputs.keep(*arguments.dots.points);
+        if (extension_of(*options.output) == ".hdr") {
+            throw InvalidArgument("--points: dots are drawn into a .png; .hdr holds light");
+        }
+    }
     if (extension_of(arguments.input) != ".hres") {
         throw InvalidArgument(
             fmt::format("{}: render draws a stored solution, .hres; `hemi solve SCENE --result "
@@ -28,10 +35,16 @@ ExitStatus run(const RenderArguments& arguments, const Terminal& terminal) {
     const Stopwatch load_watch;
     io::ResultFile result = io::read_hres(arguments.input);
     const PatchMesh mesh(result.scene, result.subdivision);
-    result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+    io::complete_solution(result, mesh);
+    std::optional<Dots> dots;
+    if (arguments.dots.points) {
+        dots = read_dots(arguments.dots, mesh.bounds());
+        dots->shown.legend = options.legend;
+    }
     seconds["load"] = load_watch.seconds();
     const Stopwatch render_watch;
-    Report report = write_picture(result.scene, mesh, result.solution, options, arguments.device);
+    Report report = write_picture(result.scene, mesh, result.solution, options, arguments.device,
+                                  dots ? &*dots : nullptr);
     seconds["render"] = render_watch.seconds();
     report.json.update(seconds.report().json);
     report.select("hemi/render/1", {"picture", "width", "height", "exposure", "quantity", "seconds"});

@@ -3,6 +3,7 @@
 #include "cli/loaded_scene.hpp"
 #include "cli/output_paths.hpp"
 #include "cli/picture_output.hpp"
+#include "cli/point_source.hpp"
 #include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/result_file.hpp"
@@ -33,7 +34,7 @@ const std::vector<std::string>& window_options() {
     static const std::vector<std::string> names{"--size",         "--camera",       "--flat",   "--exposure",
                                                 "--tone-mapping", "--orthographic", "--backs",  "--outlines",
                                                 "--samples",      "--background",   "--script", "--controls",
-                                                "--up",           "--show"};
+                                                "--up",           "--show",         "--points", "--column"};
     return names;
 }
 
@@ -129,9 +130,17 @@ private:
         input.picture = picture_settings(options);
         input.automatic_exposure = !options.exposure;
         input.solution = std::move(solution);
-        input.solution.exitance = patch_values(*mesh, scene->materials, &Material::exitance);
+        if (input.solution.exitance.empty()) {
+            input.solution.exitance = patch_values(*mesh, scene->materials, &Material::exitance);
+        }
         input.scene = std::move(scene);
         input.mesh = std::move(mesh);
+        if (arguments_.dots.points) {
+            auto points = std::make_shared<const PointTable>(read_point_table(*arguments_.dots.points));
+            input.dots_column = dots_column(arguments_.dots, *points);
+            input.points = std::move(points);
+            input.points_file = *arguments_.dots.points;
+        }
         return input;
     }
 
@@ -248,7 +257,7 @@ private:
         viewer::ViewerInput input =
             describe(path, scene, std::make_shared<const PatchMesh>(*scene, result.subdivision),
                      std::move(result.solution));
-        input.command = "hemi render " + viewer::quoted(path.string());
+        input.command = input.heat_command = "hemi render " + viewer::quoted(path.string());
         return input;
     }
 

@@ -4,6 +4,7 @@
 #include "display/legend.hpp"
 #include "display/painted.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/display/dots.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace hemi {
 
@@ -105,7 +107,7 @@ std::array<bool, 2> values_beyond(const FalseColours& shown, const ColourScale& 
 }
 
 Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, const Camera& camera,
-                           const PictureSettings& settings, const std::string& device) {
+                           const PictureSettings& settings, const std::string& device, const Dots* dots) {
     if (shown.values.size() != mesh.size()) {
         throw InvalidArgument(
             fmt::format("false colours: {} values for {} patches", shown.values.size(), mesh.size()));
@@ -116,12 +118,18 @@ Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, con
     plain.shading = Shading::flat;
     plain.tone_mapping = ToneMapping::linear;
     plain.exposure = 1.0;
-    Picture picture = draw_picture(
-        painted(make_picture_mesh(mesh, 1, dark, {}, {0, 0, 0}), value_colours(shown.values, scale, mesh)),
-        camera, plain, device);
+    PictureMesh drawn =
+        painted(make_picture_mesh(mesh, 1, dark, {}, {0, 0, 0}), value_colours(shown.values, scale, mesh));
+    if (dots != nullptr) {
+        drawn = with_dots(std::move(drawn), *dots, plain);
+    }
+    Picture picture = draw_picture(drawn, camera, plain, device);
     if (shown.legend) {
         draw_legend(picture, legend_scale(shown, scale), legend_title(shown, scale, "not known"),
                     values_beyond(shown, scale));
+    }
+    if (dots != nullptr) {
+        draw_dots_legend(picture, *dots, shown.legend ? 1 : 0);
     }
     return picture;
 }

@@ -182,16 +182,17 @@ std::string mark_text(double mark, const std::vector<double>& marks) {
 }
 
 bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title,
-                 const std::array<bool, 2>& beyond) {
+                 const std::array<bool, 2>& beyond, std::uint32_t below) {
     const int width = static_cast<int>(picture.width);
-    const int height = static_cast<int>(picture.height);
-    if (picture.width < least_width || picture.height < least_height) {
+    if (picture.width < least_width || picture.height < least_height * (below + 1)) {
         return false;
     }
     Canvas canvas(picture);
     const int s = canvas.scale();
     const int margin = legend_margin * s;
     const int pad = legend_pad * s;
+    const int height =
+        static_cast<int>(picture.height) - static_cast<int>(below) * (legend_height + legend_margin) * s;
     const int box_width = std::min(std::max(220 * s, canvas.width_of(title) + 2 * pad), width - 2 * margin);
     const int box_height = legend_height * s;
     const int left = margin;

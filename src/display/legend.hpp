@@ -19,9 +19,10 @@ namespace hemi {
 
 /// Draws a title and a scale with marks into the lower left of `srgb`.
 /// @param beyond  whether values lie below and above the scale: < and > at its ends say so
+/// @param below   legends that it stands above
 /// @return whether there was room for it
 bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title,
-                 const std::array<bool, 2>& beyond = {false, false});
+                 const std::array<bool, 2>& beyond = {false, false}, std::uint32_t below = 0);
 
 /// The same by itself, on white, to stand below a picture: `linear` is empty.
 /// @param width  of the picture, pixels; a narrower one than 320 gets a legend of 320

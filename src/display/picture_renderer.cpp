@@ -59,7 +59,7 @@ struct Triangles {
     std::vector<std::uint32_t> indices;
 };
 
-void add_patch(const PictureMesh& mesh, std::size_t patch, Triangles& out) {
+void add_patch(const PictureMesh& mesh, std::size_t patch, bool outlined, Triangles& out) {
     const auto first = static_cast<std::uint32_t>(out.vertices.size());
     const auto item = static_cast<std::uint32_t>(patch + 1);
     const std::array<float, 3> flat = triple(mesh.patches, patch);
@@ -68,14 +68,15 @@ void add_patch(const PictureMesh& mesh, std::size_t patch, Triangles& out) {
                       outline, item};
     };
     if (triple(mesh.positions, patch * 4 + 2) == triple(mesh.positions, patch * 4 + 3)) {
-        out.vertices.insert(out.vertices.end(), {corner(0, {1.0F, 0.0F, 0.0F}), corner(1, {0.0F, 1.0F, 0.0F}),
-                                                 corner(2, {0.0F, 0.0F, 1.0F})});
+        const float off = outlined ? 0.0F : 1.0F;
+        out.vertices.insert(out.vertices.end(), {corner(0, {1.0F, off, off}), corner(1, {off, 1.0F, off}),
+                                                 corner(2, {off, off, 1.0F})});
         out.indices.insert(out.indices.end(), {first, first + 1, first + 2});
         return;
     }
     Vertex centre{{}, {}, flat, {1.0F, 1.0F, 1.0F}, item};
     for (std::size_t k = 0; k < 4; ++k) {
-        out.vertices.push_back(corner(k, {0.0F, 1.0F, 1.0F}));
+        out.vertices.push_back(corner(k, {outlined ? 0.0F : 1.0F, 1.0F, 1.0F}));
         for (std::size_t i = 0; i < 3; ++i) {
             centre.position[i] += 0.25F * out.vertices.back().position[i];
             centre.gouraud[i] += 0.25F * out.vertices.back().gouraud[i];
@@ -217,7 +218,7 @@ void PictureRenderer::upload(const PictureMesh& mesh) {
     triangles.vertices.reserve(patches * 5);
     triangles.indices.reserve(patches * 12);
     for (std::size_t patch = 0; patch < patches; ++patch) {
-        add_patch(mesh, patch, triangles);
+        add_patch(mesh, patch, patch + mesh.without_outline < patches, triangles);
     }
     glNamedBufferData(vertices_.get(), static_cast<GLsizeiptr>(triangles.vertices.size() * sizeof(Vertex)),
                       triangles.vertices.data(), GL_STATIC_DRAW);

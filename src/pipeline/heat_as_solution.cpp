@@ -1,5 +1,6 @@
 #include "hemi/core/error.hpp"
 #include "hemi/pipeline/heat.hpp"
+#include "pipeline/heat_rows.hpp"
 
 #include <fmt/format.h>
 
@@ -61,6 +62,16 @@ Solution heat_as_solution(const FormFactors& factors, const HeatProblem& problem
         result.back_face_share.push_back(row.blocked);
     }
     return result;
+}
+
+Scene scene_of_heat(Scene scene, const HeatProblem& problem) {
+    scene.environment = environment_exitance(problem);
+    scene.environment.resize(scene.channels.size(), scene.environment.front());
+    scene.thermal = Thermal{problem.band_limits, {}, std::nullopt};
+    for (Surface& surface : scene.surfaces) {
+        surface.heat = no_heat;
+    }
+    return scene;
 }
 
 } // namespace hemi

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace hemi {
@@ -116,10 +117,16 @@ DrawnPicture draw_solution(const Scene& scene, const PatchMesh& mesh, const Solu
         picture.exposure =
             automatic_exposure(mesh, drawn, solution.back_face_share, solution.exitance, solution.channels);
     }
+    if (settings.dots != nullptr) {
+        drawn = with_dots(std::move(drawn), *settings.dots, picture);
+    }
     const Camera camera = settings.camera ? *settings.camera : scene_camera(scene, mesh);
     const bool rows_only = settings.device == cpu_device;
     DrawnPicture result{draw_picture(drawn, camera, picture, rows_only ? "auto" : settings.device),
                         picture.exposure, dark};
+    if (settings.dots != nullptr) {
+        draw_dots_legend(result.picture, *settings.dots);
+    }
     if (dark) {
         std::fill(result.picture.linear.begin(), result.picture.linear.end(), 0.0F);
     }

@@ -282,6 +282,16 @@ std::vector<double> weights_of(const PatchMesh& mesh, const Radiation& radiation
     return weights;
 }
 
+/// Of every band, whether it ends where short waves do, or before.
+std::vector<bool> short_waves(const std::vector<double>& band_limits) {
+    std::vector<bool> result;
+    for (const double limit : band_limits) {
+        result.push_back(limit <= short_wave_end);
+    }
+    result.push_back(false);
+    return result;
+}
+
 } // namespace
 
 std::array<Vec3, 6> plane_directions(double facing, UpAxis up) {
@@ -307,10 +317,29 @@ Radiation radiation_of(const PatchMesh& mesh, const PatchValues& values, const S
 
 Radiation radiation_of(const HeatProblem& problem, const HeatSolution& solution) {
     Radiation radiation{solution.bands, solution.radiosity, environment_exitance(problem)};
-    for (std::uint32_t band = 0; band < solution.bands; ++band) {
-        radiation.short_wave.push_back(band < problem.band_limits.size() &&
-                                       problem.band_limits[band] <= short_wave_end);
+    radiation.short_wave = short_waves(problem.band_limits);
+    return radiation;
+}
+
+Radiation radiation_of(const Scene& scene, const Solution& solution) {
+    const std::vector<double> limits = scene.thermal ? scene.thermal->band_limits : std::vector<double>();
+    const auto bands = static_cast<std::uint32_t>(limits.size()) + 1; // one: the channels are equal
+    const std::size_t patches = solution.net_flux.size();
+    if (patches == 0 || (bands != 1 && bands != solution.channels) ||
+        solution.radiosity.size() != patches * solution.channels) {
+        throw InvalidArgument(fmt::format("points: heat of {} bands in {} channels, of {} patches", bands,
+                                          solution.channels, patches));
     }
+    Radiation radiation{bands, {}, scene.environment};
+    radiation.environment.resize(bands, 0.0);
+    for (std::size_t i = 0; i < patches; ++i) {
+        for (std::uint32_t band = 0; band < bands; ++band) {
+            radiation.radiosity.push_back(std::isnan(solution.net_flux[i]) // buried
+                                              ? std::numeric_limits<double>::quiet_NaN()
+                                              : solution.radiosity[i * solution.channels + band]);
+        }
+    }
+    radiation.short_wave = short_waves(limits);
     return radiation;
 }
 

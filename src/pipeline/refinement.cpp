@@ -549,8 +549,8 @@ CoarseMesh coarse_mesh(const Scene& scene, bool with_imprint) {
         coarse.surfaces[s].patches = Grid{std::max(least, grid.u), std::max(least, grid.v)};
     }
     as_read = PatchMesh(coarse);
-    if (auto cut = with_imprint ? imprint(coarse) : std::nullopt) {
-        return {PatchMesh(cut->scene), std::move(as_read), std::move(cut->parts)};
+    if (auto cut = imprint(coarse, {}, with_imprint)) {
+        return {PatchMesh(cut->scene), as_read.whole_faces().mesh, std::move(cut->parts)};
     }
     return {as_read, as_read, {}};
 }
@@ -562,13 +562,14 @@ PatchParts parts_of_faces(const PatchMesh& mesh, const CoarseMesh& begin, const 
                                               plural(faces.patches_per_side(face), "patch", "patches")));
         }
     }
+    const std::vector<std::uint32_t> face_of = face_numbers(begin.as_read.surfaces());
     PatchParts result;
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         const std::uint32_t s = mesh.surface_of()[i];
         const std::uint32_t first =
             begin.mesh.first_patch(s) + (mesh.is_back(i) ? begin.mesh.patches_per_side(s) : 0);
         const std::uint32_t patch = begin.parts.any() ? begin.parts.patch_of[first] : first;
-        result.patch_of.push_back(faces.first_patch(begin.as_read.surface_of()[patch]) +
+        result.patch_of.push_back(faces.first_patch(face_of[begin.as_read.surface_of()[patch]]) +
                                   (begin.as_read.is_back(patch) ? 1 : 0));
     }
     for (std::uint32_t face = 0; face < faces.size(); ++face) {

@@ -173,11 +173,14 @@ py::object load(const py::object& path, const ScenePointer& scene, const std::op
     return py::cast(run([&] { return read_form_factors_of(file, scene, wanted); }));
 }
 
-void save(FactorsOfScene& self, const py::object& path) {
+void save(FactorsOfScene& self, const py::object& path, const std::string& zone) {
     const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
     const std::string extension = io::extension_of(file);
     Diagnostics diagnostics;
     run([&] {
+        if (!zone.empty() && extension != ".idf") {
+            throw InvalidArgument(fmt::format("zone: is for EnergyPlus' .idf, and the file is {}", file));
+        }
         if (extension == ".vtp") {
             if (!self.scene) {
                 throw InvalidArgument(
@@ -197,7 +200,7 @@ void save(FactorsOfScene& self, const py::object& path) {
             const std::vector<double> emissivity =
                 self.scene ? emissivities(self.scene->mesh, self.scene->scene.materials)
                            : std::vector<double>{};
-            io::write_factors(file, self.factors, {emissivity}, diagnostics);
+            io::write_factors(file, self.factors, {emissivity, zone}, diagnostics);
         }
     });
     warn(diagnostics);
@@ -509,9 +512,16 @@ InputError
 NotConverged
     The tolerance is not met.
 )");
-    type.def("save", &save, py::arg("path"), R"(
+    type.def("save", &save, py::arg("path"), py::kw_only(), py::arg("zone") = "", R"(
 Writes a file by its extension: .hff (rows as they were computed, and all that belongs to them), .npz, .npy,
 .mtx, .csv, .h5, .txt and .vf (View3D), .dat and .bin (Elmer), .idf (EnergyPlus), .vtp (ParaView).
+
+Parameters
+----------
+path : path-like
+    Of the file.
+zone : str
+    EnergyPlus' name of what the surfaces close in, of an .idf alone; default: the name of the file.
 
 Raises
 ------

@@ -230,7 +230,7 @@ ScenePointer read_scene(const py::object& path, std::optional<double> patch_size
     }
     return run([&] {
         const Subdivision subdivision{patch_size, patches_per_face};
-        std::optional<Imprint> cut = with_imprint ? imprint(scene, subdivision) : std::nullopt;
+        std::optional<Imprint> cut = imprint(scene, subdivision, with_imprint);
         return cut ? std::make_shared<PatchedScene>(scene, subdivision, std::move(*cut))
                    : std::make_shared<PatchedScene>(std::move(scene), subdivision);
     });
@@ -405,8 +405,10 @@ InvalidArgument, InputError
         "face_of",
         [](const PatchedScene& scene) {
             std::vector<std::uint32_t> faces(scene.mesh.surface_of().begin(), scene.mesh.surface_of().end());
+            const std::vector<std::uint32_t> numbers =
+                face_numbers(scene.face_of.empty() ? scene.scene.surfaces : scene.surfaces_as_read);
             for (std::uint32_t& face : faces) {
-                face = scene.face_of.empty() ? face : scene.face_of[face];
+                face = numbers[scene.face_of.empty() ? face : scene.face_of[face]];
             }
             return owned(std::move(faces));
         },
@@ -417,8 +419,9 @@ InvalidArgument, InputError
         [](const PatchedScene& scene) -> py::object {
             return scene.parts.any() ? py::object(owned(std::vector(scene.parts.patch_of))) : py::none();
         },
-        "ndarray of uint32, [N], or None : where faces were cut because others touch them, the patch of the "
-        "scene as it was read that each patch is part of; FormFactors.by_patch() gives F of those.");
+        "ndarray of uint32, [N], or None : where faces were cut because others touch them, or since they are "
+        "not plane, not convex or of many corners, the patch of the scene as it was read that each patch is "
+        "part of; FormFactors.by_patch() gives F of those.");
     type.def_property_readonly(
         "reflectance", [](const PatchedScene& scene) { return values_of(scene, &Material::reflectance); },
         "ndarray, [N, channels] : share that a patch reflects.");

@@ -249,14 +249,13 @@ SolutionOfScene solve(const FactorsOfScene& factors, const py::object& reflectan
 SolutionOfScene read_solution(const std::string& path) {
     return run([&] {
         io::ResultFile file = io::read_hres(path);
+        io::complete_solution(file, PatchMesh(file.scene, file.subdivision));
         SolutionOfScene result;
         const auto scene = std::make_shared<PatchedScene>(std::move(file.scene), file.subdivision);
         scene->surfaces_as_read = std::move(file.surfaces_as_read);
         scene->parts = std::move(file.parts);
         result.scene = scene;
         result.solution = std::move(file.solution);
-        result.solution.exitance =
-            patch_values(result.scene->mesh, result.scene->scene.materials, &Material::exitance);
         return result;
     });
 }

@@ -2,10 +2,9 @@
 
 #include "core/box_tree.hpp"
 #include "core/parallel_for.hpp"
-#include "core/welder.hpp"
 #include "hemi/core/error.hpp"
 #include "scene/convex_polygon.hpp"
-#include "scene/duplicate_faces.hpp"
+#include "scene/joined_faces.hpp"
 #include "scene/rectangles.hpp"
 #include "scene/surroundings.hpp"
 
@@ -23,8 +22,6 @@ namespace hemi {
 namespace {
 
 constexpr std::uint32_t no_face = 0xFFFFFFFFu;
-/// Gaps up to this share of the scene's diagonal are none, as where corners are welded.
-constexpr double contact_share = 1e-7;
 /// What is buried is found from the outside inwards; nothing that people build is deeper.
 constexpr int max_rounds = 8;
 
@@ -42,6 +39,8 @@ struct Piece {
     bool whole = true;      ///< all of that cell
     bool front = true;
     bool back = true;
+    /// A one-sided face lies over it in its plane that looks the other way, and its own face is one-sided.
+    bool faced = false;
 
     [[nodiscard]] bool is_left() const { return front || back; }
 };
@@ -54,125 +53,6 @@ struct CutFace {
     bool split = false;                 ///< into more than its cells
     bool buried = false;                ///< parts of it see backs alone
 };
-
-/// Corners of faces, those in one place made one.
-struct WeldedFaces {
-    std::vector<std::array<std::uint32_t, 4>> corners; ///< of every face; the fourth of a triangle is none
-    std::size_t vertex_count = 0;
-};
-
-WeldedFaces weld(const Scene& scene, double tolerance) {
-    Welder welder(tolerance);
-    WeldedFaces result;
-    for (const Surface& surface : scene.surfaces) {
-        std::array<std::uint32_t, 4>& corners = result.corners.emplace_back();
-        corners.fill(no_face);
-        for (std::uint32_t k = 0; k < surface.vertex_count; ++k) {
-            corners[k] = welder.add(surface.vertices[k]);
-        }
-    }
-    result.vertex_count = welder.points().size();
-    return result;
-}
-
-/// A scene without faces that are there again, and one-sided ones back to back in one place.
-struct Joined {
-    Scene scene;
-    std::vector<std::uint32_t> face_of{};
-    std::vector<Imprint::Finding> findings{};
-    double left_out = 0.0;                           ///< area
-    std::vector<std::vector<std::uint32_t>> backs{}; ///< of every face that was joined: its backs' patches
-};
-
-/// Of the patches of face `front` in their order, those of face `back` with the same centres; nothing where
-/// the faces are subdivided otherwise.
-std::optional<std::vector<std::uint32_t>> opposite_patches(const PatchMesh& mesh, std::uint32_t front,
-                                                           std::uint32_t back, double tolerance) {
-    const std::uint32_t count = mesh.patches_per_side(back);
-    if (mesh.patches_per_side(front) != count) {
-        return std::nullopt;
-    }
-    Welder centres(tolerance);
-    std::vector<std::uint32_t> patch_of; // of every centre
-    for (std::uint32_t i = mesh.first_patch(back); i < mesh.first_patch(back) + count; ++i) {
-        centres.add(mesh.centres()[i]);
-        patch_of.resize(centres.points().size(), i);
-    }
-    std::vector<std::uint32_t> result;
-    for (std::uint32_t i = mesh.first_patch(front); i < mesh.first_patch(front) + count; ++i) {
-        const std::uint32_t centre = centres.add(mesh.centres()[i]);
-        if (centre >= patch_of.size()) {
-            return std::nullopt;
-        }
-        result.push_back(patch_of[centre]);
-    }
-    return result;
-}
-
-/// Of faces that are the same keeps the last one, which is on top of the others.
-/// Of two one-sided faces with the same corners, which look different ways and are of one material and group
-/// and alike subdivided, makes one that is two-sided: a picture cannot tell which of two in one place is
-/// nearer.
-Joined join_back_to_back(const Scene& scene, const Subdivision& subdivision) {
-    Joined result{scene};
-    const std::vector<std::uint32_t> next = next_duplicates(scene);
-    const double tolerance = contact_share * scene.bounds().diagonal();
-    const WeldedFaces welded = weld(scene, tolerance);
-    std::map<std::array<std::uint32_t, 4>, std::vector<std::uint32_t>> found; // by sorted corners
-    result.scene.surfaces.clear();
-    std::optional<PatchMesh> mesh; // where there is something to join
-    for (std::uint32_t f = 0; f < scene.surfaces.size(); ++f) {
-        const Surface& surface = scene.surfaces[f];
-        if (next[f] != no_duplicate) {
-            result.findings.push_back({Imprint::What::duplicate, f, next[f]});
-            result.left_out += (surface.two_sided ? 2.0 : 1.0) * glm::length(area_vector(surface.polygon()));
-            continue;
-        }
-        std::array<std::uint32_t, 4> key = welded.corners[f];
-        std::sort(key.begin(), key.end());
-        auto& there = found[key]; // indices of surfaces of the result
-        std::optional<std::vector<std::uint32_t>> backs;
-        const auto mate = std::find_if(there.begin(), there.end(), [&](std::uint32_t s) {
-            const Surface& other = result.scene.surfaces[s];
-            const bool alike = !surface.two_sided && !other.two_sided && other.material == surface.material &&
-                               other.group == surface.group && other.heat == surface.heat &&
-                               glm::dot(area_vector(other.polygon()), area_vector(surface.polygon())) < 0.0;
-            if (!alike) {
-                return false;
-            }
-            if (!mesh) {
-                mesh.emplace(scene, subdivision);
-            }
-            backs = opposite_patches(*mesh, result.face_of[s], f, tolerance);
-            return backs.has_value();
-        });
-        if (mate != there.end()) {
-            result.scene.surfaces[*mate].two_sided = true;
-            result.findings.push_back({Imprint::What::joined, f, result.face_of[*mate]});
-            result.backs[*mate] = std::move(*backs);
-            continue;
-        }
-        there.push_back(static_cast<std::uint32_t>(result.scene.surfaces.size()));
-        result.scene.surfaces.push_back(surface);
-        result.face_of.push_back(f);
-        result.backs.emplace_back();
-    }
-    return result;
-}
-
-/// Of every patch of a scene whose faces were joined, the one that it was before.
-std::vector<std::uint32_t> patches_before(const Joined& joined, const PatchMesh& mesh,
-                                          const PatchMesh& as_read) {
-    std::vector<std::uint32_t> result;
-    for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
-        const std::uint32_t s = mesh.surface_of()[patch];
-        const std::uint32_t place = patch - mesh.first_patch(s);
-        result.push_back(mesh.is_back(patch) && !joined.backs[s].empty()
-                             ? joined.backs[s][place - mesh.patches_per_side(s)]
-                             : as_read.first_patch(joined.face_of[s]) + place);
-    }
-    return result;
-}
 
 class Imprinter {
 public:
@@ -367,10 +247,17 @@ private:
                 if (contains(face(other), normal(other), centre, tolerance_)) {
                     const bool before = piece.is_left();
                     cover(f, other, piece);
+                    piece.faced = piece.faced || faces(f, other);
                     cut_[f].covered_by = before && !piece.is_left() ? other : cut_[f].covered_by;
                 }
             }
         }
+    }
+
+    /// Whether both faces, which lie in one plane, are one-sided and look different ways.
+    [[nodiscard]] bool faces(std::uint32_t f, std::uint32_t other) const {
+        return !scene_.surfaces[f].two_sided && !scene_.surfaces[other].two_sided &&
+               glm::dot(normal(other), normal(f)) < 0.0;
     }
 
     /// What face `other` covers of a piece of face `f` that it lies over, in its plane.
@@ -453,7 +340,7 @@ private:
             Piece& piece = face.pieces[k];
             bool front = piece.front && stays(k, false);
             const bool back = piece.back && stays(k, true);
-            if (front && is_faced(f, piece) && look(k, true).only_backs()) {
+            if (front && piece.faced && look(k, true).only_backs()) {
                 front = false; // face to face with the body behind
             }
             any_changed = any_changed || front != piece.front || back != piece.back;
@@ -488,16 +375,6 @@ private:
             cut_[side.face].buried = true;
         }
         return !left.empty();
-    }
-
-    /// Whether a one-sided face lies over a piece of a one-sided face in its plane that looks the other way.
-    [[nodiscard]] bool is_faced(std::uint32_t f, const Piece& piece) const {
-        const auto& coplanar = cut_[f].contacts.coplanar;
-        return !scene_.surfaces[f].two_sided &&
-               std::any_of(coplanar.begin(), coplanar.end(), [&](std::uint32_t other) {
-                   return !scene_.surfaces[other].two_sided && glm::dot(normal(other), normal(f)) < 0.0 &&
-                          contains(face(other), normal(other), area_centroid(piece.corners), tolerance_);
-               });
     }
 
     /// Faces that share a corner with one that is buried in part may be buried whole.
@@ -637,12 +514,22 @@ private:
     std::vector<CutFace> cut_; ///< of every face; without pieces: it is not looked at
 };
 
-} // namespace
-
-std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivision) {
-    if (!subdivision.parts.empty()) {
-        throw InvalidArgument("imprint: patches of different sizes cannot be cut; cut the scene before");
+/// A scene of which nothing is cut, every surface with its own subdivision.
+Imprint uncut(const Scene& scene, const PatchMesh& mesh) {
+    Imprint result;
+    result.scene = scene;
+    for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
+        result.scene.surfaces[s].patches = mesh.grid(s);
+        result.face_of.push_back(s);
     }
+    result.parts.patch_of.resize(mesh.size());
+    std::iota(result.parts.patch_of.begin(), result.parts.patch_of.end(), 0u);
+    return result;
+}
+
+/// Cuts the faces, whatever pieces they were read in: parts are of patches of the pieces, and have no groups
+/// yet.
+std::optional<Imprint> imprint_contacts(const Scene& scene, const Subdivision& subdivision) {
     const Joined joined = join_back_to_back(scene, subdivision);
     std::optional<Imprint> result = Imprinter(joined.scene, subdivision).run();
     if (!result && joined.findings.empty()) {
@@ -650,22 +537,11 @@ std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivisio
     }
     const PatchMesh mesh(joined.scene, subdivision);
     if (!result) {
-        result.emplace();
-        result->scene = joined.scene;
-        for (std::uint32_t s = 0; s < joined.scene.surfaces.size(); ++s) {
-            result->scene.surfaces[s].patches = mesh.grid(s);
-            result->face_of.push_back(s);
-        }
-        result->parts.patch_of.resize(mesh.size());
-        std::iota(result->parts.patch_of.begin(), result->parts.patch_of.end(), 0u);
+        result = uncut(joined.scene, mesh);
     }
-    const PatchMesh as_read(scene, subdivision);
-    const std::vector<std::uint32_t> before = patches_before(joined, mesh, as_read);
+    const std::vector<std::uint32_t> before = patches_before(joined, mesh, PatchMesh(scene, subdivision));
     for (std::uint32_t& patch : result->parts.patch_of) {
         patch = before[patch];
-    }
-    for (std::uint32_t i = 0; i < as_read.size(); ++i) {
-        result->parts.group_of.push_back(as_read.group(i));
     }
     for (std::uint32_t& face : result->face_of) {
         face = joined.face_of[face];
@@ -678,6 +554,69 @@ std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivisio
     result->findings.insert(result->findings.end(), joined.findings.begin(), joined.findings.end());
     std::stable_sort(result->findings.begin(), result->findings.end(),
                      [](const auto& one, const auto& other) { return one.face < other.face; });
+    return result;
+}
+
+/// What was done to whole faces, where it was done to surfaces, ascending: a face is left out where all its
+/// pieces are, and else cut.
+std::vector<Imprint::Finding> findings_of_faces(const Scene& scene, std::vector<Imprint::Finding> findings) {
+    std::vector<std::uint32_t> first_of(scene.surfaces.size());
+    std::vector<std::uint32_t> pieces(scene.surfaces.size(), 0); // of faces, at their first surface
+    for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
+        first_of[s] = s > 0 && scene.surfaces[s].continues ? first_of[s - 1] : s;
+        ++pieces[first_of[s]];
+    }
+    const auto in_part = [](Imprint::What what) {
+        return what == Imprint::What::duplicate || what == Imprint::What::overlapped
+                   ? Imprint::What::overlapped
+                   : Imprint::What::cut;
+    };
+    std::vector<Imprint::Finding> result;
+    for (auto at = findings.begin(); at != findings.end();) {
+        Imprint::Finding finding = *at;
+        finding.face = first_of[at->face];
+        finding.other = at->other == no_face ? no_face : first_of[at->other];
+        const auto end = std::find_if(
+            at, findings.end(), [&](const auto& other) { return first_of[other.face] != finding.face; });
+        const bool alike = std::all_of(at, end, [&](const auto& other) { return other.what == at->what; });
+        const auto found = static_cast<std::uint32_t>(end - at);
+        finding.what = alike && found == pieces[finding.face] ? finding.what : in_part(finding.what);
+        result.push_back(finding);
+        at = end;
+    }
+    return result;
+}
+
+} // namespace
+
+std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivision, bool contacts) {
+    if (!subdivision.parts.empty()) {
+        throw InvalidArgument("imprint: patches of different sizes cannot be cut; cut the scene before");
+    }
+    std::optional<Imprint> result = contacts ? imprint_contacts(scene, subdivision) : std::nullopt;
+    const bool in_pieces = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                                       [](const Surface& surface) { return surface.continues; });
+    if (!result && !in_pieces) {
+        return std::nullopt;
+    }
+    const PatchMesh as_read(scene, subdivision);
+    const WholeFaces whole = as_read.whole_faces();
+    if (!result && whole.mesh.size() == as_read.size()) {
+        return std::nullopt;
+    }
+    if (!result) {
+        result = uncut(scene, as_read);
+    }
+    for (std::uint32_t& patch : result->parts.patch_of) {
+        patch = whole.patch_of[patch];
+    }
+    for (std::uint32_t i = 0; i < whole.mesh.size(); ++i) {
+        result->parts.group_of.push_back(whole.mesh.group(i));
+    }
+    for (Surface& surface : result->scene.surfaces) {
+        surface.continues = false;
+    }
+    result->findings = findings_of_faces(scene, std::move(result->findings));
     return result;
 }
 

@@ -467,6 +467,70 @@ SplitMesh PatchMesh::split(std::span<const std::uint32_t> patches, Cut how) cons
     return {std::move(mesh), std::move(parents)};
 }
 
+WholeFaces PatchMesh::whole_faces() const {
+    const auto is_alike = [this](std::uint32_t s, std::uint32_t first) {
+        const Surface& one = surfaces_[first];
+        const Surface& other = surfaces_[s];
+        return patches_per_side(s) == 1 && other.two_sided == one.two_sided && other.group == one.group &&
+               other.material == one.material && other.heat == one.heat;
+    };
+    const auto end_of_face = [&](std::uint32_t first) {
+        std::uint32_t end = first + 1;
+        bool alike = !surfaces_[first].continues && patches_per_side(first) == 1;
+        for (; alike && end < surfaces_.size() && surfaces_[end].continues; ++end) {
+            alike = is_alike(end, first);
+        }
+        return alike ? end : first + 1;
+    };
+    PatchMesh mesh;
+    mesh.groups_ = groups_;
+    mesh.bounds_ = bounds_;
+    std::vector<std::uint32_t> first_of; // of the faces' surfaces
+    for (std::uint32_t s = 0; s < surfaces_.size(); s = end_of_face(s)) {
+        first_of.push_back(s);
+        mesh.surfaces_.push_back(surfaces_[s]);
+        mesh.grids_.push_back(grids_[s]);
+        if (!parts_.empty()) {
+            mesh.parts_.push_back(parts_[s]);
+        }
+    }
+    mesh.measure();
+    first_of.push_back(static_cast<std::uint32_t>(surfaces_.size()));
+    std::vector<std::uint32_t> patch_of;
+    patch_of.reserve(size());
+    for (std::uint32_t face = 0; face + 1 < first_of.size(); ++face) {
+        for (std::uint32_t s = first_of[face]; s < first_of[face + 1]; ++s) {
+            for (std::uint32_t i = first_patch(s); i < first_patch(s + 1); ++i) {
+                patch_of.push_back(mesh.first_patch(face) + i - first_patch(s));
+            }
+        }
+        if (first_of[face + 1] - first_of[face] > 1) {
+            mesh.measure_face(face, *this, first_of[face], first_of[face + 1]);
+        }
+    }
+    return {std::move(mesh), std::move(patch_of)};
+}
+
+void PatchMesh::measure_face(std::uint32_t face, const PatchMesh& pieces, std::uint32_t first,
+                             std::uint32_t end) {
+    double area = 0.0;
+    Vec3 centre(0.0);
+    Vec3 normal(0.0);
+    for (std::uint32_t s = first; s < end; ++s) {
+        const std::uint32_t piece = pieces.first_patch(s);
+        area += pieces.areas()[piece];
+        centre += pieces.areas()[piece] * pieces.centres()[piece];
+        normal += pieces.areas()[piece] * pieces.surface_normal(s);
+    }
+    for (std::uint32_t i = first_patch(face); i < first_patch(face + 1); ++i) {
+        areas_[i] = area;
+        centres_[i] = centre / area;
+    }
+    if (glm::length(normal) > 0.0) { // else that of the first piece
+        surface_normals_[face] = glm::normalize(normal);
+    }
+}
+
 double PatchMesh::rounding() const {
     double magnitude = 0.0;
     for (int axis = 0; axis < 3; ++axis) {

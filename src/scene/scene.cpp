@@ -59,6 +59,16 @@ double emissivity_at(std::span<const std::array<double, 2>> table, double kelvin
     return from + ((*above)[1] - from) * (kelvin - low) / ((*above)[0] - low);
 }
 
+std::vector<std::uint32_t> face_numbers(std::span<const Surface> surfaces) {
+    std::vector<std::uint32_t> numbers;
+    numbers.reserve(surfaces.size());
+    for (const Surface& surface : surfaces) {
+        const std::uint32_t next = numbers.empty() ? 0 : numbers.back() + 1;
+        numbers.push_back(surface.continues && next > 0 ? next - 1 : next);
+    }
+    return numbers;
+}
+
 std::uint32_t Scene::group_index(const std::string& group_name) {
     const auto found = std::find(groups.begin(), groups.end(), group_name);
     if (found != groups.end()) {

@@ -9,6 +9,7 @@
 #include "hemi/io/image_file.hpp"
 #include "hemi/io/scene_writer.hpp"
 #include "viewer/command_line.hpp"
+#include "viewer/dots.hpp"
 #include "viewer/keys.hpp"
 #include "viewer/overlays.hpp"
 #include "viewer/report.hpp"
@@ -50,6 +51,7 @@ Application::Application(ViewerInput input, const ViewerSettings& settings)
     choices_.look.tone_mapping = input.picture.tone_mapping;
     choices_.look.outlines = input.picture.outlines;
     choices_.look.backs = input.picture.backs;
+    choices_.look.dots_column = input.dots_column;
     choices_.samples = input.picture.samples;
     exchange(std::move(input));
 }
@@ -245,11 +247,17 @@ std::string Application::unsaved() const {
 
 void Application::look_under_cursor() {
     under_cursor_.reset();
-    if (!choices_.panel || navigator_.dragging() || !navigator_.on_picture() || gui_.has_mouse()) {
+    dot_under_cursor_.reset();
+    if (!(choices_.panel || view_.dots()) || navigator_.dragging() || !navigator_.on_picture() ||
+        gui_.has_mouse()) {
         return;
     }
     if (const auto point = navigator_.surface_under_cursor(choices_.look.backs)) {
         under_cursor_ = UnderCursor{patch_at(*document_->input().mesh, *point), point->position};
+    }
+    if (view_.dots()) {
+        dot_under_cursor_ = dot_at(*view_.dots(), navigator_.ray_under_cursor(),
+                                   under_cursor_ ? std::optional(under_cursor_->position) : std::nullopt);
     }
 }
 
@@ -507,6 +515,7 @@ void Application::describe_panels() {
         if (view_.field()) {
             legend(*view_.field(), view);
         }
+        dots_overlay(view_, document_->input(), choices_.look, dot_under_cursor_, navigator_);
         if (inset_ && choices_.hemicube && choices_.picked && view[0] < size[0]) {
             hemicube_window(inset_->picture(), view, choices_);
         }
@@ -638,9 +647,9 @@ void Application::numbered_screenshot(bool of_window) {
 
 void Application::report(const std::filesystem::path& path) const {
     const bool hemicube = inset_ && choices_.picked && choices_.hemicube;
-    write_report(path,
-                 {*document_, choices_, view_.field(), picked_, navigator_.camera(), message_,
-                  hemicube ? inset_->seen() : std::vector<std::uint32_t>(), under_cursor_, asks_to_close_});
+    write_report(path, {*document_, choices_, view_.field(), picked_, navigator_.camera(), message_,
+                        hemicube ? inset_->seen() : std::vector<std::uint32_t>(), under_cursor_,
+                        dot_under_cursor_, asks_to_close_});
 }
 
 void Application::save_camera() {
@@ -677,6 +686,7 @@ std::string Application::command_line() const {
     picture.samples = choices_.samples;
     command += look.shown.view == View::quantity ? quantity_options(look, view_.field()->shown)
                                                  : document_->input().show_option;
+    command += dots_options(document_->input(), look, command);
     return command + " -o " + quoted(document_->input().file.stem().string() + ".png") +
            picture_options(picture, navigator_.camera(), look.shown.view == View::picture);
 }

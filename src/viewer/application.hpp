@@ -123,6 +123,7 @@ private:
     std::string message_;
     std::string title_;
     std::optional<UnderCursor> under_cursor_;
+    std::optional<std::size_t> dot_under_cursor_;
     std::optional<MaterialHistory> history_; ///< always there once a scene is
     std::filesystem::path saved_result_;     ///< of the light as it is; empty: it was not saved
 

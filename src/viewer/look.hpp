@@ -59,6 +59,8 @@ struct Look {
     double stops = 0.0; ///< exposure over the one at the start, powers of two
     bool outlines = false;
     bool backs = false;
+    bool dots = true;                       ///< points are shown, where there are any
+    std::optional<std::size_t> dots_column; ///< of the points; none: they are white
 
     bool operator==(const Look&) const = default;
 };

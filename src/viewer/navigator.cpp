@@ -39,9 +39,13 @@ Navigator::Point Navigator::on_screen(Point pixel) const {
     return {(pixel.x - 0.5 * view_[0]) / height, 0.5 - pixel.y / height};
 }
 
-std::optional<VisiblePoint> Navigator::surface_under_cursor(bool backs) const {
+ViewRay Navigator::ray_under_cursor() const {
     const Point place = on_screen(cursor_);
-    const ViewRay ray = orbit_.ray(place.x, place.y);
+    return orbit_.ray(place.x, place.y);
+}
+
+std::optional<VisiblePoint> Navigator::surface_under_cursor(bool backs) const {
+    const ViewRay ray = ray_under_cursor();
     return visible_point(*mesh_, ray.origin, ray.direction, backs);
 }
 
@@ -49,8 +53,7 @@ Vec3 Navigator::point_under_cursor() const {
     if (const auto point = surface_under_cursor()) {
         return point->position;
     }
-    const Point place = on_screen(cursor_);
-    const ViewRay ray = orbit_.ray(place.x, place.y);
+    const ViewRay ray = ray_under_cursor();
     const Vec3 forward = glm::normalize(camera().target - camera().eye);
     return ray.origin + glm::dot(camera().target - ray.origin, forward) * ray.direction;
 }

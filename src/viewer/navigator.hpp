@@ -26,6 +26,7 @@ public:
 
     /// Pixels of the window that show the scene, from its upper left.
     void set_view(std::array<std::uint32_t, 2> size) { view_ = size; }
+    [[nodiscard]] std::array<std::uint32_t, 2> view() const { return view_; }
     [[nodiscard]] double aspect() const;
 
     /// @return whether the camera moved
@@ -43,6 +44,10 @@ public:
     /// What the picture shows under the cursor.
     /// @param backs  whether it shows backs
     [[nodiscard]] std::optional<VisiblePoint> surface_under_cursor(bool backs = false) const;
+    /// From the eye through the cursor.
+    [[nodiscard]] ViewRay ray_under_cursor() const;
+    /// Pixels from the upper left.
+    [[nodiscard]] std::array<double, 2> cursor() const { return {cursor_.x, cursor_.y}; }
     /// Whether the cursor is on the picture.
     [[nodiscard]] bool on_picture() const {
         return cursor_.x >= 0.0 && cursor_.x < view_[0] && cursor_.y >= 0.0 && cursor_.y < view_[1];

@@ -14,17 +14,18 @@
 
 namespace hemi::viewer {
 
-void legend(const Field& field, std::array<std::uint32_t, 2> view) {
+void legend(const Field& field, std::array<std::uint32_t, 2> view, int below) {
     constexpr float margin = 10.0F;
     constexpr float pad = 9.0F;
     const float width = std::min(380.0F, static_cast<float>(view[0]) - 2.0F * margin);
     const float line_height = ImGui::GetTextLineHeight();
     const float height = 2.0F * line_height + 12.0F + 2.0F * pad + 8.0F;
-    if (width < 150.0F || static_cast<float>(view[1]) < 3.0F * height) {
+    const auto above = static_cast<float>(below) * (height + margin);
+    if (width < 150.0F || static_cast<float>(view[1]) < 3.0F * height + above) {
         return;
     }
     ImDrawList* list = ImGui::GetBackgroundDrawList();
-    const ImVec2 origin{margin, static_cast<float>(view[1]) - margin - height};
+    const ImVec2 origin{margin, static_cast<float>(view[1]) - margin - height - above};
     list->AddRectFilled(origin, {origin.x + width, origin.y + height}, IM_COL32(22, 24, 26, 225), 3.0F);
     const ImU32 ink = IM_COL32(235, 235, 235, 255);
     const std::string title = legend_title(field.shown, field.scale, field.grey);

@@ -11,7 +11,8 @@
 namespace hemi::viewer {
 
 /// The colours of a field, in the lower left of the view.
-void legend(const Field& field, std::array<std::uint32_t, 2> view);
+/// @param below  legends that it stands above
+void legend(const Field& field, std::array<std::uint32_t, 2> view, int below = 0);
 /// The outline of a patch, in front of everything.
 /// @param picked  else pointed at: another colour
 void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,

@@ -2,6 +2,7 @@
 
 #include "display/orbit_camera.hpp"
 #include "hemi/scene/light_unit.hpp"
+#include "viewer/dots.hpp"
 #include "viewer/widgets.hpp"
 
 #include <fmt/format.h>
@@ -595,6 +596,7 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     }
     ImGui::BeginChild("sections", {0.0F, -foot});
     show_section(content, choices);
+    dots_section(content.document.input(), choices);
     heat_section(content, choices);
     patch_section(content, choices);
     solution_section(content, choices);

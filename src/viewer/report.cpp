@@ -22,6 +22,26 @@ Json point(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
+Json dots_json(const Report& report) {
+    const Look& look = report.choices.look;
+    const std::shared_ptr<const PointTable>& points = report.document.input().points;
+    if (!points || !look.dots) {
+        return nullptr;
+    }
+    Json json{{"column", nullptr}, {"under_cursor", nullptr}, {"value", nullptr}};
+    if (report.dot_under_cursor) {
+        json["under_cursor"] = *report.dot_under_cursor;
+    }
+    if (look.dots_column) {
+        const PointTable::Column& column = points->columns[*look.dots_column];
+        json["column"] = column.name;
+        if (report.dot_under_cursor && !std::isnan(column.values[*report.dot_under_cursor])) {
+            json["value"] = column.values[*report.dot_under_cursor];
+        }
+    }
+    return json;
+}
+
 } // namespace
 
 void write_report(const std::filesystem::path& path, const Report& report) {
@@ -49,6 +69,7 @@ void write_report(const std::filesystem::path& path, const Report& report) {
         json["under_cursor"] = {{"patch", report.under_cursor->patch},
                                 {"position", point(report.under_cursor->position)}};
     }
+    json["dots"] = dots_json(report);
     json["asks_to_close"] = report.asks_to_close;
     if (report.picked) {
         for (const Partner& partner : report.picked->partners) {

@@ -27,6 +27,7 @@ struct Report {
     const std::string& message;
     std::vector<std::uint32_t> seen; ///< patches in the hemicube that is shown
     const std::optional<UnderCursor>& under_cursor;
+    std::optional<std::size_t> dot_under_cursor;
     bool asks_to_close;
 };
 
@@ -34,7 +35,9 @@ struct Report {
 /// [patch …], "hemicube": [patch …], "values": one a patch, null where there is none, or null, "scale":
 /// {"low", "high", "logarithmic"} or null, "radiosity": [[per channel] …], "residuals": [after every sweep],
 /// "light": how it was solved, "camera": {"eye", "target", "up", "fov", "orthographic"}, "message": what went
-/// wrong last, "under_cursor": {"patch", "position"} or null, "asks_to_close": whether it does}.
+/// wrong last, "under_cursor": {"patch", "position"} or null, "dots": {"column", "under_cursor": point,
+/// "value" of it}, null where there is none, or null where no points are shown, "asks_to_close": whether it
+/// does}.
 /// @throws IoError
 void write_report(const std::filesystem::path& path, const Report& report);
 

@@ -3,6 +3,7 @@
 #include "display/false_colour_scale.hpp"
 #include "display/legend.hpp"
 #include "display/painted.hpp"
+#include "viewer/dots.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +35,9 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
     if (look.shown.view == View::picture && !evenly_lit_) {
         light_ = with_unknown_grey(std::move(light_), *input.mesh, document.light(), exposure);
     }
-    renderer_.upload(colours_.empty() ? light_ : painted(light_, colours_));
+    PictureMesh drawn = colours_.empty() ? light_ : painted(light_, colours_);
+    dots_ = dots_of(input, look);
+    renderer_.upload(dots_ ? with_dots(std::move(drawn), *dots_, settings_) : drawn);
 }
 
 std::vector<std::array<float, 3>> SceneView::colours() const {
@@ -63,12 +66,16 @@ Picture SceneView::picture(const Camera& camera, std::array<std::uint32_t, 2> si
                     legend_title(field_->shown, field_->scale, field_->grey),
                     values_beyond(field_->shown, field_->scale));
     }
+    if (dots_) {
+        draw_dots_legend(picture, *dots_, field_ ? 1 : 0);
+    }
     return picture;
 }
 
 std::optional<std::uint32_t> SceneView::item(const Camera& camera, std::array<std::uint32_t, 2> size,
                                              std::uint32_t x, std::uint32_t y) {
-    return renderer_.item(camera, settings(size, 1), x, y);
+    const std::optional<std::uint32_t> item = renderer_.item(camera, settings(size, 1), x, y);
+    return item && *item < light_.patches.size() / 3 ? item : std::nullopt; // not of a dot
 }
 
 } // namespace hemi::viewer

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "display/picture_renderer.hpp"
+#include "hemi/display/dots.hpp"
 #include "viewer/document.hpp"
 #include "viewer/look.hpp"
 #include "viewer/scene_target.hpp"
@@ -21,6 +22,8 @@ public:
 
     /// The field that is shown in false colours; none: the picture, outlines, items.
     [[nodiscard]] const std::optional<Field>& field() const { return field_; }
+    /// Points that are shown.
+    [[nodiscard]] const std::optional<Dots>& dots() const { return dots_; }
     /// Colours of the patches as they are shown, display linear.
     [[nodiscard]] std::vector<std::array<float, 3>> colours() const;
     [[nodiscard]] double exposure() const { return settings_.exposure; }
@@ -38,6 +41,7 @@ private:
     PictureRenderer renderer_;
     PictureSettings settings_; ///< but for size and samples
     std::optional<Field> field_;
+    std::optional<Dots> dots_;
     std::vector<std::array<float, 3>> colours_; ///< what was painted
     PictureMesh light_;                         ///< where nothing was painted
     bool evenly_lit_ = false;                   ///< that is even_light()

@@ -283,6 +283,13 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         }
         return {number, ChannelCommand{std::string(name)}};
     }
+    if (command == "dots") {
+        const std::string_view name = line.rest();
+        if (name.empty()) {
+            line.fail("a column is missing");
+        }
+        return {number, DotsCommand{std::string(name)}};
+    }
     if (command == "command") {
         return {number, CommandLineCommand{parse_file(line, command, ".txt")}};
     }
@@ -338,7 +345,7 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = CancelCommand{};
     } else if (command != "quit") {
         line.fail(fmt::format(
-            "command \"{}\"; must be drag, click, move, scroll, key, show, channel, map, range, set, "
+            "command \"{}\"; must be drag, click, move, scroll, key, show, channel, map, range, dots, set, "
             "fov, resize, minimise, restore, screenshot, windowshot, report, command, save-result, "
             "save-camera, drop, reload, "
             "changed, live, preview, rows, patches, wait, cancel or quit",

@@ -51,6 +51,10 @@ struct MapCommand {
 struct RangeCommand {
     std::optional<std::array<double, 2>> range;
 };
+/// The column of the points that dots show; "none" hides them.
+struct DotsCommand {
+    std::string column;
+};
 /// A material's values, one or one a channel, or the temperature of a group, K.
 struct SetCommand {
     enum class Property { reflectance, exitance, temperature };
@@ -118,10 +122,11 @@ struct QuitCommand {};
 struct ScriptCommand {
     std::size_t line;
     std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand,
-                 ChannelCommand, MapCommand, RangeCommand, SetCommand, ResizeCommand, ScreenshotCommand,
-                 WindowshotCommand, ReportCommand, LiveCommand, WaitCommand, PreviewCommand, RowsCommand,
-                 PatchesCommand, CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
-                 SaveCameraCommand, CommandLineCommand, FovCommand, MinimiseCommand, QuitCommand>
+                 ChannelCommand, MapCommand, RangeCommand, DotsCommand, SetCommand, ResizeCommand,
+                 ScreenshotCommand, WindowshotCommand, ReportCommand, LiveCommand, WaitCommand,
+                 PreviewCommand, RowsCommand, PatchesCommand, CancelCommand, DropCommand, ReloadCommand,
+                 ChangedCommand, SaveResultCommand, SaveCameraCommand, CommandLineCommand, FovCommand,
+                 MinimiseCommand, QuitCommand>
         action;
 };
 
@@ -135,6 +140,7 @@ struct ScriptCommand {
 /// key [ctrl+][shift+]NAME  a letter, a digit, Escape, Tab, Home, F1 or F5
 /// show QUANTITY          picture, outlines, items, radiosity, reflectance, exitance, row-error, error, row
 ///                        or column
+/// dots COLUMN            of the points that dots show, or none
 /// set reflectance|exitance VALUE[,VALUE ...] MATERIAL
 ///                        one value, or one a channel; waits until the light has followed
 /// set temperature KELVIN GROUP

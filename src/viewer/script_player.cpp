@@ -2,6 +2,7 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/io/output_file.hpp"
+#include "viewer/dots.hpp"
 #include "viewer/material_change.hpp"
 
 #include <fmt/format.h>
@@ -64,6 +65,10 @@ public:
     }
     void perform(const RangeCommand& command) {
         application_.choices().look.range = command.range;
+        application_.settle();
+    }
+    void perform(const DotsCommand& command) {
+        choose_dots(application_.document().input(), command.column, application_.choices().look);
         application_.settle();
     }
     void perform(const SetCommand& set) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/display/dots.hpp"
 #include "hemi/display/picture.hpp"
 #include "hemi/matrix/form_factors.hpp"
 #include "hemi/pipeline/heat.hpp"
@@ -60,6 +61,9 @@ struct ViewerInput {
     std::string command;
     std::string show_option;                    ///< " --show 1,2,3", where channels of the light were chosen
     std::array<std::uint32_t, 3> show{0, 0, 0}; ///< channels shown as red, green, blue
+    std::shared_ptr<const PointTable> points;   ///< shown as dots; null: none
+    std::filesystem::path points_file;          ///< that they are from
+    std::optional<std::size_t> dots_column;     ///< of the points, to begin with
     Camera camera;                              ///< where R goes back to
     PictureSettings picture;                    ///< width and height are the window's first size
     bool automatic_exposure = true;             ///< picture.exposure is chosen by automatic_exposure()

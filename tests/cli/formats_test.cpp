@@ -245,6 +245,12 @@ TEST_CASE("Convert: to every format that can hold the content, told what it does
     const std::string a = directory.read("a.idf");
     const std::string b = directory.read("b.idf");
     CHECK(a.substr(a.find("Zone Name")) == b.substr(b.find("Zone Name")));
+    REQUIRE(run_hemi({"convert", hff, directory.path("a.idf"), "--zone", "ZONE ONE"}).status == 0);
+    CHECK(directory.read("a.idf").find("BySurfaceName,\n  ZONE ONE,  !- Zone Name\n") != std::string::npos);
+    const Outcome misplaced = run_hemi({"convert", hff, directory.path("z.csv"), "--zone", "ZONE ONE"});
+    CHECK(misplaced.status == 2);
+    CHECK(misplaced.err_has("--zone is for EnergyPlus' .idf"));
+    CHECK(run_hemi({"convert", hff, directory.path("a.idf"), "--zone", "a;b"}).err_has("zone \"a;b\""));
     const std::string npz = directory.path("a.npz");
     for (const char* name : {"b.mtx", "b.csv", "b.npy", "b.h5", "b.dat", "b.bin"}) {
         const Outcome run = run_hemi({"convert", npz, directory.path(name)});

@@ -59,6 +59,7 @@ TEST_CASE("factors: from a point, the factors are Lambert's", "[cli][accuracy]")
     }
     const double x = 0.5 / std::sqrt(1.25);
     row.check_below("limit", "", std::abs(ceiling - 4.0 / std::numbers::pi * x * std::atan(x)), 1e-12);
+    CHECK(run.err_has("--from-point is another name of `hemi points`"));
     CHECK(run_hemi({"factors", scene, "--from-point", "0,0,0"}).err_has("it must be 6"));
     CHECK(run_hemi({"factors", scene, "--from-point", "0,0,0,0,0,0"}).status == 2);
     CHECK(run_hemi({"factors", scene, "--from-point", "0,0,0,0,0,1", "--preset", "fast"}).status == 2);

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -116,6 +117,11 @@ void seed_hres(const fs::path& folder) {
     result.surfaces_as_read = result.scene.surfaces;
     result.parts.patch_of = {1, 1};
     io::write_hres(folder / "parts.hres", result);
+    solution.exitance = {0.5, 0.25};
+    solution.temperature = {300.0, std::numeric_limits<double>::quiet_NaN()};
+    solution.net_flux = {-1.5, 2.0};
+    result.scene.thermal = Thermal{};
+    io::write_hres(folder / "heat.hres", result);
 }
 
 void seed_rows(const fs::path& folder) {

@@ -149,6 +149,55 @@ TEST_CASE("HRES: the patches are those that were solved, however they were asked
     }
 }
 
+TEST_CASE("HRES: heat has temperatures, net fluxes and its own exitance, unknown where patches are buried",
+          "[io]") {
+    const Folder folder;
+    io::ResultFile a = sample();
+    io::write_hres(folder / "light.hres", a);
+    CHECK(io::read_hres(folder / "light.hres").solution.temperature.empty());
+    Solution& heat = a.solution;
+    heat.temperature.assign(heat.row_sum.size(), 300.0);
+    heat.net_flux.assign(heat.row_sum.size(), -1.0 / 3.0);
+    heat.exitance.assign(heat.radiosity.size(), 1.0 / 7.0);
+    heat.temperature[1] = heat.net_flux[1] = heat.radiosity[2] = heat.irradiance[3] = NAN;
+    a.scene.thermal = Thermal{{4.0}, {}, 280.0};
+    a.scene.materials[0].reflectance[1] = 1.0; // adiabatic
+    io::write_hres(folder / "a.hres", a);
+    io::ResultFile b = io::read_hres(folder / "a.hres");
+    REQUIRE(b.solution.temperature.size() == heat.temperature.size());
+    CHECK(b.solution.temperature[0] == 300.0);
+    CHECK(std::isnan(b.solution.temperature[1]));
+    CHECK(b.solution.net_flux[0] == heat.net_flux[0]);
+    CHECK(std::isnan(b.solution.net_flux[1]));
+    CHECK(b.solution.radiosity[2] == 0.0);
+    CHECK(b.solution.irradiance[3] == 0.0);
+    CHECK(b.scene.thermal == Thermal{{4.0}, {}, std::nullopt});
+    const std::vector<double> exitance = heat.exitance;
+    io::complete_solution(b, PatchMesh(b.scene, b.subdivision));
+    CHECK(b.solution.exitance == exitance);
+
+    const auto refusal = [&](double temperature, double flux) {
+        io::ResultFile bad = a;
+        bad.solution.temperature[0] = temperature;
+        bad.solution.net_flux[0] = flux;
+        return message_of<InvalidArgument>([&] { io::write_hres(folder / "bad.hres", bad); });
+    };
+    require_parts(refusal(-1.0, 0.0), {"temperature: a value of -1"});
+    require_parts(refusal(INFINITY, 0.0), {"temperature: a value of inf"});
+    require_parts(refusal(1.0, -INFINITY), {"net flux: a value of -inf"});
+    const std::string bytes = io::read_file(folder / "a.hres");
+    const std::vector<std::pair<std::string, double>> lies{{"TEMP", -1.0}, {"FLUX", INFINITY}};
+    for (const auto& [tag, value] : lies) {
+        int chunk = 0;
+        while (bytes.substr(chunk_start(bytes, chunk), 4) != tag) {
+            ++chunk;
+        }
+        (void)message_of<InputError>([&] {
+            (void)io::read_hres(folder.write("lie.hres", with_payload(bytes, chunk, 0, raw(value))));
+        });
+    }
+}
+
 TEST_CASE("HRES: a scene without a camera stays without one", "[io]") {
     const Folder folder;
     io::ResultFile a = sample();
@@ -201,7 +250,7 @@ TEST_CASE("HRES: lies with a right checksum are noticed, and cost no memory", "[
         {1, counts, raw(5u), "chunk SURF: a surface of 5 vertices"},
         {1, counts + 4, raw(2u), "material"},
         {1, counts + 8, raw(2u), "group"},
-        {1, counts + 12, raw(2u), "3 sides"},
+        {1, counts + 12, raw(4u), "sides 4"},
         {1, counts + 16, raw(4u), "chunk SURF: the surfaces have not the"},
         {1, counts + 16, raw(0xFFFFFFFFFFFFFFFFu), "chunk SURF: the surfaces have not the"},
         {1, counts + 16, raw(0u), "chunk SURF: the surfaces have not the"},

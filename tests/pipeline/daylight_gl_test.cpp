@@ -242,6 +242,60 @@ TEST_CASE("daylight: a disc's shadow has the penumbra of a circle cut by the edg
     CHECK(of_elevation(-6.0) == 0.0);
 }
 
+TEST_CASE("daylight: the sun's own disc, where nothing hides it, gives what parallel light does",
+          "[pipeline][sun]") {
+    Scene scene = empty_scene();
+    add_polygon(scene, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {4, 4});
+    add_polygon(scene, "tilted", {{1, -1, 0}, {2, -1, 1}, {2, 1, 1}, {1, 1, 0}}, {4, 4});
+    const PatchMesh mesh(scene);
+    for (const double elevation : {90.0, 60.0, 20.0}) {
+        scene.sun = Sun{sky_direction(270.0, elevation), {1000.0}, 0.0};
+        const std::vector<double> parallel = direct_irradiance(scene, mesh, FormFactorMatrix(mesh.size()));
+        scene.sun->diameter = 0.53;
+        const std::vector<double> disc = direct_irradiance(scene, mesh, FormFactorMatrix(mesh.size()));
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            CHECK(
+                parallel[i] ==
+                Approx(1000.0 * std::max(glm::dot(mesh.normal(i), scene.sun->direction), 0.0)).margin(1e-9));
+            CHECK(disc[i] == Approx(parallel[i]).epsilon(1e-4)); // by rays to the disc
+        }
+    }
+}
+
+TEST_CASE("daylight: patches in the penumbra of a wide disc have the mean of a finer grid",
+          "[pipeline][sun]") {
+    constexpr std::uint32_t coarse = 6;
+    constexpr std::uint32_t times = 8;
+    const auto yard = [](std::uint32_t cells) {
+        Scene scene = empty_scene();
+        add_polygon(scene, "floor", {{0, 0, 0}, {6, 0, 0}, {6, 6, 0}, {0, 6, 0}}, {cells, cells});
+        add_polygon(scene, "roof", {{2, 2, 1.5}, {2, 4.2, 1.5}, {4.7, 4.2, 1.5}, {4.7, 2, 1.5}});
+        scene.sun = Sun{sky_direction(200.0, 50.0), {1000.0}, 30.0};
+        return scene;
+    };
+    const auto of_floor = [&](std::uint32_t cells) {
+        const Scene scene = yard(cells);
+        const PatchMesh mesh(scene);
+        return direct_irradiance(scene, mesh, FormFactorMatrix(mesh.size()));
+    };
+    const std::vector<double> is = of_floor(coarse);
+    const std::vector<double> fine = of_floor(coarse * times);
+    int partly = 0;
+    for (std::uint32_t row = 0; row < coarse; ++row) {
+        for (std::uint32_t column = 0; column < coarse; ++column) {
+            double mean = 0.0;
+            for (std::uint32_t k = 0; k < times * times; ++k) {
+                mean += fine[(row * times + k / times) * coarse * times + column * times + k % times];
+            }
+            mean /= times * times;
+            INFO("row " << row << ", column " << column);
+            CHECK(is[row * coarse + column] == Approx(mean).margin(10.0));
+            partly += mean > 50.0 && mean < 700.0 ? 1 : 0;
+        }
+    }
+    CHECK(partly > 6);
+}
+
 TEST_CASE("daylight: what comes through an opening falls on what is below it", "[pipeline][sky]") {
     Scene scene = court(6);
     const Rows rows = rows_of(scene);

@@ -263,6 +263,34 @@ TEST_CASE("patch size: shadows of the sun and the sky behind edges count", "[pip
     CHECK(too_small <= groups / 10);
 }
 
+TEST_CASE("patch size: the sun's disc, where nothing hides it, adds no error to that of parallel light",
+          "[pipeline][sun]") {
+    Scene scene;
+    scene.channels = {"grey"};
+    scene.materials.push_back({"white", {0.6}, {0.0}});
+    const auto plate = [&scene](const char* group, std::array<Vec3, 4> corners) {
+        Surface surface;
+        surface.vertices = corners;
+        surface.group = scene.group_index(group);
+        surface.patches = Grid{4, 4};
+        scene.surfaces.push_back(surface);
+    };
+    plate("floor", {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)});
+    plate("slope", {Vec3(1, 0, 0), Vec3(2, 0, 1), Vec3(2, 1, 1), Vec3(1, 1, 0)});
+    scene.enclosure = Enclosure::open;
+    const auto error_of = [&](double diameter) {
+        scene.sun = Sun{glm::normalize(Vec3(-0.3, 0.1, 1.0)), {1000.0}, diameter};
+        const Solved found = solved(scene, Preset::fast);
+        const auto error = estimate_patch_size_error(scene, found.mesh, found.factors, found.solution,
+                                                     settings_of(Preset::fast));
+        REQUIRE(error);
+        return error->field.rms;
+    };
+    const double parallel = error_of(0.0);
+    CHECK(parallel > 1e-4); // what goes from plate to plate
+    CHECK(error_of(0.53) == Approx(parallel).epsilon(1e-3));
+}
+
 TEST_CASE("patch size: triangles err as the quadrilaterals that they halve, or less", "[pipeline][gl]") {
     const Scene scene = lit_room(6, 0.5, 0.3);
     const auto error_of = [](const Scene& of) {

@@ -197,6 +197,13 @@ def test_what_is_saved_is_loaded(small_box, small_factors, tmp_path, extension):
         assert (hemi.load(path, repair="none").matrix != small_factors.matrix).nnz > 0
 
 
+def test_a_zone_of_energyplus_has_the_name_that_is_given(small_factors, tmp_path):
+    small_factors.save(tmp_path / "f.idf", zone="ZONE ONE")
+    assert "BySurfaceName,\n  ZONE ONE,  !- Zone Name\n" in (tmp_path / "f.idf").read_text()
+    with pytest.raises(hemi.InvalidArgument, match="zone: is for EnergyPlus"):
+        small_factors.save(tmp_path / "f.npz", zone="ZONE ONE")
+
+
 @pytest.mark.parametrize("extension", ["npy", "h5", "idf", "vtp"])
 def test_files_for_others_are_the_programs(scenes, program, tmp_path, extension):
     arguments = ("factors", scenes / "furnace.json", "--preset", "plain", "--patch-size", 0.5, "--device", "osmesa", "-q")

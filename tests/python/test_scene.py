@@ -185,3 +185,27 @@ def test_a_zone_of_an_energyplus_model(tmp_path):
     assert hemi.read_scene(path, zone="cellar").groups == ["Ground"]
     with pytest.raises(hemi.InvalidArgument, match="2 zones; one must be chosen"):
         hemi.read_scene(path)
+
+
+def test_a_face_out_of_plane_is_one_patch_of_two_parts(tmp_path):
+    lines = ["v 0 0 0", "v 1 0 0", "v 1 1 -0.3", "v 0 1 0", "v 0 0 1", "v 1 0 1", "v 1 1 1", "v 0 1 1",
+             "f 8 7 6 5", "f 1 2 3 4", "f 2 1 5 6", "f 3 2 6 7", "f 4 3 7 8", "f 1 4 8 5"]
+    (tmp_path / "warped.obj").write_text("\n".join(lines) + "\n")
+    with pytest.warns(hemi.HemiWarning, match="out of plane"):
+        scene = hemi.read_scene(tmp_path / "warped.obj")
+    assert len(scene) == 7
+    assert list(scene.patch_of) == list(scene.face_of) == [0, 1, 1, 2, 3, 4, 5]
+    parts = hemi.form_factors(scene, "default", device="cpu", jobs=1)
+    faces = parts.by_patch()
+    assert faces.matrix.shape == (6, 6)
+    exchange = numpy.zeros((6, 6))
+    dense = parts.matrix.toarray() * scene.areas[:, None]
+    for i, k in enumerate(scene.patch_of):
+        for j, m in enumerate(scene.patch_of):
+            exchange[k, m] += dense[i, j]
+    areas = numpy.bincount(scene.patch_of, scene.areas)
+    assert numpy.allclose(faces.matrix.toarray() * areas[:, None], exchange, atol=1e-12)
+    assert numpy.allclose(exchange, exchange.T, atol=1e-6)
+    with pytest.warns(hemi.HemiWarning, match="out of plane"):
+        finer = hemi.read_scene(tmp_path / "warped.obj", patches_per_face=4)
+    assert finer.patch_of is None and list(finer.face_of[:4:3]) == [0, 0] and finer.face_of[-1] == 5

@@ -57,6 +57,8 @@ def test_sun_and_sky_are_known_apart(scenes, program, tmp_path):
     stored = hemi.load(tmp_path / "program.hres")
     assert numpy.array_equal(stored.direct, solution.direct)
     assert numpy.array_equal(stored.radiosity, solution.radiosity)
+    numpy.testing.assert_equal(stored.errors, solution.errors) # shadows count as the program counts them
+    assert solution.errors["parts"]["patch_size"] > 0
     assert hemi.form_factors(hemi.read_scene(scenes / "cube.json"), device="osmesa").solve().direct is None
 
 

@@ -159,6 +159,27 @@ TEST_CASE("Viewer: sun and sky give the light that they give elsewhere", "[viewe
     }
 }
 
+TEST_CASE("Viewer: patches that are cut in the sun are those of hemi solve", "[viewer][gl][sun]") {
+    const Workplace place;
+    std::string scene = place.read("room.json");
+    replace(scene, R"({"hemi": 1,)", R"({"hemi": 1,
+  "sun": {"azimuth": 190, "elevation": 40, "normal_irradiance": 70, "diameter": 0.53},)");
+    place.write("room.json", scene);
+    const std::string options = "--preset fast --patches-per-face 4 --refine 32";
+    REQUIRE(place.view("save-result window.hres\n", "--size 300x200 " + options) == 0);
+    REQUIRE(place.run(fmt::format("'{}' solve room.json --device osmesa --result solve.hres {}", HEMI_PROGRAM,
+                                  options)) == 0);
+    const io::ResultFile window = io::read_hres(place.path("window.hres"));
+    const io::ResultFile solve = io::read_hres(place.path("solve.hres"));
+    CHECK(window.solution.radiosity.size() >= 3 * 32);
+    CHECK(window.subdivision == solve.subdivision);
+    REQUIRE(window.solution.direct.size() == solve.solution.radiosity.size());
+    CHECK(window.solution.direct == solve.solution.direct);
+    for (std::size_t k = 0; k < solve.solution.radiosity.size(); ++k) {
+        REQUIRE(window.solution.radiosity[k] == Approx(solve.solution.radiosity[k]).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("Viewer: a large scene shows about its light before its form factors are there", "[viewer][gl]") {
     const Workplace place;
     // 5 x 900 patches; the window's own light is that of 5 x 196 or so.

@@ -23,6 +23,8 @@ struct FalseColours {
     bool legend = true;                 ///< whether there is one
 };
 
+struct Dots;
+
 /// Draws values as draw_picture() draws light, in the colours of a map. The legend is in the lower left of
 /// `srgb` where there is room for it, from 200 pixels of width and 160 of height on; `linear` has the colours
 /// alone. < and > at its ends say that there are values beyond. W/m² are told as kW/m² where there are 10,000
@@ -32,10 +34,11 @@ struct FalseColours {
 /// @param camera    as in draw_picture()
 /// @param settings  size, samples, outlines and backs count
 /// @param device    auto, egl, egl:N or osmesa
+/// @param dots      in the picture, with a legend above the other one; may be null
 /// @throws InvalidArgument for another number of values, infinite ones, and a range that does not ascend or,
 ///   where logarithmic, does not begin above 0; as draw_picture()
 [[nodiscard]] Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown,
                                          const Camera& camera, const PictureSettings& settings,
-                                         const std::string& device);
+                                         const std::string& device, const Dots* dots = nullptr);
 
 } // namespace hemi

@@ -59,6 +59,7 @@ struct PictureMesh {
     Vec3 origin{0.0};                   ///< scene units; keeps digits of scenes far from 0
     Bounds bounds;                      ///< scene units, absolute
     std::array<float, 3> environment{}; ///< radiosity behind all surfaces; zero: there is none
+    std::uint32_t without_outline = 0;  ///< so many patches, the last ones, never have outlines
 };
 
 /// A solution as a mesh to draw. The environment is left at zero, for the caller to fill in.

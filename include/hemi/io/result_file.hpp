@@ -20,17 +20,28 @@ namespace hemi::io {
 struct ResultFile {
     Scene scene;             ///< geometry, materials, camera, channels: all but file names
     Subdivision subdivision; ///< how surfaces were cut, for write_hres()
-    Solution solution; ///< in a file all but the exitance, which the scene's materials have: patch_values()
+    /// In a file all but the exitance, which the scene's materials have, see complete_solution(). Of heat
+    /// (Solution::temperature) the exitance, too, and the scene is scene_of_heat().
+    Solution solution;
     /// The surfaces as they were read, each with its own grid, where those of the scene are what is left of
-    /// them (imprint()); else none.
+    /// them, or pieces of faces (imprint()); else none.
     std::vector<Surface> surfaces_as_read = {};
-    PatchParts parts = {}; ///< which of their patches those of the scene are parts of; none without them
+    /// Which patches of their whole faces those of the scene are parts of; none without them.
+    PatchParts parts = {};
 
     /// The scene with the surfaces as they were read.
     [[nodiscard]] Scene scene_as_read() const;
+    /// The patches that results are about: those of whole faces as they were read.
+    [[nodiscard]] PatchMesh patches_as_read() const;
 };
 
-/// Writes `.hres`.
+/// Gives a solution that was read the exitance of the scene's materials, unless it has one of its own.
+/// @param result  gets it
+/// @param mesh    of the result
+void complete_solution(ResultFile& result, const PatchMesh& mesh);
+
+/// Writes `.hres`. Of patches that are buried, heat has no net flux, which is not a number; radiosity and
+/// irradiance that are not are written as 0.
 /// @throws InvalidArgument for arrays of other lengths and values that are not finite; IoError
 void write_hres(const std::filesystem::path& path, const ResultFile& result);
 /// Reads `.hres`.
@@ -62,7 +73,7 @@ void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh,
 /// The same columns of a stored solution: one line a patch of the surfaces as they were read, with means over
 /// what is left of it; then, for every channel name C, exitance_C, irradiance_C, radiosity_C, error_C and
 /// direct_C, reflectance_C and emissivity_C, environment, blocked and row_sum, and, where the error has
-/// parts, error_factors_C and error_patch_size_C; each where it is known.
+/// parts, error_factors_C and error_patch_size_C; of heat temperature and net_flux; each where it is known.
 /// @throws IoError
 void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& result);
 

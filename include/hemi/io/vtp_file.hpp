@@ -46,10 +46,19 @@ void write_patch_table(const std::filesystem::path& path, const PatchMesh& mesh,
 
 /// What a stored solution knows of its patches, by the words of Quantity ("_" for "-"): row balance,
 /// radiosity, irradiance, direct, exitance, reflectance, emissivity, and estimated errors where there are
-/// any; but "row_error" is the estimated error of the row.
+/// any; but "row_error" is the estimated error of the row. Of heat temperature and net_flux, too, not a
+/// number where they are not known.
 /// @param result  what is shown
 /// @param mesh    its patches
 [[nodiscard]] std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh& mesh);
+/// What is known of patches' parts, of the patches: means by area over parts of which it is known, of
+/// "temperature" that of the fourth power; not a number of those of which nothing is left.
+/// @param arrays  of the parts
+/// @param parts   of the patches
+/// @param areas   of the parts
+/// @throws InvalidArgument as means_of_patches()
+[[nodiscard]] std::vector<CellArray> means_of_cells(std::vector<CellArray> arrays, const PatchParts& parts,
+                                                    std::span<const double> areas);
 /// What form factors know of single patches (of parts also which they are of, as "patch_of"): row balance,
 /// and the estimated error of rows where there is one.
 [[nodiscard]] std::vector<CellArray> factor_arrays(const FormFactors& factors);

@@ -100,6 +100,12 @@ struct HeatSolution {
 [[nodiscard]] Solution heat_as_solution(const FormFactors& factors, const HeatProblem& problem,
                                         const HeatSolution& solution, std::uint32_t channels);
 
+/// A scene as a `.hres` of heat_as_solution() holds it: its environment radiates by its temperature, too, and
+/// nothing else is said of heat but the bands.
+/// @param scene    that the problem is of
+/// @param problem  one band for every channel, or one
+[[nodiscard]] Scene scene_of_heat(Scene scene, const HeatProblem& problem);
+
 /// What is known of a group: means over the area that is not buried; not a number where all is, but for the
 /// emissivity, which is none of a group without patches.
 struct GroupHeat {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/display/dots.hpp"
 #include "hemi/display/picture.hpp"
 #include "hemi/solver/solution.hpp"
 
@@ -45,6 +46,7 @@ struct DrawSettings {
     std::optional<Camera> camera;   ///< empty: scene_camera()
     /// Channels shown as red, green, blue; empty: the only one, or all three.
     std::optional<std::array<std::uint32_t, 3>> show;
+    const Dots* dots = nullptr; ///< in the picture, with their legend; may be null
     std::string device =
         "auto"; ///< auto, egl, egl:N or osmesa; cpu, which draws no pictures, stands for auto
 };

@@ -48,6 +48,10 @@ struct Radiation {
 /// Heat radiation, by bands; sun and sky likewise.
 [[nodiscard]] Radiation radiation_of(const HeatProblem& problem, const HeatSolution& solution);
 
+/// That of a stored solution of heat: see heat_as_solution() and scene_of_heat().
+/// @throws InvalidArgument for a solution without net fluxes, or of other channels than the scene's
+[[nodiscard]] Radiation radiation_of(const Scene& scene, const Solution& solution);
+
 /// Directions of a point's six planes, in this order: up, down, and to the right, left, front and back of
 /// somebody who faces an azimuth.
 /// @param facing  degrees from +y towards +x, or, where y is upwards, from -z towards +x

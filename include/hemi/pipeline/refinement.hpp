@@ -75,8 +75,8 @@ struct RefinementRows {
 /// A mesh to begin with.
 struct CoarseMesh {
     PatchMesh mesh;    ///< the patches
-    PatchMesh as_read; ///< those of the scene as read, before faces were cut where they touch
-    PatchParts parts;  ///< of those; none where no face was cut
+    PatchMesh as_read; ///< those of the scene as read, of whole faces, before these were cut where they touch
+    PatchParts parts;  ///< of those; none where no face was cut or read in pieces
 };
 
 /// A coarse mesh to begin with: some hundreds of patches of about one size, whatever sizes the scene wants;
@@ -89,7 +89,7 @@ struct CoarseMesh {
 /// Which sides of faces the patches of a mesh are parts of.
 /// @param mesh   of the surfaces of `begin`, cut further
 /// @param begin  what it was cut from
-/// @param faces  the scene as read, every face one patch a side
+/// @param faces  the scene as read, every whole face one patch a side
 /// @return of every patch of `mesh` the patch of `faces`, and the groups of these
 /// @throws InvalidArgument if a face has several patches
 [[nodiscard]] PatchParts parts_of_faces(const PatchMesh& mesh, const CoarseMesh& begin,

@@ -11,7 +11,7 @@
 namespace hemi {
 
 /// A scene whose faces are what is really there of them: cut where others stand on them or pass through
-/// them, without what is covered.
+/// them, without what is covered. Faces that were read in pieces are whole here.
 struct Imprint {
     /// What was done to a face.
     enum class What {
@@ -23,15 +23,16 @@ struct Imprint {
     };
     /// One face, and what was done to it.
     struct Finding {
-        What what;           ///< was done
-        std::uint32_t face;  ///< index of the surface in the scene as it was
-        std::uint32_t other; ///< for one, which other surface does it; 0xFFFFFFFF: none by itself
+        What what; ///< was done
+        /// Index of the surface in the scene as it was; of a face in pieces, the first one.
+        std::uint32_t face;
+        std::uint32_t other; ///< for one, which other face does it; 0xFFFFFFFF: none by itself
     };
 
     Scene scene;                        ///< every surface has its own subdivision
     std::vector<std::uint32_t> face_of; ///< of its surfaces, those of the scene as it was; ascending
-    /// Which patches of the scene as it was those of this one are parts of: of PatchMesh(scene, subdivision)
-    /// as imprint() got them, and PatchMesh(this->scene).
+    /// Which patches of the scene as it was those of this one are parts of: of PatchMesh(scene,
+    /// subdivision).whole_faces() as imprint() got them, and PatchMesh(this->scene).
     PatchParts parts;
     std::vector<Finding> findings; ///< a face at most once, ascending
     double covered = 0.0;          ///< area that is left out, scene units squared
@@ -51,8 +52,10 @@ struct Imprint {
 /// also where many of them are the same. Memory: about 300 bytes a face.
 /// @param scene        as read
 /// @param subdivision  as for PatchMesh, without parts
-/// @return nothing where there is nothing to cut: the scene is what it should be
+/// @param contacts     else nothing is cut or left out, and pieces of faces alone are found together
+/// @return nothing where there is nothing to cut and no patch in pieces: the scene is what it should be
 /// @throws InvalidArgument for parts, and as PatchMesh; InputError as PatchMesh
-[[nodiscard]] std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivision = {});
+[[nodiscard]] std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivision = {},
+                                             bool contacts = true);
 
 } // namespace hemi

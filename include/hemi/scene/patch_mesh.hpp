@@ -36,6 +36,7 @@ enum class Cut {
 };
 
 struct SplitMesh;
+struct WholeFaces;
 
 /// The scene cut into patches, the unit of all that follows: row i and column i of F are patch i.
 ///
@@ -120,6 +121,9 @@ public:
     /// @throws InvalidArgument if an edge would be cut more than 65,535 ways, or for 2^31 patches or more
     [[nodiscard]] SplitMesh split(std::span<const std::uint32_t> patches, Cut how = Cut::by_shape) const;
 
+    /// The mesh with one patch a side for every face whose pieces (Surface::continues) are one patch each.
+    [[nodiscard]] WholeFaces whole_faces() const;
+
     /// Hash over the corners, subdivision and sidedness of every surface, in order: equal for equal
     /// geometry, whatever the materials, lamps and names. 64-bit FNV-1a.
     [[nodiscard]] std::uint64_t geometry_hash() const;
@@ -128,6 +132,7 @@ private:
     PatchMesh() = default;
     void check_parts() const;
     void measure();
+    void measure_face(std::uint32_t face, const PatchMesh& pieces, std::uint32_t first, std::uint32_t end);
     [[nodiscard]] PatchCorners local_corners(std::uint32_t s, std::uint32_t local) const;
 
     std::vector<Surface> surfaces_;
@@ -147,6 +152,14 @@ struct SplitMesh {
     PatchMesh mesh; ///< the finer one
     std::vector<std::uint32_t>
         parents; ///< of each of its patches the one of the coarser mesh that it lies in
+};
+
+/// Patches that results are about where faces were read in pieces.
+struct WholeFaces {
+    /// Areas and centres of such a face are those of all its pieces, its normal is their mean by area. In
+    /// surfaces() and corners() is its first piece alone: nothing can be computed with this mesh.
+    PatchMesh mesh;
+    std::vector<std::uint32_t> patch_of; ///< of every patch of the mesh in pieces, the one that it is part of
 };
 
 /// Makes PatchMesh(scene, subdivision) a mesh again that was split or cut otherwise than the scene wants.

@@ -67,10 +67,16 @@ struct Surface {
     bool two_sided = false;       ///< Radiates and receives on its back too; otherwise the back only blocks.
     std::optional<Grid> patches;  ///< Subdivision of its own; beats Scene::patch_size.
     std::uint32_t heat = no_heat; ///< Index into Thermal::conditions, or no_heat.
+    /// A further piece of the face that the surface before it is of: one that is not plane, not convex, or of
+    /// many corners.
+    bool continues = false;
 
     /// The vertices that are used.
     [[nodiscard]] std::span<const Vec3> polygon() const { return {vertices.data(), vertex_count}; }
 };
+
+/// Of every surface, the number of the face that it is, or is a piece of: faces as the file has them, from 0.
+[[nodiscard]] std::vector<std::uint32_t> face_numbers(std::span<const Surface> surfaces);
 
 /// Where a picture is taken from. An orthographic camera shows what a perspective one shows at the target's
 /// depth, at that size everywhere, and nothing is too near for it: also what lies behind its eye.

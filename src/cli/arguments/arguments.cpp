@@ -241,7 +241,8 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     }
     auto* point = output.value(
         "--from-point", "X,Y,Z,NX,NY,NZ",
-        "factors from a surface element at a point with a normal to every patch, analytic, largest first",
+        "another name of `hemi points` for one point with a normal, by patch: factors from a surface element "
+        "there to every patch, analytic, largest first",
         [&a](const std::string& text) {
             const std::vector<std::string> numbers = parse_list(text);
             if (numbers.size() != 6) {
@@ -368,12 +369,14 @@ void add_render(CLI::App& app, RenderArguments& a) {
     output.path("-o,--output", "PICTURE", a.picture.output,
                 "picture: .png or .hdr (RESULT's name with .png, here); - for .png on stdout");
     add_picture(app, a.picture, nullptr, true, nullptr);
+    add_dots(app, a.dots);
     add_device(app, a.device, false);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi render room.hres -o room.png --size 1600x900 --exposure 0.8\n"
                "  hemi render room.hres -o flat.png --flat --camera 0,-3,1:0,0,1\n"
-               "  hemi render room.hres -o light.png --show irradiance --range 0,500");
+               "  hemi render room.hres -o light.png --show irradiance --range 0,500\n"
+               "  hemi render room.hres -o desks.png --points desks.csv --column irradiance");
 }
 
 void add_diff(CLI::App& app, DiffArguments& a) {
@@ -404,6 +407,7 @@ void add_view(CLI::App& app, ViewArguments& a) {
     add_solver(app, a.solver);
     a.picture.size = {1280, 720};
     add_picture(app, a.picture, nullptr, false, &a.scene);
+    add_dots(app, a.dots);
     add_gather(app, a.gather);
     auto* factors = Options(app, "Form factors")
                         .path("--factors", "FILE.hff", a.factors, "use these form factors, with no new row");
@@ -474,6 +478,9 @@ void add_convert(CLI::App& app, ConvertArguments& a) {
         "form factors: .mtx .csv .npz .npy .h5 .dat .bin; from .hff also .hff .txt .vf and EnergyPlus' "
         ".idf; - for .csv on stdout; of a solution: .vtp, or .csv with the radiosity of every patch");
     add_repair(app, a.repair);
+    Options(app, "EnergyPlus")
+        .value("--zone", "NAME", "for .idf: the zone that the surfaces close in; default: the name of OUT",
+               [&a](const std::string& text) { a.zone = text; });
     Options paraview(app, "ParaView");
     auto* factors =
         paraview.path("--factors", "FILE.hff", a.factors, "for .vtp: form factors with the rows of --row");

@@ -167,6 +167,7 @@ struct HeatArguments {
     HeatPicture picture;
     std::optional<std::filesystem::path> fluxes; ///< .csv by patch
     std::optional<std::filesystem::path> series; ///< .csv that is read
+    std::optional<std::filesystem::path> result; ///< .hres
 };
 
 struct ExchangeArguments {
@@ -205,9 +206,16 @@ struct PointsArguments {
     std::optional<std::filesystem::path> factors;
 };
 
+/// Points that are drawn as dots.
+struct DotOptions {
+    std::optional<std::filesystem::path> points; ///< .csv
+    std::string column;                          ///< that they show; empty: the first, where there is one
+};
+
 struct RenderArguments {
     CommonOptions common;
     std::filesystem::path input;
+    DotOptions dots;
     PictureOptions picture;
     std::string device = "auto";
 };
@@ -230,6 +238,7 @@ struct ViewArguments {
     Gather gather = Gather::automatic;
     RefinementOptions refinement;
     std::optional<std::filesystem::path> factors;
+    DotOptions dots;
     std::string script; ///< file that drives the window; empty: a person does
     viewer::Controls controls = viewer::Controls::standard;
 };
@@ -257,6 +266,7 @@ struct ConvertArguments {
     std::optional<Repair> repair;                 ///< empty: what suits the rows
     std::optional<std::filesystem::path> factors; ///< for .vtp: where the rows are
     std::vector<std::uint32_t> rows;              ///< for .vtp: rows of F as cell data
+    std::string zone;                             ///< for .idf; empty: the file's name
 };
 
 struct InfoArguments {

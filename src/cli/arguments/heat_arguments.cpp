@@ -103,6 +103,8 @@ void add_heat_output(CLI::App& app, HeatArguments& a) {
                              "temperature, fluxes, irradiation and radiosity of every patch, for ParaView: "
                              ".vtp; or a picture: .png");
     output.path("--fluxes", "FILE.csv", a.fluxes, "the same as a table; - for stdout");
+    output.path("--result", "FILE.hres", a.result,
+                "the whole solution, for info, render, diff, view and points");
     output.path("--series", "FILE.csv", a.series,
                 "solve for every line of this table: a time, and a column of temperatures (or fluxes, or "
                 "powers, where the scene has these) for every group named in its first line");

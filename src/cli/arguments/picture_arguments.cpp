@@ -78,6 +78,10 @@ bool is_of_light(Quantity quantity) {
     return !is_of_heat(quantity);
 }
 
+bool is_any(Quantity) {
+    return true;
+}
+
 /// `heat` estimates errors of groups, not of patches.
 bool is_known_of_heat(Quantity quantity) {
     return !is_error(quantity);
@@ -119,16 +123,23 @@ std::vector<CLI::Option*> add_quantities(CLI::App& app, PictureOptions& picture,
     return added;
 }
 
+CLI::Option* add_celsius(CLI::App& app, PictureOptions& picture) {
+    Options(app, "Picture")
+        .flag("--celsius", picture.celsius,
+              "temperatures of the picture's legend and range in °C instead of K");
+    return app.get_option("--celsius");
+}
+
 } // namespace
 
-std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool quantities) {
+std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool quantities, bool heat) {
     Options options(app, "Picture");
     std::vector<CLI::Option*> added;
     added.push_back(options.value(
         "--show", quantities ? "A,B,C|QUANTITY" : "A,B,C",
         quantities
             ? fmt::format("channels shown as red, green, blue; or one, as grey; or in false colours: {}",
-                          fmt::join(quantity_words(is_of_light), ", "))
+                          fmt::join(quantity_words(heat ? is_any : is_of_light), ", "))
             : "channels shown as red, green, blue; or one, as grey",
         [&picture, quantities](const std::string& text) {
             picture.show = parse_list(text);
@@ -146,6 +157,17 @@ std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool
     return added;
 }
 
+void add_dots(CLI::App& app, DotOptions& dots) {
+    Options options(app, "Points");
+    auto* points = options.path("--points", "FILE.csv", dots.points,
+                                "points as coloured dots: columns x, y, z, and those of a quantity, as `hemi "
+                                "points -o FILE.csv` writes them");
+    options
+        .value("--column", "NAME", "column that the dots show (the first beside the positions and normals)",
+               [&dots](const std::string& text) { dots.column = text; })
+        ->needs(points);
+}
+
 void add_gather(CLI::App& app, Gather& gather) {
     Options(app, "Picture")
         .choice<Gather>("--gather", "auto|on|off",
@@ -154,12 +176,16 @@ void add_gather(CLI::App& app, Gather& gather) {
 
 void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bool quantities,
                  SceneOptions* scene) {
-    std::vector<CLI::Option*> added = add_shown(app, picture, quantities);
+    const bool stored = scene == nullptr;
+    std::vector<CLI::Option*> added = add_shown(app, picture, quantities, stored);
     const std::vector<CLI::Option*> drawn = add_drawn(app, picture, scene);
     added.insert(added.end(), drawn.begin(), drawn.end());
     if (quantities) {
         const std::vector<CLI::Option*> of_them = add_quantities(app, picture);
         added.insert(added.end(), of_them.begin(), of_them.end());
+        if (stored) {
+            add_celsius(app, picture);
+        }
     }
     added.push_back(Options(app, "Picture")
                         .choice<ToneMapping>("--tone-mapping", "NAME", "filmic (the default) or linear",
@@ -182,7 +208,7 @@ void add_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output, bo
 void add_difference_picture(CLI::App& app, PictureOptions& picture, CLI::Option* output) {
     picture.quantity = Quantity::radiosity;
     picture.map = ColourMap::cool_warm;
-    const std::vector<std::string> known = quantity_words(is_of_light);
+    const std::vector<std::string> known = quantity_words(is_any);
     Options(app, "Picture")
         .value("--show", "QUANTITY",
                fmt::format("quantity that is compared (radiosity): {}", fmt::join(known, ", ")),
@@ -216,9 +242,7 @@ std::vector<std::string> add_heat_picture(CLI::App& app, HeatPicture& picture, C
     added.back()->type_name(fmt::format("{}", fmt::join(known, "|")));
     const std::vector<CLI::Option*> of_quantities = add_quantities(app, picture.picture);
     added.insert(added.end(), of_quantities.begin(), of_quantities.end());
-    options.flag("--celsius", picture.picture.celsius,
-                 "temperatures of the picture's legend and range in °C instead of K");
-    added.push_back(app.get_option("--celsius"));
+    added.push_back(add_celsius(app, picture.picture));
     std::vector<std::string> names;
     for (CLI::Option* option : added) {
         option->needs(output);

@@ -10,13 +10,18 @@
 /// What the command line says of pictures.
 namespace hemi::cli {
 
+struct DotOptions;
 struct HeatPicture;
 struct PictureOptions;
 struct SceneOptions;
 
 /// Channels, shading and exposure of a solution that is shown. @return all of them
 /// @param quantities  whether a quantity may be shown instead
-std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool quantities = false);
+/// @param heat        whether that may be one of heat
+std::vector<CLI::Option*> add_shown(CLI::App& app, PictureOptions& picture, bool quantities = false,
+                                    bool heat = false);
+/// `--points` and `--column`.
+void add_dots(CLI::App& app, DotOptions& dots);
 /// `--gather`.
 void add_gather(CLI::App& app, Gather& gather);
 /// All of a picture of light.

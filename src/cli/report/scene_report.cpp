@@ -28,26 +28,37 @@ Json point_json(const Vec3& point) {
     return {point.x, point.y, point.z};
 }
 
-Report surfaces_report(const PatchMesh& mesh) {
-    const std::span<const Surface> surfaces = mesh.surfaces();
-    const auto triangles = static_cast<std::size_t>(std::count_if(
-        surfaces.begin(), surfaces.end(), [](const Surface& surface) { return surface.vertex_count == 3; }));
-    const std::size_t quads = surfaces.size() - triangles;
+Report surfaces_report(const Scene& scene) {
+    std::size_t triangles = 0;
+    std::size_t quads = 0;
+    std::size_t polygons = 0; // in pieces
+    const std::vector<Surface>& surfaces = scene.surfaces;
+    for (std::size_t s = 0; s < surfaces.size(); ++s) {
+        if (surfaces[s].continues) {
+            continue;
+        }
+        const bool in_pieces = s + 1 < surfaces.size() && surfaces[s + 1].continues;
+        ++(in_pieces ? polygons : surfaces[s].vertex_count == 3 ? triangles : quads);
+    }
+    const std::size_t all = triangles + quads + polygons;
     Report report;
-    report.add("surfaces",
-               fmt::format("{} ({}, {})", count_text(surfaces.size()),
-                           plural(triangles, "triangle", "triangles"),
-                           plural(quads, "quadrilateral", "quadrilaterals")),
-               {{"surfaces", surfaces.size()}, {"triangles", triangles}, {"quadrilaterals", quads}});
+    report.add(
+        "surfaces",
+        fmt::format("{} ({}, {}{})", count_text(all), plural(triangles, "triangle", "triangles"),
+                    plural(quads, "quadrilateral", "quadrilaterals"),
+                    polygons > 0 ? fmt::format(", {} in pieces", count_text(polygons)) : std::string()),
+        {{"surfaces", all}, {"triangles", triangles}, {"quadrilaterals", quads}, {"polygons", polygons}});
     return report;
 }
 
-Report groups_report(const PatchMesh& mesh, std::span<const double> areas) {
+Report groups_report(const Scene& scene, const PatchMesh& mesh, std::span<const double> areas) {
     Table table({"group", "surfaces", "patches", "area"});
     Json list = Json::array();
     std::vector<std::uint32_t> surfaces(mesh.groups().size(), 0);
-    for (const Surface& surface : mesh.surfaces()) {
-        ++surfaces[surface.group];
+    std::size_t all = 0;
+    for (const Surface& surface : scene.surfaces) {
+        surfaces[surface.group] += surface.continues ? 0 : 1;
+        all += surface.continues ? 0 : 1;
     }
     const std::vector<GroupSize> sizes = group_sizes(mesh, areas);
     double area = 0.0;
@@ -59,7 +70,7 @@ Report groups_report(const PatchMesh& mesh, std::span<const double> areas) {
             {{"name", name}, {"surfaces", surfaces[g]}, {"patches", patches}, {"area", group_area}});
         area += group_area;
     }
-    table.add({"(all)", count_text(mesh.surfaces().size()), count_text(mesh.size()), number_text(area)});
+    table.add({"(all)", count_text(all), count_text(mesh.size()), number_text(area)});
     return {fmt::format("\n{}", table.text()), {{"groups", list}}};
 }
 
@@ -116,13 +127,19 @@ Report imprint_report(const LoadedScene& loaded) {
          "are left out: they lie inside other bodies", "by"},
         {Imprint::What::joined, "joined", "becomes the back of one in the same place",
          "become the backs of others in the same places", "of"}};
+    const std::vector<std::uint32_t> numbers = face_numbers(as_read.surfaces);
     const auto name = [&](std::uint32_t face) {
-        return fmt::format("face {} of {}", face, as_read.scene.groups[as_read.scene.surfaces[face].group]);
+        return fmt::format("face {} of {}", numbers[face],
+                           as_read.scene.groups[as_read.scene.surfaces[face].group]);
     };
     const auto is_known = [&](std::uint32_t face) { return face < as_read.scene.surfaces.size(); };
-    report.add("faces touch",
-               fmt::format("{} in {}; area {} is covered", plural(as_read.mesh.size(), "patch", "patches"),
-                           plural(loaded.mesh.size(), "part", "parts"), number_text(as_read.covered)));
+    const std::string parts = fmt::format("{} in {}", plural(as_read.mesh.size(), "patch", "patches"),
+                                          plural(loaded.mesh.size(), "part", "parts"));
+    if (as_read.findings.empty()) {
+        report.add("parts", fmt::format("{}, which are plane and convex", parts));
+    } else {
+        report.add("faces touch", fmt::format("{}; area {} is covered", parts, number_text(as_read.covered)));
+    }
     Json list = Json::array();
     for (const Kind& kind : kinds) {
         std::string examples;
@@ -136,9 +153,10 @@ Report imprint_report(const LoadedScene& loaded) {
                 examples +=
                     is_known(finding.other) ? fmt::format(" {} {}", kind.other, name(finding.other)) : "";
             }
-            list.push_back({{"what", kind.word},
-                            {"face", finding.face},
-                            {"other", is_known(finding.other) ? Json(finding.other) : Json(nullptr)}});
+            list.push_back(
+                {{"what", kind.word},
+                 {"face", numbers[finding.face]},
+                 {"other", is_known(finding.other) ? Json(numbers[finding.other]) : Json(nullptr)}});
         }
         if (count > 0) {
             report.add("",
@@ -155,7 +173,7 @@ Report contents_report(const Scene& scene, const PatchMesh& mesh, std::span<cons
     const auto& [lower, upper] = mesh.bounds();
     Report report;
     report.add("name", scene.name.empty() ? "-" : scene.name, {{"name", scene.name}});
-    report.add(surfaces_report(mesh));
+    report.add(surfaces_report(scene));
     report.add("patches", count_text(mesh.size()), {{"patches", mesh.size()}});
     report.add("channels", fmt::format("{}", fmt::join(scene.channels, ", ")),
                {{"channels", scene.channels}});
@@ -186,7 +204,7 @@ Report contents_report(const Scene& scene, const PatchMesh& mesh, std::span<cons
     }
     report.add("camera", scene.camera ? "yes" : "no", {{"camera", scene.camera.has_value()}});
     report.add(more);
-    report.add(groups_report(mesh, areas));
+    report.add(groups_report(scene, mesh, areas));
     report.add(materials_report(scene));
     return report;
 }

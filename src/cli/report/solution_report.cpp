@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace hemi::cli {
@@ -208,6 +209,24 @@ Json group_means_json(const LoadedScene& loaded, const FormFactorMatrix& factors
             {"blocked", share_json(loaded, areas, factors, solution.back_face_share)}};
 }
 
+/// The least and the largest of the values that are known.
+Report range_report(const char* name, std::span<const double> values, const char* unit, const char* key) {
+    double least = std::numeric_limits<double>::infinity();
+    double largest = -least;
+    for (const double value : values) {
+        least = std::isnan(value) ? least : std::min(least, value);
+        largest = std::isnan(value) ? largest : std::max(largest, value);
+    }
+    Report report;
+    if (least <= largest) {
+        report.add(name, fmt::format("{} to {}{}", number_text(least), number_text(largest), unit),
+                   {{key, {{"min", least}, {"max", largest}}}});
+    } else {
+        report.add(name, "not known", {{key, nullptr}});
+    }
+    return report;
+}
+
 } // namespace
 
 Report refinement_report(const std::vector<Refinement::Step>& steps, const std::string& stopped) {
@@ -240,6 +259,11 @@ Report stored_solution_report(const Solution& solution, const PatchMesh& mesh) {
     report.json["chosen_for"] = solution.chosen_for; // "" rather than null, as the file has it
     report.add(solution_error_report(solution, mesh));
     report.add(error_report(solution.factor_error, solution.error, !solution.patch_size_error));
+    report.json["temperature"] = report.json["net_flux"] = nullptr;
+    if (!solution.temperature.empty()) {
+        report.add(range_report("temperature", solution.temperature, " K", "temperature"));
+        report.add(range_report("net flux", solution.net_flux, " W/m²", "net_flux"));
+    }
     return report;
 }
 

@@ -47,6 +47,7 @@ void FaceBuilder::add(std::span<const Vec3> corners, std::uint32_t group, std::u
         Surface& surface = mesh_.surfaces.emplace_back();
         surface.vertices = piece.points;
         surface.vertex_count = piece.count;
+        surface.continues = &piece != mender_.pieces().data();
         surface.group = group;
         surface.material = material;
     }

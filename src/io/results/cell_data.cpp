@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace hemi::io {
@@ -35,7 +37,11 @@ std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh
     if (!solution.direct.empty()) {
         arrays.push_back({"direct", solution.direct, names});
     }
-    arrays.push_back({"exitance", patch_values(mesh, result.scene.materials, &Material::exitance), names});
+    arrays.push_back({"exitance",
+                      solution.exitance.empty()
+                          ? patch_values(mesh, result.scene.materials, &Material::exitance)
+                          : solution.exitance,
+                      names});
     std::vector<double> reflectance = patch_values(mesh, result.scene.materials, &Material::reflectance);
     arrays.push_back({"reflectance", reflectance, names});
     for (double& value : reflectance) {
@@ -52,7 +58,32 @@ std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh
         arrays.push_back({"error_factors", solution.error->patches, names});
         arrays.push_back({"error_patch_size", solution.patch_size_error->patches, names});
     }
+    if (!solution.temperature.empty()) {
+        arrays.push_back({"temperature", solution.temperature, {}});
+        arrays.push_back({"net_flux", solution.net_flux, {}});
+    }
     add_patch_of(result.parts, arrays);
+    return arrays;
+}
+
+std::vector<CellArray> means_of_cells(std::vector<CellArray> arrays, const PatchParts& parts,
+                                      std::span<const double> areas) {
+    for (CellArray& array : arrays) {
+        const bool is_temperature = array.name == "temperature";
+        std::vector<double> known;
+        for (double& value : array.values) {
+            known.push_back(std::isfinite(value) ? 1.0 : 0.0);
+            value = known.back() == 0.0 ? 0.0 : is_temperature ? std::pow(value, 4.0) : value;
+        }
+        const std::size_t components = std::max<std::size_t>(array.components.size(), 1);
+        array.values = means_of_patches(parts, areas, array.values, components);
+        known = means_of_patches(parts, areas, known, components);
+        for (std::size_t k = 0; k < array.values.size(); ++k) {
+            double& value = array.values[k];
+            value /= known[k]; // not a number where nothing is
+            value = is_temperature ? std::sqrt(std::sqrt(value)) : value;
+        }
+    }
     return arrays;
 }
 

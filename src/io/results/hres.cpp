@@ -72,6 +72,9 @@ Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional
     if (as_read) {
         head["as_read"] = {{"surfaces", as_read->surfaces().size()}, {"patches", as_read->size()}};
     }
+    if (!result.solution.temperature.empty()) {
+        head["heat"] = {{"band_limits", scene.thermal ? scene.thermal->band_limits : std::vector<double>()}};
+    }
     if (scene.photometric) {
         head["photometric"] = true;
     }
@@ -187,6 +190,7 @@ struct Sizes {
     bool gathered = false;              ///< there is radiosity at vertices
     bool parts = false;                 ///< patches of some surfaces differ in size
     bool direct = false;                ///< there is irradiance of sun and sky
+    bool heat = false;                  ///< there are temperatures and net fluxes
     std::uint64_t surfaces_as_read = 0; ///< 0: the surfaces are as they were read
     std::uint64_t patches_as_read = 0;
 };
@@ -209,6 +213,10 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     }
     if (head.has("camera")) {
         scene.camera = read_camera(head.member("camera"));
+    }
+    if (head.has("heat")) {
+        const JsonNode heat = head.member("heat");
+        scene.thermal = Thermal{heat.member("band_limits").numbers(), {}, std::nullopt};
     }
     scene.photometric = head.has("photometric") && head.member("photometric").boolean();
     if (head.has("sun")) {
@@ -244,10 +252,12 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
         result.solution.patch_size_error = read_patch_size(head.member("patch_size_error"));
         result.solution.dominance = head.member("dominance").number();
     }
-    Sizes sizes{head.member("surfaces").integer(most), head.member("patches").integer(most),
+    Sizes sizes{head.member("surfaces").integer(most),
+                head.member("patches").integer(most),
                 head.has("gathered") && head.member("gathered").boolean(),
                 head.has("parts") && head.member("parts").boolean(),
-                head.has("direct") && head.member("direct").boolean()};
+                head.has("direct") && head.member("direct").boolean(),
+                head.has("heat")};
     if (head.has("as_read")) {
         const JsonNode as_read = head.member("as_read");
         sizes.surfaces_as_read = as_read.member("surfaces").integer(most);
@@ -273,15 +283,43 @@ void check_patches_as_read(const PatchParts& parts) {
     }
 }
 
+/// @param unknown  values that are not a number are sound
 template <class Number = double>
-std::vector<Number> read_array(ChunkReader& reader, std::string_view tag, std::uint64_t size) {
+std::vector<Number> read_array(ChunkReader& reader, std::string_view tag, std::uint64_t size,
+                               bool unknown = false) {
     Payload payload = reader.chunk(tag);
     std::vector<Number> values = payload.take_array<Number>(size);
     payload.expect_end();
     for (const Number value : values) {
-        if (!std::isfinite(static_cast<double>(value))) {
+        const auto number = static_cast<double>(value);
+        if (!std::isfinite(number) && !(unknown && std::isnan(number))) {
             payload.fail("a value that is not finite");
         }
+    }
+    return values;
+}
+
+/// Temperatures and net fluxes of patches, where they are known.
+void check_heat(const Solution& solution, std::size_t patches) {
+    const auto check = [patches](const std::vector<double>& values, const char* name, double least) {
+        if (values.size() != patches) {
+            throw InvalidArgument(
+                fmt::format("{} values of {}; the solution needs {}", values.size(), name, patches));
+        }
+        for (const double value : values) {
+            if (std::isinf(value) || value < least) {
+                throw InvalidArgument(fmt::format("{}: a value of {}", name, value));
+            }
+        }
+    };
+    check(solution.temperature, "temperature", 0.0);
+    check(solution.net_flux, "net flux", -std::numeric_limits<double>::infinity());
+}
+
+/// With 0 where a number is unknown.
+std::vector<double> known(std::vector<double> values) {
+    for (double& value : values) {
+        value = std::isnan(value) ? 0.0 : value;
     }
     return values;
 }
@@ -294,18 +332,37 @@ Scene ResultFile::scene_as_read() const {
     return result;
 }
 
+PatchMesh ResultFile::patches_as_read() const {
+    return surfaces_as_read.empty() ? PatchMesh(scene, subdivision)
+                                    : PatchMesh(scene_as_read()).whole_faces().mesh;
+}
+
+void complete_solution(ResultFile& result, const PatchMesh& mesh) {
+    if (result.solution.exitance.empty()) {
+        result.solution.exitance = patch_values(mesh, result.scene.materials, &Material::exitance);
+    }
+}
+
 void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     const PatchMesh mesh(result.scene, result.subdivision);
+    const bool heat = !result.solution.temperature.empty();
+    const std::vector<double> radiosity = heat ? known(result.solution.radiosity) : std::vector<double>();
+    const std::vector<double> irradiance = heat ? known(result.solution.irradiance) : std::vector<double>();
+    const std::vector<double> exitance = heat ? known(result.solution.exitance) : std::vector<double>();
     std::optional<PatchMesh> as_read;
     if (!result.surfaces_as_read.empty()) {
         as_read.emplace(result.scene_as_read());
         check_array(result.parts.patch_of, mesh.size(), "the patches that parts are of");
-        check_patches_as_read({result.parts.patch_of, groups_of_patches(*as_read)});
+        check_patches_as_read({result.parts.patch_of, groups_of_patches(as_read->whole_faces().mesh)});
     }
     const std::size_t patches = mesh.size();
     const std::size_t values = patches * result.scene.channels.size();
-    check_array(result.solution.radiosity, values, "radiosity");
-    check_array(result.solution.irradiance, values, "irradiance");
+    check_array(heat ? radiosity : result.solution.radiosity, values, "radiosity");
+    check_array(heat ? irradiance : result.solution.irradiance, values, "irradiance");
+    if (heat) {
+        check_heat(result.solution, patches);
+        check_array(exitance, values, "exitance");
+    }
     check_array(result.solution.row_sum, patches, "row sum");
     check_array(result.solution.environment_share, patches, "environment share");
     check_array(result.solution.back_face_share, patches, "blocked share");
@@ -337,8 +394,8 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
         writer.chunk("READ", {bytes_of(stored_surfaces(*as_read))});
         writer.chunk("OFPA", {bytes_of(result.parts.patch_of)});
     }
-    writer.chunk("RADI", {bytes_of(result.solution.radiosity)});
-    writer.chunk("IRRA", {bytes_of(result.solution.irradiance)});
+    writer.chunk("RADI", {bytes_of(heat ? radiosity : result.solution.radiosity)});
+    writer.chunk("IRRA", {bytes_of(heat ? irradiance : result.solution.irradiance)});
     writer.chunk("RSUM", {bytes_of(result.solution.row_sum)});
     writer.chunk("ENVI", {bytes_of(result.solution.environment_share)});
     writer.chunk("BLOC", {bytes_of(result.solution.back_face_share)});
@@ -354,6 +411,11 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     }
     if (!result.solution.direct.empty()) {
         writer.chunk("DIRE", {bytes_of(result.solution.direct)});
+    }
+    if (heat) {
+        writer.chunk("EXIT", {bytes_of(exitance)});
+        writer.chunk("TEMP", {bytes_of(result.solution.temperature)});
+        writer.chunk("FLUX", {bytes_of(result.solution.net_flux)});
     }
     writer.finish();
 }
@@ -379,7 +441,7 @@ ResultFile read_hres(const std::filesystem::path& path) {
         if (sizes.surfaces_as_read > 0) {
             const Scene as_read = result.scene_as_read();
             validate(as_read);
-            result.parts.group_of = groups_of_patches(PatchMesh(as_read));
+            result.parts.group_of = groups_of_patches(PatchMesh(as_read).whole_faces().mesh);
             check_patches_as_read(result.parts);
         }
         if (sizes.parts) {
@@ -408,6 +470,16 @@ ResultFile read_hres(const std::filesystem::path& path) {
     }
     if (sizes.direct) {
         result.solution.direct = read_array(reader, "DIRE", values);
+    }
+    if (sizes.heat) {
+        result.solution.exitance = read_array(reader, "EXIT", values);
+        result.solution.temperature = read_array(reader, "TEMP", sizes.patches, true);
+        result.solution.net_flux = read_array(reader, "FLUX", sizes.patches, true);
+        try {
+            check_heat(result.solution, sizes.patches);
+        } catch (const InvalidArgument& error) {
+            reader.fail(error.what());
+        }
     }
     reader.finish();
     return result;

@@ -128,9 +128,10 @@ void write_patches_csv(const std::filesystem::path& path, const PatchMesh& mesh,
 }
 
 void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& result) {
-    constexpr std::array<const char*, 12> columns{
-        "exitance",   "irradiance",  "radiosity", "error",   "direct",        "reflectance",
-        "emissivity", "environment", "blocked",   "row_sum", "error_factors", "error_patch_size"};
+    constexpr std::array<const char*, 14> columns{
+        "exitance",      "irradiance",       "radiosity",   "error",   "direct",
+        "reflectance",   "emissivity",       "environment", "blocked", "row_sum",
+        "error_factors", "error_patch_size", "temperature", "net_flux"};
     const PatchMesh mesh(result.scene, result.subdivision);
     const std::vector<std::string>& channels = result.scene.channels;
     std::vector<CellArray> known = solution_arrays(result, mesh);
@@ -142,13 +143,16 @@ void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& re
             continue;
         }
         CellArray& array = arrays.emplace_back(std::move(*found));
-        if (!is_share_of_row(name)) {
+        const bool of_heat = array.name == "temperature" || array.name == "net_flux";
+        if (!is_share_of_row(name) && !of_heat) {
             array.components = channels;
         }
         if (array.name == "exitance" && !result.solution.exitance.empty()) {
             array.values = result.solution.exitance;
         }
-        if (result.parts.any()) {
+        if (result.parts.any() && of_heat) {
+            array = means_of_cells({std::move(array)}, result.parts, mesh.areas()).front();
+        } else if (result.parts.any()) {
             array.values = means_of_patches(result.parts, mesh.areas(), array.values,
                                             std::max<std::size_t>(array.components.size(), 1));
         }
@@ -157,7 +161,7 @@ void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& re
         write_patch_table(path, mesh, arrays);
         return;
     }
-    const PatchMesh as_read(result.scene_as_read());
+    const PatchMesh as_read = result.patches_as_read();
     write_patch_table(path, as_read, arrays, places_left(as_read, mesh, result.parts));
 }
 

@@ -259,6 +259,7 @@ private:
         for (const PolygonPiece& piece : mender_.pieces()) {
             surface.vertices = piece.points;
             surface.vertex_count = piece.count;
+            surface.continues = &piece != mender_.pieces().data();
             scene_.surfaces.push_back(surface);
         }
     }

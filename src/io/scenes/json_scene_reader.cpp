@@ -327,6 +327,7 @@ private:
             Surface part = surface;
             part.vertices = piece.points;
             part.vertex_count = piece.count;
+            part.continues = &piece != mender_.pieces().data();
             if (part.patches && part.vertex_count == 3) {
                 part.patches->u = part.patches->v = std::max(part.patches->u, part.patches->v);
             }

@@ -233,6 +233,7 @@ private:
             Surface part = surface;
             part.vertices = piece.points;
             part.vertex_count = piece.count;
+            part.continues = &piece != mender_.pieces().data();
             scene_.surfaces.push_back(part);
         }
     }
