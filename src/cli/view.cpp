@@ -30,10 +30,10 @@ namespace {
 
 /// Options that say how to begin: a command line that draws what the window shows has its own.
 const std::vector<std::string>& window_options() {
-    static const std::vector<std::string> names{"--size",         "--camera",       "--flat",   "--exposure",
-                                                "--tone-mapping", "--orthographic", "--backs",  "--outlines",
-                                                "--samples",      "--background",   "--script", "--controls",
-                                                "--up",           "--show"};
+    static const std::vector<std::string> names{
+        "--size",  "--camera",   "--flat",    "--exposure",    "--tone-mapping", "--orthographic",
+        "--backs", "--outlines", "--samples", "--background",  "--script",       "--controls",
+        "--up",    "--show",     "--hide",    "--outlines-of", "--clip"};
     return names;
 }
 
@@ -126,7 +126,7 @@ private:
             input.show_option = " --show " + viewer::quoted(fmt::format("{}", fmt::join(options.show, ",")));
         }
         input.camera = choose_camera(*scene, *mesh, options);
-        input.picture = picture_settings(options);
+        input.picture = picture_settings(options, mesh->groups());
         input.automatic_exposure = !options.exposure;
         input.solution = std::move(solution);
         input.solution.exitance = patch_values(*mesh, scene->materials, &Material::exitance);
