@@ -6,9 +6,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/core/text.hpp"
-#include "hemi/io/image_file.hpp"
-#include "hemi/io/scene_writer.hpp"
-#include "viewer/command_line.hpp"
+#include "viewer/clipping.hpp"
 #include "viewer/keys.hpp"
 #include "viewer/overlays.hpp"
 #include "viewer/report.hpp"
@@ -51,6 +49,7 @@ Application::Application(ViewerInput input, const ViewerSettings& settings)
     choices_.look.outlines = input.picture.outlines;
     choices_.look.backs = input.picture.backs;
     choices_.samples = input.picture.samples;
+    choices_.cut = input.picture.cut;
     exchange(std::move(input));
 }
 
@@ -68,6 +67,14 @@ void Application::exchange(ViewerInput input) {
     if (!again || !same_patches) {
         choices_.picked.reset();
     }
+    if (document_ && document_->input().mesh->groups() != input.mesh->groups()) {
+        choices_.cut.groups.clear();
+        choices_.group.reset();
+    }
+    if (document_ && !again) {
+        choices_.cut.clip.reset();
+    }
+    shown_group_.reset();
     choices_.pointed_at.reset();
     choices_.materials = input.scene->materials;
     choices_.conditions = input.heat ? input.heat->conditions : std::vector<HeatCondition>();
@@ -132,8 +139,16 @@ void Application::wait_for_work(const std::function<bool()>& enough) {
 
 /// The panels see every event first; a drag that began in the view stays the view's.
 void Application::handle(const Event& event) {
+    const bool typed = gui_.has_keyboard() &&
+                       (std::holds_alternative<KeyEvent>(event) || std::holds_alternative<TextEvent>(event));
     gui_.feed(event);
     describe_panels();
+    if (typed) {
+        describe_panels(); // without the key, which may be pressed again
+        grant_wishes();
+        settle();
+        return;
+    }
     const bool of_mouse =
         std::holds_alternative<ButtonEvent>(event) || std::holds_alternative<ScrollEvent>(event);
     if (!(of_mouse && gui_.has_mouse() && !navigator_.holds())) {
@@ -159,7 +174,7 @@ void Application::act_on(const Event& event) {
                                   moved();
                               }
                           },
-                          [this](const KeyEvent& e) { on_key(e); },
+                          [this](const KeyEvent& e) { on_key(e); }, [](const TextEvent&) {},
                           [this](const RefreshEvent&) { refresh(); },
                           [this](const CloseEvent&) { ask_to_close(); },
                           [this](const DropEvent& e) { open(e.path); }},
@@ -193,6 +208,10 @@ void Application::other_key(const KeyEvent& event) {
     } else if (event.key == tab_key) {
         choices_.panel = !choices_.panel;
         picture_changed_ = true;
+    } else if (event.key == 'A' || event.key == 'I' || event.key == 'N' || event.key == 'O') {
+        on_group_key(event.key);
+    } else if (event.key == 'K') {
+        clip_by_key(event.shift);
     } else if (event.key == 'C') {
         choices_.hemicube = !choices_.hemicube;
     } else if (event.key == help_key) {
@@ -205,8 +224,9 @@ void Application::other_key(const KeyEvent& event) {
         choices_.help = false;
     } else if (event.key == escape_key && !message_.empty()) {
         message_.clear();
-    } else if (event.key == escape_key && choices_.picked) {
+    } else if (event.key == escape_key && (choices_.picked || choices_.group)) {
         choices_.picked.reset();
+        choices_.group.reset();
     } else if (event.key == 'Q') {
         ask_to_close();
     }
@@ -352,6 +372,7 @@ void Application::pick(std::array<double, 2> pixel) {
     if (pixel[0] >= 0.0 && pixel[0] < size[0] && pixel[1] >= 0.0 && pixel[1] < size[1]) {
         choices_.picked = view_.item(navigator_.camera(), size, static_cast<std::uint32_t>(pixel[0]),
                                      static_cast<std::uint32_t>(pixel[1]));
+        choices_.group.reset(); // that of the patch is taken in settle()
     }
 }
 
@@ -415,6 +436,7 @@ std::array<std::uint32_t, 2> Application::view_size() const {
 void Application::settle() {
     const ViewerInput& input = document_->input();
     navigator_.set_view(view_size());
+    settle_cut();
     if (why_not(choices_.look.shown, input, choices_.picked) != nullptr) {
         choices_.look.shown = {};
     }
@@ -437,6 +459,8 @@ void Application::settle() {
     const bool of_patch = shown == View::row || shown == View::column;
     if (other_look || (other_patch && of_patch)) {
         view_.show(*document_, choices_.look, choices_.picked);
+        values_ = shown_values(*document_, choices_.look, view_.field());
+        groups_ = group_table(*document_, values_);
         picture_changed_ = true;
     }
     picked_.reset();
@@ -457,6 +481,50 @@ void Application::settle() {
     shown_hemicube_ = {choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
     draw_hemicube();
     update_title();
+}
+
+void Application::settle_cut() {
+    const PatchMesh& mesh = *document_->input().mesh;
+    if (choices_.picked && (shown_pick_ != choices_.picked || !choices_.group)) {
+        choices_.group = mesh.group(*choices_.picked);
+    }
+    if (shown_group_ != choices_.group) {
+        shown_group_ = choices_.group;
+        group_edges_ = shown_group_ ? group_edges(mesh, *shown_group_) : std::vector<std::array<Vec3, 2>>();
+    }
+    if (shown_cut_ != choices_.cut) {
+        shown_cut_ = choices_.cut;
+        picture_changed_ = true;
+    }
+    navigator_.set_cut(shown_cut_);
+    view_.cut(shown_cut_);
+}
+
+void Application::on_group_key(char key) {
+    const std::size_t count = document_->input().mesh->groups().size();
+    if (key == 'A') {
+        choices_.cut.groups.clear();
+    } else if (!choices_.group) {
+        note_ = "select a group first: click a patch, or a name in the list";
+    } else if (key == 'I') {
+        isolate(choices_, *choices_.group, count);
+    } else {
+        set_visibility(choices_, *choices_.group, key == 'O' ? Visibility::outlines : Visibility::hidden,
+                       count);
+    }
+}
+
+void Application::clip_by_key(bool turn) {
+    std::optional<ClipPlane>& clip = choices_.cut.clip;
+    if (turn && clip) {
+        clip = other_side(*clip);
+    } else if (clip) {
+        clip.reset();
+    } else if (choices_.picked) {
+        clip = plane_of_patch(*document_->input().mesh, *choices_.picked);
+    } else {
+        note_ = "click a patch first: the clipping plane goes through it";
+    }
 }
 
 /// The picked patch's hemicube, where it is wanted and there is room for it.
@@ -493,15 +561,17 @@ void Application::describe_panels() {
     const PatchMesh& mesh = *document_->input().mesh;
     gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
     if (view[0] < size[0]) {
-        side_panel(
-            {*document_, picked_, navigator_.camera(), view_.field(), note_, status_, words_under_cursor()},
-            size, choices_);
+        side_panel({*document_, picked_, navigator_.camera(), groups_, view_.field(), note_, status_,
+                    words_under_cursor()},
+                   size, choices_);
     }
     if (view[0] > 0 && view[1] > 0) {
         if (choices_.pointed_at) {
             mark_patch(mesh, *choices_.pointed_at, navigator_.orbit(), view, false);
         }
-        if (choices_.picked) {
+        if (!choices_.picked) {
+            mark_edges(group_edges_, navigator_.orbit(), view);
+        } else {
             mark_patch(mesh, *choices_.picked, navigator_.orbit(), view, true);
         }
         if (view_.field()) {
@@ -584,41 +654,6 @@ void Application::draw_picture(SceneTarget& target, std::array<std::uint32_t, 2>
                           preview ? " (preview)" : "");
 }
 
-void Application::screenshot(const std::filesystem::path& path, std::array<std::uint32_t, 2> size,
-                             std::uint32_t samples) {
-    const Picture picture = view_.picture(navigator_.camera(), size, samples);
-    if (path.extension() == ".hdr") {
-        io::write_hdr(path, picture.width, picture.height, picture.linear);
-    } else {
-        io::write_png(path, picture.width, picture.height, picture.srgb);
-    }
-    note_ = fmt::format("{} ({} x {})", path.filename().string(), size[0], size[1]);
-    std::fprintf(stderr, "%s\n", path.string().c_str());
-}
-
-void Application::windowshot(const std::filesystem::path& path) {
-    const auto size = window_.size();
-    const auto view = view_size();
-    if (view[0] == 0 || view[1] == 0) {
-        return;
-    }
-    SceneTarget picture;
-    draw_picture(picture, view, false);
-    describe_panels();
-    describe_panels();
-    SceneTarget whole;
-    whole.resize(size);
-    picture.copy_to(whole.framebuffer(), size[1]);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, whole.framebuffer());
-    gui_.draw();
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    gl::check_errors("drawing the window");
-    lost_ = true;
-    io::write_png(path, size[0], size[1], whole.pixels());
-    note_ = path.filename().string();
-    std::fprintf(stderr, "%s\n", path.string().c_str());
-}
-
 /// Under the first free number; a folder that cannot be written to is no reason to close the window.
 void Application::numbered_screenshot(bool of_window) {
     const std::filesystem::path path = free_name(document_->input().file.stem().string(), ".png");
@@ -634,51 +669,6 @@ void Application::numbered_screenshot(bool of_window) {
                               : std::array{chosen.width, chosen.height};
         screenshot(path, size, choices_.samples);
     });
-}
-
-void Application::report(const std::filesystem::path& path) const {
-    const bool hemicube = inset_ && choices_.picked && choices_.hemicube;
-    write_report(path,
-                 {*document_, choices_, view_.field(), picked_, navigator_.camera(), message_,
-                  hemicube ? inset_->seen() : std::vector<std::uint32_t>(), under_cursor_, asks_to_close_});
-}
-
-void Application::save_camera() {
-    io::write_scene_camera(document_->input().file, navigator_.camera());
-    note_ = fmt::format("camera saved into {}", document_->input().file.filename().string());
-}
-
-void Application::save_result(const std::filesystem::path& path) {
-    document_->save_result(path);
-    saved_result_ = path;
-    note_ = fmt::format("{} saved", path.filename().string());
-    std::fprintf(stderr, "%s\n", path.string().c_str());
-}
-
-std::string Application::command_line() const {
-    const Look& look = choices_.look;
-    if (look.shown.view != View::picture && look.shown.view != View::quantity) {
-        throw InvalidArgument("a command line draws the light or a quantity: choose one first (V)");
-    }
-    const bool heat = look.shown.view == View::quantity && is_of_heat(look.shown.quantity);
-    std::string command = heat ? document_->input().heat_command : document_->input().command;
-    if (heat && !document_->as_opened()) {
-        throw InvalidArgument("the materials are no longer those of the file, which `hemi heat` reads");
-    }
-    if (!heat && !saved_result_.empty()) {
-        command = "hemi render " + quoted(saved_result_.string());
-    } else if (!document_->as_opened()) {
-        throw InvalidArgument(
-            "the materials are no longer those of the file: save the result, then copy the command line");
-    }
-    PictureSettings picture =
-        picture_settings(choices_.look, document_->input().picture,
-                         document_->exposure() * std::exp2(choices_.look.stops), view_size());
-    picture.samples = choices_.samples;
-    command += look.shown.view == View::quantity ? quantity_options(look, view_.field()->shown)
-                                                 : document_->input().show_option;
-    return command + " -o " + quoted(document_->input().file.stem().string() + ".png") +
-           picture_options(picture, navigator_.camera(), look.shown.view == View::picture);
 }
 
 } // namespace hemi::viewer

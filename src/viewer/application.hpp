@@ -85,6 +85,11 @@ private:
     /// What would be lost, in words; empty: nothing.
     [[nodiscard]] std::string unsaved() const;
     void look_under_cursor();
+    /// Takes over what the choices leave out of the picture, and which group is selected.
+    void settle_cut();
+    void on_group_key(char key);
+    /// @param turn  shows the other side; else cuts through the picked patch, or no longer
+    void clip_by_key(bool turn);
     [[nodiscard]] std::array<std::string, 2> words_under_cursor() const;
     void pick(std::array<double, 2> pixel);
     void moved();
@@ -123,6 +128,11 @@ private:
     std::string message_;
     std::string title_;
     std::optional<UnderCursor> under_cursor_;
+    PictureCut shown_cut_;
+    ShownValues values_;                       ///< of what is shown
+    GroupTable groups_;                        ///< likewise
+    std::optional<std::uint32_t> shown_group_; ///< that edges are of
+    std::vector<std::array<Vec3, 2>> group_edges_;
     std::optional<MaterialHistory> history_; ///< always there once a scene is
     std::filesystem::path saved_result_;     ///< of the light as it is; empty: it was not saved
 

@@ -37,6 +37,7 @@ public:
     /// Of scenes with temperatures, as soon as it is found; else null.
     [[nodiscard]] const Heat* heat() const { return heat_.get(); }
     [[nodiscard]] const PictureMesh& light_mesh() const { return light_mesh_; }
+    [[nodiscard]] const SmoothSurfaces& surfaces() const { return surfaces_; }
     /// Where stops count from.
     [[nodiscard]] double exposure() const { return exposure_; }
     /// The scene with its materials and its light as they stand.

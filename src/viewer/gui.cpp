@@ -6,6 +6,10 @@
 #include <imgui.h>
 #include <imgui_internal.h> // closes popups from outside them
 
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
 #include <variant>
 
 namespace hemi::viewer {
@@ -13,6 +17,12 @@ namespace hemi::viewer {
 namespace {
 
 constexpr std::array<float, 2> far_away{-1e6F, -1e6F};
+
+/// Keys that edit a field.
+constexpr std::array<std::pair<char, ImGuiKey_>, 4> edit_keys{{{escape_key, ImGuiKey_Escape},
+                                                               {enter_key, ImGuiKey_Enter},
+                                                               {backspace_key, ImGuiKey_Backspace},
+                                                               {home_key, ImGuiKey_Home}}};
 
 void set_style() {
     ImGui::StyleColorsDark();
@@ -36,6 +46,9 @@ Gui::Gui() {
     io.IniFilename = nullptr;
     io.LogFilename = nullptr;
     io.MousePos = {far_away[0], far_away[1]};
+    for (const auto& [key, of_gui] : edit_keys) {
+        io.KeyMap[of_gui] = static_cast<unsigned char>(key);
+    }
     io.ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
     set_style();
     if (!ImGui_ImplOpenGL3_Init("#version 450 core") || !ImGui_ImplOpenGL3_CreateDeviceObjects()) {
@@ -58,11 +71,19 @@ void Gui::feed(const Event& event) {
         io.MouseDown[index] = button->pressed;
     } else if (const auto* scroll = std::get_if<ScrollEvent>(&event)) {
         io.MouseWheel += static_cast<float>(scroll->amount);
+    } else if (const auto* text = std::get_if<TextEvent>(&event); text != nullptr && has_keyboard()) {
+        io.AddInputCharacter(static_cast<unsigned int>(text->letter));
+    } else if (const auto* key = std::get_if<KeyEvent>(&event); key != nullptr && has_keyboard()) {
+        io.KeysDown[static_cast<unsigned char>(key->key)] = true;
     }
 }
 
 bool Gui::has_mouse() const {
     return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool Gui::has_keyboard() const {
+    return ImGui::GetIO().WantTextInput;
 }
 
 bool Gui::holds() const {
@@ -86,6 +107,8 @@ void Gui::begin(std::array<std::uint32_t, 2> size) {
 
 void Gui::end() {
     ImGui::Render();
+    // Keys tell that they were pressed, not for how long.
+    std::fill(std::begin(ImGui::GetIO().KeysDown), std::end(ImGui::GetIO().KeysDown), false);
 }
 
 std::vector<unsigned char> Gui::content() {

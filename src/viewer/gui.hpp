@@ -21,6 +21,8 @@ public:
     /// Before the frame that is to know of it.
     void feed(const Event& event);
     /// Whether the mouse is the panels' business, as of the last frame.
+    /// Whether a field takes what is typed; keys are no commands then.
+    [[nodiscard]] bool has_keyboard() const;
     [[nodiscard]] bool has_mouse() const;
 
     /// Whether a slider or a button is held.

@@ -53,6 +53,8 @@ struct Look {
     std::optional<std::array<double, 2>> range; ///< of quantities' scales; none: as values ask for
     bool logarithmic = false;                   ///< false colours of quantities
     bool logarithmic_factors = true;            ///< false colours of form factors
+    std::uint32_t bands = 0;                    ///< of false colours; 0: they run smoothly
+    bool iso_lines = false;                     ///< of false colours
     bool celsius = false;                       ///< temperatures in °C, else in K
     Shading shading = Shading::gouraud;
     ToneMapping tone_mapping = ToneMapping::filmic;

@@ -42,7 +42,7 @@ Navigator::Point Navigator::on_screen(Point pixel) const {
 std::optional<VisiblePoint> Navigator::surface_under_cursor(bool backs) const {
     const Point place = on_screen(cursor_);
     const ViewRay ray = orbit_.ray(place.x, place.y);
-    return visible_point(*mesh_, ray.origin, ray.direction, backs);
+    return visible_point(*mesh_, ray.origin, ray.direction, backs, cut_);
 }
 
 Vec3 Navigator::point_under_cursor() const {

@@ -27,6 +27,8 @@ public:
     /// Pixels of the window that show the scene, from its upper left.
     void set_view(std::array<std::uint32_t, 2> size) { view_ = size; }
     [[nodiscard]] double aspect() const;
+    /// What the picture leaves out.
+    void set_cut(const PictureCut& cut) { cut_ = cut; }
 
     /// @return whether the camera moved
     bool on_cursor(const CursorEvent& event);
@@ -65,6 +67,7 @@ private:
     std::shared_ptr<const PatchMesh> mesh_;
     OrbitCamera orbit_;
     std::array<std::uint32_t, 2> view_{1, 1};
+    PictureCut cut_;
     Point cursor_{0.0, 0.0};
     Point pressed_at_{0.0, 0.0};
     std::optional<Button> button_;

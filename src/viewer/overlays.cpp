@@ -1,6 +1,7 @@
 #include "viewer/overlays.hpp"
 
 #include "display/false_colour_scale.hpp"
+#include "display/legend.hpp"
 #include "viewer/keys.hpp"
 #include "viewer/widgets.hpp"
 
@@ -35,7 +36,7 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
     const float top = origin.y + pad + line_height + 3.0F;
     const float bottom = top + 12.0F;
     const auto colour = [&](double position) {
-        const std::array<float, 3> linear = scale_colour(position, field.scale.map);
+        const std::array<float, 3> linear = field.scale.colour_at(position);
         const auto encode = [](float value) {
             const float srgb =
                 value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;
@@ -43,22 +44,60 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view) {
         };
         return IM_COL32(encode(linear[0]), encode(linear[1]), encode(linear[2]), 255);
     };
-    constexpr int steps = 40;
+    const bool banded = field.scale.bands > 1;
+    const int steps = banded ? static_cast<int>(field.scale.bands) : 40;
     for (int k = 0; k < steps; ++k) {
-        const float from = left + (right - left) * static_cast<float>(k) / steps;
-        const float to = left + (right - left) * static_cast<float>(k + 1) / steps;
-        const ImU32 first = colour(static_cast<double>(k) / steps);
-        const ImU32 last = colour(static_cast<double>(k + 1) / steps);
+        const float from = left + (right - left) * static_cast<float>(k) / static_cast<float>(steps);
+        const float to = left + (right - left) * static_cast<float>(k + 1) / static_cast<float>(steps);
+        const ImU32 first = colour((k + (banded ? 0.5 : 0.0)) / steps);
+        const ImU32 last = colour((k + (banded ? 0.5 : 1.0)) / steps);
         list->AddRectFilledMultiColor({from, top}, {to, bottom}, first, last, last, first);
     }
     const ColourScale told = legend_scale(field.shown, field.scale);
-    for (const double mark : told.marks()) {
-        const float x = left + (right - left) * static_cast<float>(told.position(mark));
-        list->AddLine({x, bottom}, {x, bottom + 4.0F}, ink);
+    const bool of_levels = banded || told.lines;
+    const std::vector<double> marks = told.marks();
+    const auto words_of = [&](double mark) {
         const bool whole = std::abs(mark) >= 1000.0 && std::abs(mark) < 10000.0;
-        const std::string words = whole ? fmt::format("{:.0f}", mark) : fmt::format("{:.3g}", mark);
-        const float half = 0.5F * ImGui::CalcTextSize(words.c_str()).x;
-        list->AddText({x - half, bottom + 4.0F}, ink, words.c_str());
+        return of_levels ? level_text(mark, marks)
+                         : (whole ? fmt::format("{:.0f}", mark) : fmt::format("{:.3g}", mark));
+    };
+    // Words of the ends of bands stay in the box.
+    const auto text_left = [&](float x, float width_of_words) {
+        const float least = origin.x + 3.0F;
+        const float from = x - 0.5F * width_of_words;
+        return of_levels ? std::clamp(from, least, std::max(least, origin.x + width - 3.0F - width_of_words))
+                         : from;
+    };
+    const auto is_crowded = [&](std::size_t every) {
+        float free_from = origin.x;
+        for (std::size_t k = 0; k < marks.size(); k += every) {
+            const float x = left + (right - left) * static_cast<float>(told.position(marks[k]));
+            const float wide = ImGui::CalcTextSize(words_of(marks[k]).c_str()).x;
+            if (text_left(x, wide) < free_from) {
+                return true;
+            }
+            free_from = text_left(x, wide) + wide + 6.0F;
+        }
+        return false;
+    };
+    std::size_t every = 1; // mark that has words
+    while (of_levels && every < marks.size() && is_crowded(every)) {
+        ++every;
+    }
+    for (std::size_t k = 0; k < marks.size(); ++k) {
+        const double mark = marks[k];
+        const float x = left + (right - left) * static_cast<float>(told.position(mark));
+        const bool line = told.lines && mark > told.low && mark < told.high;
+        if (line) {
+            const bool dark = is_dark_colour(told.colour_at(told.position(mark)));
+            list->AddLine({x, top}, {x, bottom}, dark ? ink : IM_COL32(0, 0, 0, 255));
+        }
+        list->AddLine({x, bottom}, {x, bottom + 4.0F}, ink);
+        if (k % every == 0) {
+            const std::string words = words_of(mark);
+            const float wide = ImGui::CalcTextSize(words.c_str()).x;
+            list->AddText({text_left(x, wide), bottom + 4.0F}, ink, words.c_str());
+        }
     }
     const std::array<bool, 2> beyond = values_beyond(field.shown, field.scale);
     const float middle = 0.5F * (top + bottom - line_height);
@@ -103,21 +142,38 @@ void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2
     ImGui::End();
 }
 
-void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
-                std::array<std::uint32_t, 2> view, bool picked) {
+namespace {
+
+void mark_edge(const Vec3& from, const Vec3& to, const OrbitCamera& orbit, std::array<std::uint32_t, 2> view,
+               ImU32 colour) {
     ImDrawList* list = ImGui::GetBackgroundDrawList();
     const auto pixel = [&view](const std::array<double, 2>& place) {
         return ImVec2(static_cast<float>(0.5 * view[0] + place[0] * view[1]),
                       static_cast<float>((0.5 - place[1]) * view[1]));
     };
+    if (const auto line = orbit.line(from, to)) {
+        const ImVec2 a = pixel((*line)[0]);
+        const ImVec2 b = pixel((*line)[1]);
+        list->AddLine(a, b, IM_COL32(0, 0, 0, 255), 4.0F);
+        list->AddLine(a, b, colour, 2.0F);
+    }
+}
+
+} // namespace
+
+void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view, bool picked) {
     const PatchCorners corners = mesh.corners(patch);
     for (std::size_t k = 0; k < corners.count; ++k) {
-        if (const auto line = orbit.line(corners.points[k], corners.points[(k + 1) % corners.count])) {
-            const ImVec2 a = pixel((*line)[0]);
-            const ImVec2 b = pixel((*line)[1]);
-            list->AddLine(a, b, IM_COL32(0, 0, 0, 255), 4.0F);
-            list->AddLine(a, b, picked ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 80, 200, 255), 2.0F);
-        }
+        mark_edge(corners.points[k], corners.points[(k + 1) % corners.count], orbit, view,
+                  picked ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 80, 200, 255));
+    }
+}
+
+void mark_edges(std::span<const std::array<Vec3, 2>> edges, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view) {
+    for (const auto& [from, to] : edges) {
+        mark_edge(from, to, orbit, view, IM_COL32(255, 210, 90, 255));
     }
 }
 

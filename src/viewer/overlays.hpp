@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 /// What lies over the scene. Between Gui::begin() and Gui::end().
@@ -16,6 +17,9 @@ void legend(const Field& field, std::array<std::uint32_t, 2> view);
 /// @param picked  else pointed at: another colour
 void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
                 std::array<std::uint32_t, 2> view, bool picked);
+/// Edges of the group that is selected, in front of everything.
+void mark_edges(std::span<const std::array<Vec3, 2>> edges, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view);
 /// A hemicube unfolded, as a texture of the window's context.
 struct HemicubePicture {
     std::uint32_t texture;

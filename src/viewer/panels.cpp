@@ -2,6 +2,7 @@
 
 #include "display/orbit_camera.hpp"
 #include "hemi/scene/light_unit.hpp"
+#include "viewer/clipping.hpp"
 #include "viewer/widgets.hpp"
 
 #include <fmt/format.h>
@@ -98,6 +99,21 @@ void map_choice(Look& look) {
     }
 }
 
+void bands_choice(Look& look) {
+    constexpr int most_bands = 32;
+    auto bands = static_cast<int>(look.bands);
+    ImGui::SetNextItemWidth(-102.0F);
+    if (ImGui::SliderInt("##bands", &bands, 1, most_bands, bands < 2 ? "smooth colours" : "%d bands",
+                         ImGuiSliderFlags_NoInput)) {
+        look.bands = bands < 2 ? 0 : static_cast<std::uint32_t>(bands);
+    }
+    ImGui::SameLine();
+    ImGui::Checkbox("iso-lines", &look.iso_lines);
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip("Lines of equal values: where bands end, or else at round values.");
+    }
+}
+
 /// @param field  what is shown now
 void range_choice(const Field& field, Look& look) {
     bool own = look.range.has_value();
@@ -164,6 +180,7 @@ void show_section(const PanelContent& content, Choices& choices) {
             channel_choice(content.document.input(), look);
         }
         map_choice(look);
+        bands_choice(look);
         scale_choice(look.logarithmic);
         if (content.field) {
             range_choice(*content.field, look);
@@ -172,6 +189,7 @@ void show_section(const PanelContent& content, Choices& choices) {
     case View::row:
     case View::column:
         map_choice(look);
+        bands_choice(look);
         scale_choice(look.logarithmic_factors);
         break;
     case View::outlines:
@@ -595,8 +613,10 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     }
     ImGui::BeginChild("sections", {0.0F, -foot});
     show_section(content, choices);
+    groups_section(content, choices);
     heat_section(content, choices);
     patch_section(content, choices);
+    clip_section(content, choices);
     solution_section(content, choices);
     material_section(content, choices);
     camera_section(content, choices);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "viewer/document.hpp"
+#include "viewer/groups.hpp"
 #include "viewer/look.hpp"
 #include "viewer/partners.hpp"
 
@@ -46,6 +47,9 @@ struct PictureSize {
 struct Choices {
     Look look;
     std::optional<std::uint32_t> picked;
+    std::optional<std::uint32_t> group;      ///< that is selected: the picked patch's, or one of the list
+    std::array<char, 64> group_search{};     ///< letters in the names of groups that are listed
+    PictureCut cut;                          ///< what the picture leaves out
     std::optional<std::uint32_t> pointed_at; ///< the patch in a list under the cursor
     bool partners_by_light = false;          ///< else by factor
     bool hemicube = true;                    ///< as the picked patch sees it
@@ -74,6 +78,7 @@ struct PanelContent {
     const Document& document;
     const std::optional<PickedPatch>& picked;
     const Camera& camera;
+    const GroupTable& groups;
     const std::optional<Field>& field;       ///< false colours that are shown
     std::string note;                        ///< on what was done last; empty: on the light
     std::string status;                      ///< at the panel's foot

@@ -18,6 +18,10 @@ Json index_or_null(const std::optional<std::uint32_t>& patch) {
     return patch ? Json(*patch) : Json(nullptr);
 }
 
+Json number_or_null(double value) {
+    return std::isnan(value) ? Json(nullptr) : Json(value);
+}
+
 Json point(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
@@ -50,6 +54,17 @@ void write_report(const std::filesystem::path& path, const Report& report) {
                                 {"position", point(report.under_cursor->position)}};
     }
     json["asks_to_close"] = report.asks_to_close;
+    json["group"] = index_or_null(report.choices.group);
+    json["clip"] = report.choices.cut.clip ? Json(clip_plane_text(*report.choices.cut.clip)) : Json(nullptr);
+    json["groups"] = Json::array();
+    for (std::uint32_t g = 0; g < report.groups.lines.size(); ++g) {
+        const GroupLine& line = report.groups.lines[g];
+        json["groups"].push_back({{"name", report.document.input().mesh->groups()[g]},
+                                  {"visibility", to_word(report.choices.cut.of_group(g))},
+                                  {"area", line.area},
+                                  {"mean", number_or_null(line.mean)},
+                                  {"net_power", number_or_null(line.net_power)}});
+    }
     if (report.picked) {
         for (const Partner& partner : report.picked->partners) {
             json["partners"].push_back(partner.patch);
@@ -58,13 +73,15 @@ void write_report(const std::filesystem::path& path, const Report& report) {
     if (report.field) {
         json["values"] = Json::array();
         for (const double value : report.field->shown.values) {
-            json["values"].push_back(std::isnan(value) ? Json(nullptr) : Json(value));
+            json["values"].push_back(number_or_null(value));
         }
         const ColourScale& scale = report.field->scale;
         json["scale"] = {{"low", scale.low},
                          {"high", scale.high},
                          {"logarithmic", scale.logarithmic},
-                         {"map", to_word(scale.map)}};
+                         {"map", to_word(scale.map)},
+                         {"bands", scale.bands},
+                         {"lines", scale.lines ? scale.levels() : std::vector<double>()}};
         json["title"] = report.field->shown.title;
         json["unit"] = report.field->shown.unit;
     }

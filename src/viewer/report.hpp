@@ -28,13 +28,16 @@ struct Report {
     std::vector<std::uint32_t> seen; ///< patches in the hemicube that is shown
     const std::optional<UnderCursor>& under_cursor;
     bool asks_to_close;
+    const GroupTable& groups;
 };
 
 /// One JSON object: {"schema": "hemi/view/1", "quantity", "picked": patch or null, "pointed_at", "partners":
 /// [patch …], "hemicube": [patch …], "values": one a patch, null where there is none, or null, "scale":
-/// {"low", "high", "logarithmic"} or null, "radiosity": [[per channel] …], "residuals": [after every sweep],
-/// "light": how it was solved, "camera": {"eye", "target", "up", "fov", "orthographic"}, "message": what went
-/// wrong last, "under_cursor": {"patch", "position"} or null, "asks_to_close": whether it does}.
+/// {"low", "high", "logarithmic", "map", "bands", "lines": [values]} or null, "radiosity": [[per channel] …],
+/// "residuals": [after every sweep], "light": how it was solved, "camera": {"eye", "target", "up", "fov",
+/// "orthographic"}, "message": what went wrong last, "under_cursor": {"patch", "position"} or null,
+/// "asks_to_close": whether it does, "group": index of the selected one or null, "groups": [{"name",
+/// "visibility", "area", "mean", "net_power"} …], "clip": what is shown or null}.
 /// @throws IoError
 void write_report(const std::filesystem::path& path, const Report& report);
 

@@ -34,7 +34,12 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
     if (look.shown.view == View::picture && !evenly_lit_) {
         light_ = with_unknown_grey(std::move(light_), *input.mesh, document.light(), exposure);
     }
-    renderer_.upload(colours_.empty() ? light_ : painted(light_, colours_));
+    PictureMesh drawn = colours_.empty() ? light_ : painted(light_, colours_);
+    if (field_ && field_->scale.lines) {
+        put_iso_values(drawn, *input.mesh, document.surfaces(), field_->shown.values, field_->scale);
+        settings_.iso_lines = iso_positions(field_->scale);
+    }
+    renderer_.upload(drawn);
 }
 
 std::vector<std::array<float, 3>> SceneView::colours() const {
@@ -46,6 +51,7 @@ PictureSettings SceneView::settings(std::array<std::uint32_t, 2> size, std::uint
     settings.width = std::max(size[0], 1U);
     settings.height = std::max(size[1], 1U);
     settings.samples = samples;
+    settings.cut = cut_;
     return settings;
 }
 

@@ -19,6 +19,9 @@ public:
     /// Puts on the scene what the look asks for. Needed again after document, look or picked patch changed.
     void show(const Document& document, const Look& look, std::optional<std::uint32_t> picked);
 
+    /// What is left out of it from now on.
+    void cut(const PictureCut& cut) { cut_ = cut; }
+
     /// The field that is shown in false colours; none: the picture, outlines, items.
     [[nodiscard]] const std::optional<Field>& field() const { return field_; }
     /// Colours of the patches as they are shown, display linear.
@@ -37,6 +40,7 @@ private:
 
     PictureRenderer renderer_;
     PictureSettings settings_; ///< but for size and samples
+    PictureCut cut_;
     std::optional<Field> field_;
     std::vector<std::array<float, 3>> colours_; ///< what was painted
     PictureMesh light_;                         ///< where nothing was painted

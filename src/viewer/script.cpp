@@ -128,15 +128,21 @@ KeyCommand parse_key(Line& line) {
     std::string_view name = line.word("a key");
     const bool control = take("ctrl+", name);
     const bool shift = take("shift+", name);
-    constexpr std::array<std::pair<std::string_view, char>, 5> named{
-        {{"Escape", escape_key}, {"Tab", tab_key}, {"Home", home_key}, {"F1", help_key}, {"F5", reload_key}}};
+    constexpr std::array<std::pair<std::string_view, char>, 7> named{{{"Escape", escape_key},
+                                                                      {"Tab", tab_key},
+                                                                      {"Home", home_key},
+                                                                      {"F1", help_key},
+                                                                      {"F5", reload_key},
+                                                                      {"Enter", enter_key},
+                                                                      {"Backspace", backspace_key}}};
     for (const auto& [word, key] : named) {
         if (name == word) {
             return {{key, shift, control}};
         }
     }
     if (name.size() != 1 || std::isalnum(static_cast<unsigned char>(name[0])) == 0) {
-        line.fail(fmt::format("key \"{}\"; must be a letter, a digit, Escape, Tab, Home, F1 or F5", name));
+        line.fail(fmt::format(
+            "key \"{}\"; must be a letter, a digit, Escape, Tab, Home, Enter, Backspace, F1 or F5", name));
     }
     return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift, control}};
 }
@@ -253,12 +259,74 @@ RangeCommand parse_range(Line& line) {
     return {std::array{low, high}};
 }
 
+BandsCommand parse_bands(Line& line) {
+    if (line.rest() == "off") {
+        (void)line.next();
+        return {0};
+    }
+    const double count = line.number("the number of bands");
+    if (count != std::floor(count) || count < 2.0 || count > 32.0) {
+        line.fail(fmt::format("{} bands; must be a whole number from 2 to 32, or off", count));
+    }
+    return {static_cast<std::uint32_t>(count)};
+}
+
+IsoLinesCommand parse_iso_lines(Line& line) {
+    const std::string_view word = line.word("on or off");
+    if (word != "on" && word != "off") {
+        line.fail(fmt::format("iso-lines \"{}\"; must be on or off", word));
+    }
+    return {word == "on"};
+}
+
+ClipCommand parse_clip(Line& line) {
+    const std::string word(line.word("a plane"));
+    if (word == "patch" || word == "off") {
+        return {word == "patch", std::nullopt};
+    }
+    try {
+        return {false, parse_clip_plane(word)};
+    } catch (const InvalidArgument& error) {
+        line.fail(fmt::format("clip {}, patch or off", error.what()));
+    }
+}
+
+/// Nothing where the command is not of groups.
+std::optional<GroupCommand> parse_group(std::string_view command, Line& line) {
+    using Action = GroupCommand::Action;
+    constexpr std::array<std::pair<std::string_view, Action>, 6> known{{{"select", Action::select},
+                                                                        {"show-group", Action::show},
+                                                                        {"outline", Action::outlines},
+                                                                        {"hide", Action::hide},
+                                                                        {"isolate", Action::isolate},
+                                                                        {"show-all", Action::show_all}}};
+    for (const auto& [word, action] : known) {
+        if (word != command) {
+            continue;
+        }
+        GroupCommand result{action, {}};
+        if (action == Action::show_all) {
+            line.end();
+        } else if ((result.group = line.rest()).empty()) {
+            line.fail("a group is missing");
+        }
+        return result;
+    }
+    return std::nullopt;
+}
+
 ScriptCommand parse_command(std::string_view command, Line& line, std::size_t number) {
     if (command == "screenshot") {
         return {number, parse_screenshot(line)};
     }
     if (command == "set") {
         return {number, parse_set(line)};
+    }
+    if (std::optional<GroupCommand> of_group = parse_group(command, line)) {
+        return {number, *std::move(of_group)};
+    }
+    if (command == "type") {
+        return {number, TypeCommand{std::string(line.rest())}};
     }
     if (command == "windowshot") {
         return {number, WindowshotCommand{parse_file(line, command, ".png")}};
@@ -305,6 +373,12 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = parse_map(line);
     } else if (command == "range") {
         result.action = parse_range(line);
+    } else if (command == "bands") {
+        result.action = parse_bands(line);
+    } else if (command == "iso-lines") {
+        result.action = parse_iso_lines(line);
+    } else if (command == "clip") {
+        result.action = parse_clip(line);
     } else if (command == "key") {
         result.action = parse_key(line);
     } else if (command == "resize") {
@@ -338,7 +412,8 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = CancelCommand{};
     } else if (command != "quit") {
         line.fail(fmt::format(
-            "command \"{}\"; must be drag, click, move, scroll, key, show, channel, map, range, set, "
+            "command \"{}\"; must be drag, click, move, scroll, key, type, show, channel, map, range, bands, "
+            "iso-lines, select, show-group, outline, hide, isolate, show-all, clip, set, "
             "fov, resize, minimise, restore, screenshot, windowshot, report, command, save-result, "
             "save-camera, drop, reload, "
             "changed, live, preview, rows, patches, wait, cancel or quit",

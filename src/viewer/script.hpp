@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/display/colour_map.hpp"
+#include "hemi/display/picture_cut.hpp"
 #include "viewer/events.hpp"
 
 #include <array>
@@ -57,6 +58,28 @@ struct SetCommand {
     Property property;
     std::vector<double> values;
     std::string name; ///< of the material, or of the group
+};
+/// Of false colours; 0: smooth ones.
+struct BandsCommand {
+    std::uint32_t count;
+};
+struct IsoLinesCommand {
+    bool drawn;
+};
+/// How much of a group is shown.
+struct GroupCommand {
+    enum class Action { select, show, outlines, hide, isolate, show_all };
+    Action action;
+    std::string group; ///< of all but show_all
+};
+/// Where the picture is cut.
+struct ClipCommand {
+    bool through_patch = false;     ///< the picked one
+    std::optional<ClipPlane> plane; ///< else that; none: it is not cut
+};
+/// Types letters into the field that was clicked.
+struct TypeCommand {
+    std::string text;
 };
 struct ResizeCommand {
     std::uint32_t width;
@@ -118,9 +141,10 @@ struct QuitCommand {};
 struct ScriptCommand {
     std::size_t line;
     std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand,
-                 ChannelCommand, MapCommand, RangeCommand, SetCommand, ResizeCommand, ScreenshotCommand,
-                 WindowshotCommand, ReportCommand, LiveCommand, WaitCommand, PreviewCommand, RowsCommand,
-                 PatchesCommand, CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
+                 ChannelCommand, MapCommand, RangeCommand, BandsCommand, IsoLinesCommand, GroupCommand,
+                 ClipCommand, TypeCommand, SetCommand, ResizeCommand, ScreenshotCommand, WindowshotCommand,
+                 ReportCommand, LiveCommand, WaitCommand, PreviewCommand, RowsCommand, PatchesCommand,
+                 CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
                  SaveCameraCommand, CommandLineCommand, FovCommand, MinimiseCommand, QuitCommand>
         action;
 };
@@ -138,6 +162,12 @@ struct ScriptCommand {
 /// set reflectance|exitance VALUE[,VALUE ...] MATERIAL
 ///                        one value, or one a channel; waits until the light has followed
 /// set temperature KELVIN GROUP
+/// bands N, bands off     of false colours
+/// iso-lines on|off
+/// select|show-group|outline|hide|isolate GROUP
+///                        selects it; how much of it is shown; show-all
+/// clip PLANE             as parse_clip_plane() reads it; `patch`: through the picked one; `off`
+/// type TEXT              into the field that was clicked
 /// fov DEGREES            field of view
 /// resize WIDTH HEIGHT
 /// minimise, restore      the window

@@ -47,6 +47,12 @@ std::optional<char> key_name(int key, int scancode) {
     if (key == GLFW_KEY_HOME) {
         return home_key;
     }
+    if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) {
+        return enter_key;
+    }
+    if (key == GLFW_KEY_BACKSPACE) {
+        return backspace_key;
+    }
     const char* name = glfwGetKeyName(key, scancode);
     if (name == nullptr || std::string_view(name).size() != 1) {
         return std::nullopt;
@@ -109,6 +115,9 @@ struct Window::Callbacks {
                 KeyEvent{*name, (modifiers & GLFW_MOD_SHIFT) != 0, (modifiers & GLFW_MOD_CONTROL) != 0});
         }
     }
+    static void text(GLFWwindow* window, unsigned int letter) noexcept {
+        events(window).push_back(TextEvent{static_cast<char32_t>(letter)});
+    }
     static void resized(GLFWwindow* window, int, int) noexcept { events(window).push_back(RefreshEvent{}); }
     static void refresh(GLFWwindow* window) noexcept { events(window).push_back(RefreshEvent{}); }
     static void close(GLFWwindow* window) noexcept { events(window).push_back(CloseEvent{}); }
@@ -163,6 +172,7 @@ void Window::listen() {
     glfwSetMouseButtonCallback(window, Callbacks::button);
     glfwSetScrollCallback(window, Callbacks::scroll);
     glfwSetKeyCallback(window, Callbacks::key);
+    glfwSetCharCallback(window, Callbacks::text);
     glfwSetFramebufferSizeCallback(window, Callbacks::resized);
     glfwSetWindowRefreshCallback(window, Callbacks::refresh);
     glfwSetWindowCloseCallback(window, Callbacks::close);
