@@ -57,9 +57,9 @@ ClipPlane parse_clip_plane(const std::string& text) {
             "{}: must be what is shown, such as x<1.5, z>0 or, of 0.6 x + 0.8 y, 0.6,0.8,0<1.5", text));
     }
     // A length that is 1 but for rounding stays, so that a plane that was written is read as it was.
-    const double scale = (std::abs(length - 1.0) > rounding ? 1.0 / length : 1.0);
-    const double side = text[sign] == '<' ? scale : -scale;
-    return {side * *direction + Vec3(0.0), side * *limit + 0.0}; // no -0
+    const double divisor = std::abs(length - 1.0) > rounding ? length : 1.0;
+    const double side = text[sign] == '<' ? divisor : -divisor;
+    return {*direction / side + Vec3(0.0), *limit / side + 0.0}; // no -0
 }
 
 std::string clip_plane_text(const ClipPlane& plane) {

@@ -6,8 +6,10 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/core/text.hpp"
-#include "viewer/clipping.hpp"
+#include "viewer/gauges.hpp"
 #include "viewer/keys.hpp"
+#include "viewer/legend_window.hpp"
+#include "viewer/measure.hpp"
 #include "viewer/overlays.hpp"
 #include "viewer/report.hpp"
 
@@ -33,6 +35,8 @@ constexpr std::chrono::milliseconds gather_interval{100};
 constexpr int gather_part = 20;
 /// A solution that took longer is not thrown away without a word.
 constexpr std::chrono::seconds long_work{60};
+/// One step of a walk, in scene diagonals.
+constexpr double walk_share = 0.01;
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code error;
@@ -75,6 +79,9 @@ void Application::exchange(ViewerInput input) {
         choices_.cut.clip.reset();
     }
     shown_group_.reset();
+    choices_.measured.clear();
+    probe_.reset();
+    hides_backs_ = false;
     choices_.pointed_at.reset();
     choices_.materials = input.scene->materials;
     choices_.conditions = input.heat ? input.heat->conditions : std::vector<HeatCondition>();
@@ -91,6 +98,8 @@ void Application::exchange(ViewerInput input) {
     saved_result_.clear();
     shown_look_.reset();
     message_.clear();
+    bookmarks_ = Bookmarks();
+    attempt([this] { bookmarks_ = Bookmarks(document_->input().file); });
     settle();
 }
 
@@ -184,10 +193,21 @@ void Application::act_on(const Event& event) {
 
 void Application::on_key(const KeyEvent& event) {
     navigator_.let_go();
+    const int number = event.key >= '1' && event.key <= '9' ? event.key - '0' : 0;
     if (event.control) {
         if (event.key == 'Z') {
             undo_or_redo(event.shift);
+        } else if (number > 0) {
+            attempt([this, number] { keep_camera(number); });
         }
+    } else if (event.alt) {
+        if (number > 0) {
+            go_to_camera(number);
+        }
+    } else if (choices_.walking &&
+               apply_walk_key(event, walk_share * document_->input().mesh->bounds().diagonal(),
+                              navigator_.orbit())) {
+        picture_changed_ = true;
     } else if (apply_camera_key(event, navigator_.aspect(), navigator_.orbit())) {
         picture_changed_ = true;
     } else if (!apply_look_key(event, document_->input(), choices_)) {
@@ -212,6 +232,12 @@ void Application::other_key(const KeyEvent& event) {
         on_group_key(event.key);
     } else if (event.key == 'K') {
         clip_by_key(event.shift);
+    } else if (event.key == 'D') {
+        choices_.measuring = !choices_.measuring;
+    } else if (event.key == 'J') {
+        choices_.walking = !choices_.walking;
+    } else if (event.key == 'U') {
+        choices_.gauges = !choices_.gauges;
     } else if (event.key == 'C') {
         choices_.hemicube = !choices_.hemicube;
     } else if (event.key == help_key) {
@@ -224,6 +250,10 @@ void Application::other_key(const KeyEvent& event) {
         choices_.help = false;
     } else if (event.key == escape_key && !message_.empty()) {
         message_.clear();
+    } else if (event.key == escape_key && choices_.measuring) {
+        choices_.measuring = false;
+    } else if (event.key == escape_key && choices_.walking) {
+        choices_.walking = false;
     } else if (event.key == escape_key && (choices_.picked || choices_.group)) {
         choices_.picked.reset();
         choices_.group.reset();
@@ -342,6 +372,12 @@ void Application::grant_wishes() {
     if (wishes.save_result) {
         attempt([this] { save_result(free_name(document_->input().file.stem().string(), ".hres")); });
     }
+    if (wishes.save_probe) {
+        attempt([this] { save_probe(free_name(document_->input().file.stem().string(), ".csv")); });
+    }
+    if (wishes.bookmark) {
+        go_to_camera(*wishes.bookmark);
+    }
     if (wishes.save_camera) {
         attempt([this] { save_camera(); });
     }
@@ -369,6 +405,15 @@ void Application::grant_wishes() {
 
 void Application::pick(std::array<double, 2> pixel) {
     const auto size = view_size();
+    if (choices_.measuring) {
+        if (const auto point = navigator_.surface_under_cursor(choices_.look.backs)) {
+            if (choices_.measured.size() > 1) {
+                choices_.measured.clear();
+            }
+            choices_.measured.push_back(point->position);
+        }
+        return;
+    }
     if (pixel[0] >= 0.0 && pixel[0] < size[0] && pixel[1] >= 0.0 && pixel[1] < size[1]) {
         choices_.picked = view_.item(navigator_.camera(), size, static_cast<std::uint32_t>(pixel[0]),
                                      static_cast<std::uint32_t>(pixel[1]));
@@ -436,7 +481,9 @@ std::array<std::uint32_t, 2> Application::view_size() const {
 void Application::settle() {
     const ViewerInput& input = document_->input();
     navigator_.set_view(view_size());
+    navigator_.set_walking(choices_.walking);
     settle_cut();
+    settle_probe();
     if (why_not(choices_.look.shown, input, choices_.picked) != nullptr) {
         choices_.look.shown = {};
     }
@@ -461,6 +508,9 @@ void Application::settle() {
         view_.show(*document_, choices_.look, choices_.picked);
         values_ = shown_values(*document_, choices_.look, view_.field());
         groups_ = group_table(*document_, values_);
+        constexpr std::size_t histogram_steps = 64;
+        histogram_ = view_.field() ? area_histogram(*view_.field(), *input.mesh, histogram_steps)
+                                   : std::vector<double>();
         picture_changed_ = true;
     }
     picked_.reset();
@@ -481,50 +531,6 @@ void Application::settle() {
     shown_hemicube_ = {choices_.hemicube, choices_.hemicube_ids, choices_.hemicube_eye};
     draw_hemicube();
     update_title();
-}
-
-void Application::settle_cut() {
-    const PatchMesh& mesh = *document_->input().mesh;
-    if (choices_.picked && (shown_pick_ != choices_.picked || !choices_.group)) {
-        choices_.group = mesh.group(*choices_.picked);
-    }
-    if (shown_group_ != choices_.group) {
-        shown_group_ = choices_.group;
-        group_edges_ = shown_group_ ? group_edges(mesh, *shown_group_) : std::vector<std::array<Vec3, 2>>();
-    }
-    if (shown_cut_ != choices_.cut) {
-        shown_cut_ = choices_.cut;
-        picture_changed_ = true;
-    }
-    navigator_.set_cut(shown_cut_);
-    view_.cut(shown_cut_);
-}
-
-void Application::on_group_key(char key) {
-    const std::size_t count = document_->input().mesh->groups().size();
-    if (key == 'A') {
-        choices_.cut.groups.clear();
-    } else if (!choices_.group) {
-        note_ = "select a group first: click a patch, or a name in the list";
-    } else if (key == 'I') {
-        isolate(choices_, *choices_.group, count);
-    } else {
-        set_visibility(choices_, *choices_.group, key == 'O' ? Visibility::outlines : Visibility::hidden,
-                       count);
-    }
-}
-
-void Application::clip_by_key(bool turn) {
-    std::optional<ClipPlane>& clip = choices_.cut.clip;
-    if (turn && clip) {
-        clip = other_side(*clip);
-    } else if (clip) {
-        clip.reset();
-    } else if (choices_.picked) {
-        clip = plane_of_patch(*document_->input().mesh, *choices_.picked);
-    } else {
-        note_ = "click a patch first: the clipping plane goes through it";
-    }
 }
 
 /// The picked patch's hemicube, where it is wanted and there is room for it.
@@ -561,8 +567,8 @@ void Application::describe_panels() {
     const PatchMesh& mesh = *document_->input().mesh;
     gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
     if (view[0] < size[0]) {
-        side_panel({*document_, picked_, navigator_.camera(), groups_, view_.field(), note_, status_,
-                    words_under_cursor()},
+        side_panel({*document_, picked_, navigator_.camera(), bookmarks_, groups_, view_.field(), note_,
+                    status_, words_under_cursor()},
                    size, choices_);
     }
     if (view[0] > 0 && view[1] > 0) {
@@ -575,7 +581,17 @@ void Application::describe_panels() {
             mark_patch(mesh, *choices_.picked, navigator_.orbit(), view, true);
         }
         if (view_.field()) {
-            legend(*view_.field(), view);
+            legend_window(*view_.field(), histogram_, view, choices_.look);
+        }
+        if (choices_.gauges && view[0] < size[0]) {
+            gauges(*document_->input().scene, navigator_.orbit(), view, view_.field().has_value());
+        }
+        if (choices_.measuring) {
+            mark_line(choices_.measured, navigator_.orbit(), view);
+            measure_window(*document_->input().scene, probe_, values_, view, choices_);
+        }
+        if (hides_backs_) {
+            backs_note(view);
         }
         if (inset_ && choices_.hemicube && choices_.picked && view[0] < size[0]) {
             hemicube_window(inset_->picture(), view, choices_);
@@ -620,6 +636,10 @@ void Application::draw() {
         rough_ = window_.software() && (moving_ || !settings_.script.empty());
         draw_picture(target_, view, rough_);
         picture_changed_ = false;
+        if (!(window_.software() && navigator_.dragging())) {
+            hides_backs_ = navigator_.camera().orthographic && !choices_.look.backs &&
+                           view_.hides_backs(navigator_.camera(), view);
+        }
         lost_ = true;
         pace_gathering();
         rests_at_ = (document_->gathering() ? std::max(gathers_at_, Clock::now()) : Clock::now()) + rest;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include "viewer/bookmarks.hpp"
 #include "viewer/document.hpp"
 #include "viewer/file_watch.hpp"
 #include "viewer/gui.hpp"
 #include "viewer/hemicube_inset.hpp"
+#include "viewer/line_probe.hpp"
 #include "viewer/material_history.hpp"
 #include "viewer/navigator.hpp"
 #include "viewer/opener.hpp"
@@ -68,6 +70,8 @@ public:
     /// Writes the camera into the scene's file. @throws InvalidArgument where that holds none; IoError
     void save_camera();
     void save_result(const std::filesystem::path& path);
+    /// Writes what is shown along the line that is measured. @throws InvalidArgument where there is none
+    void save_probe(const std::filesystem::path& path);
     /// Command line that draws the picture. @throws InvalidArgument where none does
     [[nodiscard]] std::string command_line() const;
     /// Pixels of the window that show the scene, from its upper left.
@@ -80,6 +84,11 @@ private:
     void on_key(const KeyEvent& event);
     void other_key(const KeyEvent& event);
     void undo_or_redo(bool redo);
+    /// Beside the scene. @param number  1 to 9
+    void keep_camera(int number);
+    void go_to_camera(int number);
+    /// Looks along the line that is measured, where its ends have changed.
+    void settle_probe();
     /// Ends, unless something would be lost: then it asks first.
     void ask_to_close();
     /// What would be lost, in words; empty: nothing.
@@ -129,8 +138,12 @@ private:
     std::string title_;
     std::optional<UnderCursor> under_cursor_;
     PictureCut shown_cut_;
-    ShownValues values_;                       ///< of what is shown
-    GroupTable groups_;                        ///< likewise
+    ShownValues values_;            ///< of what is shown
+    GroupTable groups_;             ///< likewise
+    std::vector<double> histogram_; ///< of the field
+    std::optional<LineProbe> probe_;
+    bool hides_backs_ = false; ///< in an orthographic picture, which says so
+    Bookmarks bookmarks_;
     std::optional<std::uint32_t> shown_group_; ///< that edges are of
     std::vector<std::array<Vec3, 2>> group_edges_;
     std::optional<MaterialHistory> history_; ///< always there once a scene is

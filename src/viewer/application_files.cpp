@@ -54,7 +54,7 @@ void Application::report(const std::filesystem::path& path) const {
     const bool hemicube = inset_ && choices_.picked && choices_.hemicube;
     write_report(path, {*document_, choices_, view_.field(), picked_, navigator_.camera(), message_,
                         hemicube ? inset_->seen() : std::vector<std::uint32_t>(), under_cursor_,
-                        asks_to_close_, groups_});
+                        asks_to_close_, groups_, values_, probe_, histogram_, hides_backs_});
 }
 
 void Application::save_camera() {

@@ -33,6 +33,7 @@ struct KeyEvent {
     char key;
     bool shift;
     bool control = false;
+    bool alt = false;
 };
 /// A letter that was typed, as the keyboard's layout has it.
 struct TextEvent {

@@ -138,6 +138,14 @@ void group_list(const PanelContent& content, Choices& choices) {
     if (powers) {
         header_cell("net W", "net power of radiation, leaving positive");
     }
+    if (choices.group != choices.group_seen) { // as by a click in the scene
+        choices.group_seen = choices.group;
+        const auto row = choices.group ? std::find(found.begin(), found.end(), *choices.group) : found.end();
+        if (row != found.end()) {
+            const auto before = static_cast<float>(row - found.begin()) - 2.0F;
+            ImGui::SetScrollY(std::max(before, 0.0F) * (ImGui::GetTextLineHeight() + 4.0F));
+        }
+    }
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(found.size()));
     while (clipper.Step()) {

@@ -72,6 +72,10 @@ std::vector<GuideLine> guide(Controls controls) {
          {"I, O, N", "of the selected group: alone; only its outlines; not shown"},
          {"A", "all groups"},
          {"K, shift + K", "clipping plane through the picked patch or none; its other side"},
+         {"D", "measure: two clicks give a distance, and what is shown along the line"},
+         {"U", "axes and scale bar"},
+         {"ctrl + 1 ... 9, alt + 1 ... 9", "keep a camera beside the scene, go to it"},
+         {"J", "walk: W, A, S, D (shift: faster), drags look around; Esc or J ends it"},
          {"T", "filmic or linear tone mapping"},
          {"E, shift + E", "brighter, darker by a third of a stop"},
          {"G, shift + G", "the next sweep from the lamps' light, all sweeps"},
@@ -100,6 +104,19 @@ bool apply_camera_key(const KeyEvent& event, double aspect, OrbitCamera& orbit) 
         orbit.look_along(OrbitCamera::Axis::top, event.shift, aspect);
     } else if (key == '5') {
         orbit.set_orthographic(!orbit.camera().orthographic);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+bool apply_walk_key(const KeyEvent& event, double step, OrbitCamera& orbit) {
+    constexpr double run = 4.0;
+    const double way = event.shift ? run * step : step;
+    if (event.key == 'W' || event.key == 'S') {
+        orbit.walk(event.key == 'W' ? way : -way, 0.0);
+    } else if (event.key == 'A' || event.key == 'D') {
+        orbit.walk(0.0, event.key == 'D' ? way : -way);
     } else {
         return false;
     }

@@ -99,6 +99,7 @@ std::optional<std::array<double, 2>> Navigator::on_button(const ButtonEvent& eve
         // Off the scene one turns about the target, not about a place in empty space.
         const auto point = surface_under_cursor();
         orbit_.grab(motion_ != Motion::orbit ? point_under_cursor()
+                    : walking_               ? camera().eye
                     : point                  ? point->position
                                              : camera().target);
         return std::nullopt;

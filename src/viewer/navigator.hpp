@@ -27,6 +27,8 @@ public:
     /// Pixels of the window that show the scene, from its upper left.
     void set_view(std::array<std::uint32_t, 2> size) { view_ = size; }
     [[nodiscard]] double aspect() const;
+    /// Whether drags look around from where the eye is, instead of orbiting.
+    void set_walking(bool walking) { walking_ = walking; }
     /// What the picture leaves out.
     void set_cut(const PictureCut& cut) { cut_ = cut; }
 
@@ -73,6 +75,7 @@ private:
     std::optional<Button> button_;
     Motion motion_ = Motion::none;
     bool dragging_ = false;
+    bool walking_ = false;
 };
 
 } // namespace hemi::viewer

@@ -1,7 +1,5 @@
 #include "viewer/overlays.hpp"
 
-#include "display/false_colour_scale.hpp"
-#include "display/legend.hpp"
 #include "viewer/keys.hpp"
 #include "viewer/widgets.hpp"
 
@@ -14,100 +12,6 @@
 #include <string>
 
 namespace hemi::viewer {
-
-void legend(const Field& field, std::array<std::uint32_t, 2> view) {
-    constexpr float margin = 10.0F;
-    constexpr float pad = 9.0F;
-    const float width = std::min(380.0F, static_cast<float>(view[0]) - 2.0F * margin);
-    const float line_height = ImGui::GetTextLineHeight();
-    const float height = 2.0F * line_height + 12.0F + 2.0F * pad + 8.0F;
-    if (width < 150.0F || static_cast<float>(view[1]) < 3.0F * height) {
-        return;
-    }
-    ImDrawList* list = ImGui::GetBackgroundDrawList();
-    const ImVec2 origin{margin, static_cast<float>(view[1]) - margin - height};
-    list->AddRectFilled(origin, {origin.x + width, origin.y + height}, IM_COL32(22, 24, 26, 225), 3.0F);
-    const ImU32 ink = IM_COL32(235, 235, 235, 255);
-    const std::string title = legend_title(field.shown, field.scale, field.grey);
-    list->AddText({origin.x + pad, origin.y + pad - 2.0F}, ink, title.c_str());
-
-    const float left = origin.x + pad + 14.0F;
-    const float right = origin.x + width - pad - 20.0F;
-    const float top = origin.y + pad + line_height + 3.0F;
-    const float bottom = top + 12.0F;
-    const auto colour = [&](double position) {
-        const std::array<float, 3> linear = field.scale.colour_at(position);
-        const auto encode = [](float value) {
-            const float srgb =
-                value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;
-            return static_cast<int>(std::lround(255.0F * srgb));
-        };
-        return IM_COL32(encode(linear[0]), encode(linear[1]), encode(linear[2]), 255);
-    };
-    const bool banded = field.scale.bands > 1;
-    const int steps = banded ? static_cast<int>(field.scale.bands) : 40;
-    for (int k = 0; k < steps; ++k) {
-        const float from = left + (right - left) * static_cast<float>(k) / static_cast<float>(steps);
-        const float to = left + (right - left) * static_cast<float>(k + 1) / static_cast<float>(steps);
-        const ImU32 first = colour((k + (banded ? 0.5 : 0.0)) / steps);
-        const ImU32 last = colour((k + (banded ? 0.5 : 1.0)) / steps);
-        list->AddRectFilledMultiColor({from, top}, {to, bottom}, first, last, last, first);
-    }
-    const ColourScale told = legend_scale(field.shown, field.scale);
-    const bool of_levels = banded || told.lines;
-    const std::vector<double> marks = told.marks();
-    const auto words_of = [&](double mark) {
-        const bool whole = std::abs(mark) >= 1000.0 && std::abs(mark) < 10000.0;
-        return of_levels ? level_text(mark, marks)
-                         : (whole ? fmt::format("{:.0f}", mark) : fmt::format("{:.3g}", mark));
-    };
-    // Words of the ends of bands stay in the box.
-    const auto text_left = [&](float x, float width_of_words) {
-        const float least = origin.x + 3.0F;
-        const float from = x - 0.5F * width_of_words;
-        return of_levels ? std::clamp(from, least, std::max(least, origin.x + width - 3.0F - width_of_words))
-                         : from;
-    };
-    const auto is_crowded = [&](std::size_t every) {
-        float free_from = origin.x;
-        for (std::size_t k = 0; k < marks.size(); k += every) {
-            const float x = left + (right - left) * static_cast<float>(told.position(marks[k]));
-            const float wide = ImGui::CalcTextSize(words_of(marks[k]).c_str()).x;
-            if (text_left(x, wide) < free_from) {
-                return true;
-            }
-            free_from = text_left(x, wide) + wide + 6.0F;
-        }
-        return false;
-    };
-    std::size_t every = 1; // mark that has words
-    while (of_levels && every < marks.size() && is_crowded(every)) {
-        ++every;
-    }
-    for (std::size_t k = 0; k < marks.size(); ++k) {
-        const double mark = marks[k];
-        const float x = left + (right - left) * static_cast<float>(told.position(mark));
-        const bool line = told.lines && mark > told.low && mark < told.high;
-        if (line) {
-            const bool dark = is_dark_colour(told.colour_at(told.position(mark)));
-            list->AddLine({x, top}, {x, bottom}, dark ? ink : IM_COL32(0, 0, 0, 255));
-        }
-        list->AddLine({x, bottom}, {x, bottom + 4.0F}, ink);
-        if (k % every == 0) {
-            const std::string words = words_of(mark);
-            const float wide = ImGui::CalcTextSize(words.c_str()).x;
-            list->AddText({text_left(x, wide), bottom + 4.0F}, ink, words.c_str());
-        }
-    }
-    const std::array<bool, 2> beyond = values_beyond(field.shown, field.scale);
-    const float middle = 0.5F * (top + bottom - line_height);
-    if (beyond[0]) {
-        list->AddText({left - 12.0F, middle}, ink, "<");
-    }
-    if (beyond[1]) {
-        list->AddText({right + 5.0F, middle}, ink, ">");
-    }
-}
 
 void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2> view, Choices& choices) {
     constexpr float margin = 10.0F;
@@ -227,6 +131,15 @@ void close_question(const std::string& unsaved, bool savable, std::array<std::ui
     wishes.close = ImGui::Button("Quit (Q)") || wishes.close;
     ImGui::SameLine();
     wishes.stay = ImGui::Button("Stay (Esc)") || wishes.stay;
+    ImGui::End();
+}
+
+void backs_note(std::array<std::uint32_t, 2> view) {
+    ImGui::SetNextWindowPos({0.5F * static_cast<float>(view[0]), 10.0F}, ImGuiCond_Always, {0.5F, 0.0F});
+    ImGui::SetNextWindowBgAlpha(0.8F);
+    ImGui::Begin("backs", nullptr,
+                 fixed_window | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs);
+    text("Surfaces that face away are not drawn: B shows their backs.");
     ImGui::End();
 }
 

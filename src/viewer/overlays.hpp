@@ -11,8 +11,6 @@
 /// What lies over the scene. Between Gui::begin() and Gui::end().
 namespace hemi::viewer {
 
-/// The colours of a field, in the lower left of the view.
-void legend(const Field& field, std::array<std::uint32_t, 2> view);
 /// The outline of a patch, in front of everything.
 /// @param picked  else pointed at: another colour
 void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
@@ -36,6 +34,8 @@ void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& ope
 /// @param savable  whether it can be saved
 void close_question(const std::string& unsaved, bool savable, std::array<std::uint32_t, 2> view,
                     Wishes& wishes);
+/// That surfaces which face away are not drawn, at the top of the view.
+void backs_note(std::array<std::uint32_t, 2> view);
 /// What went wrong, in the upper left of the view.
 void message_window(const std::string& message, std::array<std::uint32_t, 2> view, bool& open);
 

@@ -204,6 +204,13 @@ void show_section(const PanelContent& content, Choices& choices) {
     if (ImGui::IsItemHovered()) {
         ImGui::SetTooltip("Backs of one-sided surfaces, striped; else one looks through them.");
     }
+    ImGui::Checkbox("axes and scale", &choices.gauges);
+    ImGui::SameLine();
+    ImGui::Checkbox("measure a line", &choices.measuring);
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip(
+            "Two clicks on the scene: their distance, and what is shown along the line between.");
+    }
 }
 
 std::string number(double value) {
@@ -533,6 +540,8 @@ void camera_section(const PanelContent& content, Choices& choices) {
     if (ImGui::Checkbox("orthographic", &orthographic)) {
         choices.wishes.orthographic = orthographic;
     }
+    ImGui::SameLine();
+    ImGui::Checkbox("walk by W, A, S, D", &choices.walking);
     constexpr std::array<std::pair<const char*, char>, 5> views{
         {{"All", 'F'}, {"Scene's", 'R'}, {"Front", '1'}, {"Right", '3'}, {"Top", '7'}}};
     for (const auto& [name, key] : views) {
@@ -545,6 +554,20 @@ void camera_section(const PanelContent& content, Choices& choices) {
     if (ImGui::Button("Save into the scene")) {
         choices.wishes.save_camera = true;
     }
+    bool any = false;
+    for (int number = 1; number <= Bookmarks::count; ++number) {
+        if (content.bookmarks.camera(number)) {
+            if (any) {
+                ImGui::SameLine();
+            }
+            any = true;
+            if (ImGui::SmallButton(std::to_string(number).c_str())) {
+                choices.wishes.bookmark = number;
+            }
+        }
+    }
+    faint(any ? "ctrl + 1 ... 9 keeps this camera, alt + 1 ... 9 goes to it"
+              : "ctrl + 1 ... 9 keeps this camera beside the scene");
 }
 
 void file_section(Choices& choices) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "viewer/bookmarks.hpp"
 #include "viewer/document.hpp"
 #include "viewer/groups.hpp"
 #include "viewer/look.hpp"
@@ -23,6 +24,8 @@ struct Wishes {
     bool run_on = false;
     bool screenshot = false;
     bool save_result = false;
+    bool save_probe = false;
+    std::optional<int> bookmark; ///< to go to
     bool save_camera = false;
     bool copy_command = false;
     bool reload = false;
@@ -48,6 +51,7 @@ struct Choices {
     Look look;
     std::optional<std::uint32_t> picked;
     std::optional<std::uint32_t> group;      ///< that is selected: the picked patch's, or one of the list
+    std::optional<std::uint32_t> group_seen; ///< that the list was scrolled to
     std::array<char, 64> group_search{};     ///< letters in the names of groups that are listed
     PictureCut cut;                          ///< what the picture leaves out
     std::optional<std::uint32_t> pointed_at; ///< the patch in a list under the cursor
@@ -57,6 +61,10 @@ struct Choices {
     std::uint32_t hemicube_eye = 0;
     std::vector<Material> materials;       ///< as the light should be
     std::vector<HeatCondition> conditions; ///< as the heat should be; none: the scene has none
+    bool gauges = true;                    ///< axes and a scale bar
+    bool walking = false;                  ///< W, A, S, D move the camera
+    bool measuring = false;                ///< clicks set ends of a line
+    std::vector<Vec3> measured{};          ///< its ends, as far as they are set
     bool panel = true;
     bool help = false;
     std::size_t picture_size = 0; ///< of screenshots, into picture_sizes()
@@ -78,6 +86,7 @@ struct PanelContent {
     const Document& document;
     const std::optional<PickedPatch>& picked;
     const Camera& camera;
+    const Bookmarks& bookmarks;
     const GroupTable& groups;
     const std::optional<Field>& field;       ///< false colours that are shown
     std::string note;                        ///< on what was done last; empty: on the light

@@ -26,6 +26,17 @@ Json point(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
+/// Length in scene units.
+Json line(const LineProbe& probe, const ShownValues& values) {
+    Json json{{"ends", {point(probe.ends[0]), point(probe.ends[1])}},
+              {"length", glm::length(probe.ends[1] - probe.ends[0])},
+              {"values", Json::array()}};
+    for (const ProbePoint& at : probe.points) {
+        json["values"].push_back(at.patch ? number_or_null(values.values[*at.patch]) : Json(nullptr));
+    }
+    return json;
+}
+
 } // namespace
 
 void write_report(const std::filesystem::path& path, const Report& report) {
@@ -56,6 +67,9 @@ void write_report(const std::filesystem::path& path, const Report& report) {
     json["asks_to_close"] = report.asks_to_close;
     json["group"] = index_or_null(report.choices.group);
     json["clip"] = report.choices.cut.clip ? Json(clip_plane_text(*report.choices.cut.clip)) : Json(nullptr);
+    json["line"] = report.probe ? line(*report.probe, report.values) : Json(nullptr);
+    json["histogram"] = report.histogram;
+    json["hides_backs"] = report.hides_backs;
     json["groups"] = Json::array();
     for (std::uint32_t g = 0; g < report.groups.lines.size(); ++g) {
         const GroupLine& line = report.groups.lines[g];

@@ -77,4 +77,13 @@ std::optional<std::uint32_t> SceneView::item(const Camera& camera, std::array<st
     return renderer_.item(camera, settings(size, 1), x, y);
 }
 
+bool SceneView::hides_backs(const Camera& camera, std::array<std::uint32_t, 2> size) {
+    constexpr std::uint32_t coarser = 16;
+    PictureSettings settings = this->settings({size[0] / coarser, size[1] / coarser}, 1);
+    settings.backs = false;
+    const std::vector<std::uint32_t> fronts = renderer_.items(camera, settings);
+    settings.backs = true;
+    return fronts != renderer_.items(camera, settings);
+}
+
 } // namespace hemi::viewer

@@ -35,6 +35,9 @@ public:
     [[nodiscard]] std::optional<std::uint32_t> item(const Camera& camera, std::array<std::uint32_t, 2> size,
                                                     std::uint32_t x, std::uint32_t y);
 
+    /// Whether surfaces that face away would be seen somewhere in the picture, were backs shown.
+    [[nodiscard]] bool hides_backs(const Camera& camera, std::array<std::uint32_t, 2> size);
+
 private:
     [[nodiscard]] PictureSettings settings(std::array<std::uint32_t, 2> size, std::uint32_t samples) const;
 

@@ -127,6 +127,7 @@ DragCommand parse_drag(Line& line) {
 KeyCommand parse_key(Line& line) {
     std::string_view name = line.word("a key");
     const bool control = take("ctrl+", name);
+    const bool alt = take("alt+", name);
     const bool shift = take("shift+", name);
     constexpr std::array<std::pair<std::string_view, char>, 7> named{{{"Escape", escape_key},
                                                                       {"Tab", tab_key},
@@ -137,14 +138,14 @@ KeyCommand parse_key(Line& line) {
                                                                       {"Backspace", backspace_key}}};
     for (const auto& [word, key] : named) {
         if (name == word) {
-            return {{key, shift, control}};
+            return {{key, shift, control, alt}};
         }
     }
     if (name.size() != 1 || std::isalnum(static_cast<unsigned char>(name[0])) == 0) {
         line.fail(fmt::format(
             "key \"{}\"; must be a letter, a digit, Escape, Tab, Home, Enter, Backspace, F1 or F5", name));
     }
-    return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift, control}};
+    return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift, control, alt}};
 }
 
 /// WIDTHxHEIGHT; nothing if the word is none.
@@ -341,6 +342,9 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         }
         return {number, DropCommand{std::string(path)}};
     }
+    if (command == "save-probe") {
+        return {number, SaveProbeCommand{parse_file(line, command, ".csv")}};
+    }
     if (command == "save-result") {
         return {number, SaveResultCommand{parse_file(line, command, ".hres")}};
     }
@@ -364,6 +368,13 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
     } else if (command == "click") {
         const double x = line.number("x");
         result.action = ClickCommand{x, line.number("y")};
+    } else if (command == "measure") {
+        MeasureCommand measure{};
+        for (auto* end : {&measure.from, &measure.to}) {
+            (*end)[0] = line.number("x");
+            (*end)[1] = line.number("y");
+        }
+        result.action = measure;
     } else if (command == "move") {
         const double x = line.number("x");
         result.action = MoveCommand{x, line.number("y")};
@@ -413,8 +424,9 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
     } else if (command != "quit") {
         line.fail(fmt::format(
             "command \"{}\"; must be drag, click, move, scroll, key, type, show, channel, map, range, bands, "
-            "iso-lines, select, show-group, outline, hide, isolate, show-all, clip, set, "
+            "iso-lines, select, show-group, outline, hide, isolate, show-all, clip, measure, set, "
             "fov, resize, minimise, restore, screenshot, windowshot, report, command, save-result, "
+            "save-probe, "
             "save-camera, drop, reload, "
             "changed, live, preview, rows, patches, wait, cancel or quit",
             command));

@@ -101,6 +101,15 @@ struct ChangedCommand {};
 struct SaveResultCommand {
     std::string path;
 };
+/// Of the line that is measured.
+struct SaveProbeCommand {
+    std::string path;
+};
+/// As D and two clicks.
+struct MeasureCommand {
+    std::array<double, 2> from;
+    std::array<double, 2> to;
+};
 struct SaveCameraCommand {};
 /// Writes the command line that draws the picture.
 struct CommandLineCommand {
@@ -142,10 +151,11 @@ struct ScriptCommand {
     std::size_t line;
     std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand,
                  ChannelCommand, MapCommand, RangeCommand, BandsCommand, IsoLinesCommand, GroupCommand,
-                 ClipCommand, TypeCommand, SetCommand, ResizeCommand, ScreenshotCommand, WindowshotCommand,
-                 ReportCommand, LiveCommand, WaitCommand, PreviewCommand, RowsCommand, PatchesCommand,
-                 CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
-                 SaveCameraCommand, CommandLineCommand, FovCommand, MinimiseCommand, QuitCommand>
+                 ClipCommand, TypeCommand, MeasureCommand, SaveProbeCommand, SetCommand, ResizeCommand,
+                 ScreenshotCommand, WindowshotCommand, ReportCommand, LiveCommand, WaitCommand,
+                 PreviewCommand, RowsCommand, PatchesCommand, CancelCommand, DropCommand, ReloadCommand,
+                 ChangedCommand, SaveResultCommand, SaveCameraCommand, CommandLineCommand, FovCommand,
+                 MinimiseCommand, QuitCommand>
         action;
 };
 
@@ -156,7 +166,7 @@ struct ScriptCommand {
 /// click X Y              with the left button
 /// move X Y               of the cursor
 /// scroll X Y AMOUNT
-/// key [ctrl+][shift+]NAME  a letter, a digit, Escape, Tab, Home, F1 or F5
+/// key [ctrl+|alt+][shift+]NAME  a letter, a digit, Escape, Tab, Home, F1 or F5
 /// show QUANTITY          picture, outlines, items, radiosity, reflectance, exitance, row-error, error, row
 ///                        or column
 /// set reflectance|exitance VALUE[,VALUE ...] MATERIAL
@@ -167,6 +177,8 @@ struct ScriptCommand {
 /// select|show-group|outline|hide|isolate GROUP
 ///                        selects it; how much of it is shown; show-all
 /// clip PLANE             as parse_clip_plane() reads it; `patch`: through the picked one; `off`
+/// measure X0 Y0 X1 Y1    the line between what is seen at two pixels
+/// save-probe FILE        .csv: what is shown along it
 /// type TEXT              into the field that was clicked
 /// fov DEGREES            field of view
 /// resize WIDTH HEIGHT

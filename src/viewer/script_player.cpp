@@ -112,6 +112,17 @@ public:
                 : command.plane;
         application_.settle();
     }
+    void perform(const MeasureCommand& command) {
+        Choices& choices = application_.choices();
+        choices.measuring = true;
+        choices.measured.clear();
+        perform(ClickCommand{command.from[0], command.from[1]});
+        perform(ClickCommand{command.to[0], command.to[1]});
+        if (choices.measured.size() < 2) {
+            throw InvalidArgument("measure: nothing is seen at one of the ends");
+        }
+    }
+    void perform(const SaveProbeCommand& command) { application_.save_probe(command.path); }
     void perform(const TypeCommand& command) {
         for (const char letter : command.text) { // ASCII, as fields of the window take
             application_.handle(TextEvent{static_cast<char32_t>(static_cast<unsigned char>(letter))});

@@ -111,8 +111,9 @@ struct Window::Callbacks {
             return;
         }
         if (const std::optional<char> name = key_name(key, scancode)) {
-            events(window).push_back(
-                KeyEvent{*name, (modifiers & GLFW_MOD_SHIFT) != 0, (modifiers & GLFW_MOD_CONTROL) != 0});
+            events(window).push_back(KeyEvent{*name, (modifiers & GLFW_MOD_SHIFT) != 0,
+                                              (modifiers & GLFW_MOD_CONTROL) != 0,
+                                              (modifiers & GLFW_MOD_ALT) != 0});
         }
     }
     static void text(GLFWwindow* window, unsigned int letter) noexcept {

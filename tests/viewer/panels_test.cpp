@@ -271,7 +271,7 @@ TEST_CASE("Viewer: what cannot be shown is refused with the reason", "[viewer][g
 
 TEST_CASE("Viewer: the window shows the pixels of the screenshot beside its panel", "[viewer][gl]") {
     const Workplace place;
-    REQUIRE(place.view("drag left 150 200 190 180\nwindowshot window.png\nscreenshot picture.png\n",
+    REQUIRE(place.view("key U\ndrag left 150 200 190 180\nwindowshot window.png\nscreenshot picture.png\n",
                        with_panel) == 0);
     const hemi::test::SrgbPicture window = hemi::test::read_png(place.path("window.png"));
     const hemi::test::SrgbPicture picture = hemi::test::read_png(place.path("picture.png"));
