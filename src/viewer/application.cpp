@@ -88,7 +88,8 @@ void Application::exchange(ViewerInput input) {
     inset_.reset();
     under_cursor_.reset();
     asks_to_close_ = false;
-    history_.emplace(MaterialHistory::State{choices_.materials, choices_.conditions});
+    choices_.environment = input.environment();
+    history_.emplace(MaterialHistory::State{choices_.materials, choices_.conditions, choices_.environment});
     document_.reset(); // whose threads end first
     document_ = std::make_unique<Document>(std::move(input), factor_cache_, Window::wake);
     const std::vector<std::string> channels = channel_choices(document_->input().scene->channels);
@@ -266,6 +267,7 @@ void Application::undo_or_redo(bool redo) {
     const MaterialHistory::State& state = redo ? history_->redo() : history_->undo();
     choices_.materials = state.materials;
     choices_.conditions = state.conditions;
+    choices_.environment = state.environment;
 }
 
 void Application::ask_to_close() {
@@ -280,7 +282,7 @@ std::string Application::unsaved() const {
         return {};
     }
     if (!document_->as_opened()) {
-        return "Materials or temperatures were changed, and are not saved.";
+        return "Materials, temperatures or the environment were changed, and are not saved.";
     }
     const Clock::duration worked =
         worked_ + (works_since_ ? Clock::now() - *works_since_ : Clock::duration{0});
@@ -490,8 +492,9 @@ void Application::settle() {
     if (shown_look_ && shown_look_->shown != choices_.look.shown) {
         choices_.look.range.reset(); // it was of another quantity
     }
-    document_->set_materials(choices_.materials, choices_.conditions);
-    if (!gui_.holds() && history_->note({choices_.materials, choices_.conditions})) {
+    const MaterialHistory::State wanted{choices_.materials, choices_.conditions, choices_.environment};
+    document_->set_materials(wanted);
+    if (!gui_.holds() && history_->note(wanted)) {
         saved_result_.clear(); // it is of other light
     }
     const bool other_patch = shown_pick_ != choices_.picked;

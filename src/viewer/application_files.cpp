@@ -77,13 +77,15 @@ std::string Application::command_line() const {
     const bool heat = look.shown.view == View::quantity && is_of_heat(look.shown.quantity);
     std::string command = heat ? document_->input().heat_command : document_->input().command;
     if (heat && !document_->as_opened()) {
-        throw InvalidArgument("the materials are no longer those of the file, which `hemi heat` reads");
+        throw InvalidArgument(
+            "materials or environment are no longer those of the file, which `hemi heat` reads");
     }
     if (!heat && !saved_result_.empty()) {
         command = "hemi render " + quoted(saved_result_.string());
     } else if (!document_->as_opened()) {
-        throw InvalidArgument(
-            "the materials are no longer those of the file: save the result, then copy the command line");
+        throw InvalidArgument("materials or environment are no longer those of the file: save the result, "
+                              "then copy the command "
+                              "line");
     }
     PictureSettings picture =
         picture_settings(choices_.look, document_->input().picture,

@@ -73,6 +73,7 @@ struct Light {
     std::vector<float> vertices;     ///< as Solution::vertex_radiosity; empty: means over the patches
     std::vector<std::uint8_t> known; ///< whether a patch's radiosity is more than a beginning, N; empty: all
     std::vector<HeatCondition> conditions{}; ///< as HeatProblem::conditions; empty: those of the scene
+    std::vector<double> environment{};       ///< as RadiosityProblem::environment
 
     [[nodiscard]] bool knows(std::uint32_t patch) const { return known.empty() || known[patch] != 0; }
 };

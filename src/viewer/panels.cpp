@@ -470,8 +470,17 @@ void material_section(const PanelContent& content, Choices& choices) {
         }
         ImGui::PopID();
     }
-    if (choices.materials != input.scene->materials && ImGui::Button("All as in the scene")) {
+    const std::vector<double> environment = input.environment();
+    double brightest_environment = *std::max_element(environment.begin(), environment.end());
+    brightest_environment =
+        brightest_environment > 0.0 ? 2.0 * brightest_environment : static_cast<double>(most_exitance);
+    text("environment");
+    channel_sliders("exitance##environment", choices.environment, static_cast<float>(brightest_environment),
+                    "%.3g");
+    const bool changed = choices.materials != input.scene->materials || choices.environment != environment;
+    if (changed && ImGui::Button("All as in the scene")) {
         choices.materials = input.scene->materials;
+        choices.environment = environment;
     }
 }
 

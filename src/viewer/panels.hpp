@@ -65,6 +65,7 @@ struct Choices {
     bool walking = false;                  ///< W, A, S, D move the camera
     bool measuring = false;                ///< clicks set ends of a line
     std::vector<Vec3> measured{};          ///< its ends, as far as they are set
+    std::vector<double> environment;       ///< as it should be, of every channel
     bool panel = true;
     bool help = false;
     std::size_t picture_size = 0; ///< of screenshots, into picture_sizes()

@@ -196,11 +196,14 @@ std::string parse_file(Line& line, std::string_view command, std::string_view ex
 SetCommand parse_set(Line& line) {
     const std::string_view property = line.word("a property");
     using Property = SetCommand::Property;
-    if (property != "reflectance" && property != "exitance" && property != "temperature") {
-        line.fail(fmt::format("property \"{}\"; must be reflectance, exitance or temperature", property));
+    if (property != "reflectance" && property != "exitance" && property != "temperature" &&
+        property != "environment") {
+        line.fail(fmt::format("property \"{}\"; must be reflectance, exitance, temperature or environment",
+                              property));
     }
     SetCommand set{property == "exitance"      ? Property::exitance
                    : property == "temperature" ? Property::temperature
+                   : property == "environment" ? Property::environment
                                                : Property::reflectance,
                    {},
                    {}};
@@ -219,6 +222,9 @@ SetCommand parse_set(Line& line) {
             break;
         }
         values.remove_prefix(end + 1);
+    }
+    if (set.property == Property::environment) {
+        line.end();
     }
     set.name = line.rest();
     return set;

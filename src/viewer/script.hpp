@@ -54,10 +54,10 @@ struct RangeCommand {
 };
 /// A material's values, one or one a channel, or the temperature of a group, K.
 struct SetCommand {
-    enum class Property { reflectance, exitance, temperature };
+    enum class Property { reflectance, exitance, temperature, environment };
     Property property;
     std::vector<double> values;
-    std::string name; ///< of the material, or of the group
+    std::string name; ///< of the material, or of the group; of the environment none
 };
 /// Of false colours; 0: smooth ones.
 struct BandsCommand {
@@ -172,6 +172,7 @@ struct ScriptCommand {
 /// set reflectance|exitance VALUE[,VALUE ...] MATERIAL
 ///                        one value, or one a channel; waits until the light has followed
 /// set temperature KELVIN GROUP
+/// set environment VALUE[,VALUE ...]
 /// bands N, bands off     of false colours
 /// iso-lines on|off
 /// select|show-group|outline|hide|isolate GROUP

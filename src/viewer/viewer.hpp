@@ -69,6 +69,10 @@ struct ViewerInput {
         return scene->name.empty() ? file.filename().string() : scene->name;
     }
     [[nodiscard]] std::uint32_t channels() const { return solution.channels; }
+    /// Exitance of the scene's environment, of every channel.
+    [[nodiscard]] std::vector<double> environment() const {
+        return scene->environment.empty() ? std::vector<double>(channels(), 0.0) : scene->environment;
+    }
 };
 
 struct ViewerSettings {

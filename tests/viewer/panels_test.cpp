@@ -137,6 +137,37 @@ TEST_CASE("Viewer: light follows a change of materials as a fresh solution has i
     CHECK(place.view("set reflectance 1 white\n", small) == 3);
 }
 
+TEST_CASE("Viewer: light follows a change of the environment, and is stored with it", "[viewer][gl]") {
+    const Workplace place;
+    const int status = place.view("screenshot start.png\nset environment 3,1,2\nreport changed.json\n"
+                                  "screenshot changed.png\nsave-result changed.hres\ncommand changed.txt\n"
+                                  "key ctrl+Z\nwait\nscreenshot back.png\n",
+                                  small);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    REQUIRE(place.view("report fresh.json\n", small + " --environment 3,1,2") == 0);
+    const auto changed = place.json("changed.json")["radiosity"];
+    const auto fresh = place.json("fresh.json")["radiosity"];
+    REQUIRE(changed.size() == fresh.size());
+    double largest = 0.0;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double was = fresh[i][c];
+            const double is = changed[i][c];
+            largest = std::max(largest, std::abs(is - was) / was);
+        }
+    }
+    CHECK(largest < 2e-5); // both are solved to a residual of 1e-6
+    CHECK(place.read("back.png") == place.read("start.png"));
+    CHECK(place.read("changed.txt").starts_with("hemi render changed.hres "));
+    place.write("draw.sh", place.read("changed.txt"));
+    REQUIRE(place.run(fmt::format("PATH='{}':$PATH sh draw.sh",
+                                  std::filesystem::path(HEMI_PROGRAM).parent_path().string())) == 0);
+    CHECK(place.read("room.png") == place.read("changed.png"));
+    CHECK(place.view("set environment 1,2\n", small) == 2);
+    CHECK(place.view("set environment 1 white\n", small) == 3);
+}
+
 TEST_CASE("Viewer: while a scene is solved, it is shown by the light of its lamps", "[viewer][gl]") {
     const Workplace place;
     const int status =
