@@ -1,7 +1,6 @@
 #include "viewer/application.hpp"
 
 #include "hemi/pipeline/settings.hpp"
-#include "hemi/scene/light_unit.hpp"
 
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
@@ -47,7 +46,8 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 
 Application::Application(ViewerInput input, const ViewerSettings& settings)
     : settings_(settings), window_(input.title(), input.picture.width, input.picture.height),
-      navigator_(settings.controls, input.mesh, input.camera), opener_(settings.open, Window::wake) {
+      gui_(window_.scale()), navigator_(settings.controls, input.mesh, input.camera),
+      opener_(settings.open, Window::wake) {
     choices_.look.shading = input.picture.shading;
     choices_.look.tone_mapping = input.picture.tone_mapping;
     choices_.look.outlines = input.picture.outlines;
@@ -295,39 +295,6 @@ std::string Application::unsaved() const {
     return {};
 }
 
-void Application::look_under_cursor() {
-    under_cursor_.reset();
-    if (!choices_.panel || navigator_.dragging() || !navigator_.on_picture() || gui_.has_mouse()) {
-        return;
-    }
-    if (const auto point = navigator_.surface_under_cursor(choices_.look.backs)) {
-        under_cursor_ = UnderCursor{patch_at(*document_->input().mesh, *point), point->position};
-    }
-}
-
-std::array<std::string, 2> Application::words_under_cursor() const {
-    if (!under_cursor_) {
-        return {};
-    }
-    const ViewerInput& input = document_->input();
-    const std::uint32_t i = under_cursor_->patch;
-    std::string value;
-    if (view_.field()) {
-        const FalseColours& shown = view_.field()->shown;
-        value = std::isnan(shown.values[i]) ? view_.field()->grey
-                                            : fmt::format("{:.4g} {}", shown.values[i], shown.unit);
-    } else if (document_->light().knows(i)) {
-        for (std::uint32_t c = 0; c < input.channels(); ++c) {
-            value +=
-                fmt::format("{:.3g} ", document_->light().radiosity[std::size_t{i} * input.channels() + c]);
-        }
-        value += flux_density_unit(*input.scene);
-    }
-    const Vec3& at = under_cursor_->position;
-    return {fmt::format("{}, patch {}: {}", input.mesh->groups()[input.mesh->group(i)], i, value),
-            fmt::format("at {:.4g} {:.4g} {:.4g}", at.x, at.y, at.z)};
-}
-
 template <typename Action>
 void Application::attempt(const Action& action) {
     try {
@@ -475,9 +442,13 @@ void Application::update() {
     }
 }
 
+std::uint32_t Application::panel_pixels() const {
+    return gui_.pixels(panel_width(gui_.layout(window_.size()), choices_.panel));
+}
+
 std::array<std::uint32_t, 2> Application::view_size() const {
     const auto size = window_.size();
-    return {size[0] - panel_width(size, choices_.panel), size[1]};
+    return {size[0] - panel_pixels(), size[1]};
 }
 
 void Application::settle() {
@@ -538,7 +509,7 @@ void Application::settle() {
 
 /// The picked patch's hemicube, where it is wanted and there is room for it.
 void Application::draw_hemicube() {
-    if (!choices_.hemicube || !choices_.picked || panel_width(window_.size(), choices_.panel) == 0) {
+    if (!choices_.hemicube || !choices_.picked || panel_pixels() == 0) {
         return;
     }
     const ViewerInput& input = document_->input();
@@ -565,10 +536,11 @@ void Application::update_title() {
 }
 
 void Application::describe_panels() {
-    const auto size = window_.size();
-    const auto view = view_size();
+    const auto pixels = window_.size();
+    const auto size = gui_.layout(pixels);
+    const auto view = gui_.layout(view_size());
     const PatchMesh& mesh = *document_->input().mesh;
-    gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
+    gui_.begin({std::max(pixels[0], 1U), std::max(pixels[1], 1U)});
     if (view[0] < size[0]) {
         side_panel({*document_, picked_, navigator_.camera(), bookmarks_, groups_, view_.field(), note_,
                     status_, words_under_cursor()},

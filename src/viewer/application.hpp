@@ -110,7 +110,7 @@ private:
     void attempt(const Action& action);
     void numbered_screenshot(bool of_window);
 
-    void show();
+    [[nodiscard]] std::uint32_t panel_pixels() const;
     void draw_hemicube();
     void update_title();
     void pace_gathering();

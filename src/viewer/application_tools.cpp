@@ -1,15 +1,50 @@
 #include "viewer/application.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/scene/light_unit.hpp"
 #include "viewer/clipping.hpp"
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 
-// Groups, the clipping plane, the line that is measured, and cameras that are kept.
+// What is under the cursor, groups, the clipping plane, the line that is measured, and cameras that are kept.
 
 namespace hemi::viewer {
+
+void Application::look_under_cursor() {
+    under_cursor_.reset();
+    if (!choices_.panel || navigator_.dragging() || !navigator_.on_picture() || gui_.has_mouse()) {
+        return;
+    }
+    if (const auto point = navigator_.surface_under_cursor(choices_.look.backs)) {
+        under_cursor_ = UnderCursor{patch_at(*document_->input().mesh, *point), point->position};
+    }
+}
+
+std::array<std::string, 2> Application::words_under_cursor() const {
+    if (!under_cursor_) {
+        return {};
+    }
+    const ViewerInput& input = document_->input();
+    const std::uint32_t i = under_cursor_->patch;
+    std::string value;
+    if (view_.field()) {
+        const FalseColours& shown = view_.field()->shown;
+        value = std::isnan(shown.values[i]) ? view_.field()->grey
+                                            : fmt::format("{:.4g} {}", shown.values[i], shown.unit);
+    } else if (document_->light().knows(i)) {
+        for (std::uint32_t c = 0; c < input.channels(); ++c) {
+            value +=
+                fmt::format("{:.3g} ", document_->light().radiosity[std::size_t{i} * input.channels() + c]);
+        }
+        value += flux_density_unit(*input.scene);
+    }
+    const Vec3& at = under_cursor_->position;
+    return {fmt::format("{}, patch {}: {}", input.mesh->groups()[input.mesh->group(i)], i, value),
+            fmt::format("at {:.4g} {:.4g} {:.4g}", at.x, at.y, at.z)};
+}
 
 void Application::settle_cut() {
     const PatchMesh& mesh = *document_->input().mesh;

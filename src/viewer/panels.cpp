@@ -16,7 +16,7 @@ namespace hemi::viewer {
 
 namespace {
 
-constexpr std::uint32_t side_width = 332;
+constexpr std::uint32_t side_width = 380;
 constexpr std::uint32_t smallest_width = 640;
 constexpr std::uint32_t smallest_height = 360;
 constexpr double most_stops = 10.0;
@@ -31,7 +31,7 @@ void faint(const std::string& words) {
 
 /// A name on the left, a value in a column of its own.
 void line(const char* name, const std::string& value) {
-    constexpr float value_at = 118.0F;
+    constexpr float value_at = 130.0F;
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     ImGui::TextUnformatted(name);
     ImGui::PopStyleColor();

@@ -95,7 +95,7 @@ struct PanelContent {
     std::array<std::string, 2> under_cursor; ///< in its place: what is there, and where; empty: nothing
 };
 
-/// Pixels of the window that the side panel takes, from the right; 0 where the window is too small for it.
+/// Pixels of the window's layout that the side panel takes, from the right; 0 where it is too small for it.
 [[nodiscard]] std::uint32_t panel_width(std::array<std::uint32_t, 2> window, bool wanted);
 
 /// The side panel. Between Gui::begin() and Gui::end().

@@ -139,6 +139,7 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
     glfwWindowHintString(GLFW_X11_CLASS_NAME, "hemi");
     glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "hemi");
     // Depth and samples are the renderer's own.
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
     if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
@@ -190,6 +191,13 @@ std::array<std::uint32_t, 2> Window::size() const {
     int height = 0;
     glfwGetFramebufferSize(window_.get(), &width, &height);
     return {static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0))};
+}
+
+double Window::scale() const {
+    float x = 1.0F;
+    float y = 1.0F;
+    glfwGetWindowContentScale(window_.get(), &x, &y);
+    return static_cast<double>(std::max(x, y));
 }
 
 void Window::resize(std::uint32_t width, std::uint32_t height) {

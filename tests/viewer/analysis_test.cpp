@@ -162,3 +162,27 @@ TEST_CASE("Viewer: one walks by W, A, S and D, and looks around", "[viewer][gl]"
     CHECK(place.json("turned.json")["camera"]["target"] != place.json("aside.json")["camera"]["target"]);
     CHECK(eye("end.json") == eye("turned.json")); // W draws outlines again
 }
+
+TEST_CASE("Viewer: window and panels are as large as the monitor's scale asks for", "[viewer][gl]") {
+    const Workplace place;
+    place.write("script.txt", "windowshot two.png\nshow irradiance\n"
+                              "drag left 200 700 400 700\nreport part.json\n");
+    // The spy keeps the display from beginning anew when no other program uses it.
+    const std::string view = Workplace::view_command("room.json", "--device osmesa " + with_panel);
+    const std::size_t program = view.find('\'' + std::string(HEMI_PROGRAM));
+    REQUIRE(program != std::string::npos);
+    place.write("large.sh", "xprop -root -spy >/dev/null & spy=$!\n"
+                            "xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER \"Xft.dpi: 192\n\"\n" +
+                                view.substr(program) + "\nstatus=$?\nkill $spy\nexit $status\n");
+    const std::string display = hemi::test::virtual_display("Xauthority", "1920x1200x24");
+    REQUIRE(place.run(display + " sh large.sh") == 0);
+    const std::string picture = place.read("two.png");
+    REQUIRE(picture.size() > 24);
+    CHECK(picture.substr(16, 8) == std::string("\0\0\x05\x88\0\0\x03\x20", 8)); // 1416 x 800
+    // The same drag over the legend as at a scale of 1 chooses the same range.
+    const auto part = place.json("part.json")["scale"];
+    REQUIRE(place.view("show irradiance\ndrag left 100 350 200 350\nreport usual.json\n", with_panel) == 0);
+    const auto usual = place.json("usual.json")["scale"];
+    CHECK(part["low"].get<double>() == Approx(usual["low"].get<double>()));
+    CHECK(part["high"].get<double>() == Approx(usual["high"].get<double>()));
+}

@@ -95,13 +95,13 @@ TEST_CASE("Viewer: the command line it copies leaves out what the window leaves 
 
 TEST_CASE("Viewer: the list of groups is searched, and its rows select and hide", "[viewer][gl]") {
     const Workplace place;
-    // The list stands below the section Show, in a panel that is 332 wide.
+    // The list stands below the section Show, in a panel that is 380 wide.
     const int status =
         place.view("windowshot start.png\n"
-                   "click 450 202\ntype BAC\nkey Backspace\ntype C\nkey Q\nwindowshot found.png\n"
-                   "click 500 241\nreport selected.json\nwindowshot selected.png\n"
-                   "click 343 241\nreport outlined.json\nclick 343 241\nreport hidden.json\n",
-                   "--size 660x640 --preset plain --resolution 32");
+                   "click 450 218\ntype BAC\nkey Backspace\ntype C\nkey Q\nwindowshot found.png\n"
+                   "click 500 261\nreport selected.json\nwindowshot selected.png\n"
+                   "click 343 261\nreport outlined.json\nclick 343 261\nreport hidden.json\n",
+                   "--size 708x640 --preset plain --resolution 32");
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
     CHECK(place.read("found.png") != place.read("start.png"));

@@ -185,7 +185,7 @@ TEST_CASE("Viewer: while a scene is solved, it is shown by the light of its lamp
 
 TEST_CASE("Viewer: solving can be stopped, by hand and by closing the window", "[viewer][gl]") {
     const Workplace place;
-    const std::string slow = "--size 660x400 --patches-per-face 200 --preset exact";
+    const std::string slow = "--size 708x400 --patches-per-face 200 --preset exact";
     REQUIRE(place.view("live\ncancel\nreport stopped.json\nwindowshot stopped.png\n", slow) == 0);
     const auto stopped = place.json("stopped.json");
     CHECK(stopped["light"].get<std::string>().starts_with("stopped: "));
@@ -223,7 +223,7 @@ TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
 
 TEST_CASE("Viewer: Escape closes what is open, and never the window", "[viewer][gl]") {
     const Workplace place;
-    // The list of quantities stands at the top of the panel, which is 332 wide.
+    // The list of quantities stands at the top of the panel, which is 380 wide.
     const int status = place.view("windowshot start.png\nclick 480 41\nwindowshot list.png\nkey Escape\n"
                                   "move 100 200\nwindowshot closed.png\n"
                                   "key F1\nkey Escape\nclick 150 200\nkey Escape\nreport let_go.json\n"
@@ -306,7 +306,7 @@ TEST_CASE("Viewer: the window shows the pixels of the screenshot beside its pane
                        with_panel) == 0);
     const hemi::test::SrgbPicture window = hemi::test::read_png(place.path("window.png"));
     const hemi::test::SrgbPicture picture = hemi::test::read_png(place.path("picture.png"));
-    REQUIRE(window.width == 660);
+    REQUIRE(window.width == 708);
     REQUIRE(window.height == 400);
     REQUIRE(picture.height == 400);
     REQUIRE(picture.width > 300);

@@ -83,7 +83,7 @@ TEST_CASE("Viewer: survives being minimised", "[viewer][gl]") {
 
 TEST_CASE("Viewer: closing the window while it solves ends the workers", "[viewer][gl]") {
     const Workplace place;
-    const std::string slow = "--size 660x400 --patches-per-face 400 --preset exact --jobs 2";
+    const std::string slow = "--size 708x400 --patches-per-face 400 --preset exact --jobs 2";
     REQUIRE(place.view("live\nwindowshot open.png\nquit\n", slow) == 0);
     CHECK(place.read("errors.txt").find("error") == std::string::npos);
     // A worker ends when it notices that nobody listens.
