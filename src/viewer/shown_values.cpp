@@ -2,14 +2,22 @@
 
 #include "hemi/scene/light_unit.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace hemi::viewer {
 
 ShownValues shown_values(const Document& document, const Look& look, const std::optional<Field>& field) {
     if (field) {
-        return {field->shown.values, field->shown.title, field->shown.unit,
-                std::string(name_of(look.shown).word)};
+        ShownValues result{field->shown.values, field->shown.title, field->shown.unit,
+                           std::string(name_of(look.shown).word)};
+        if (look.shown.view == View::row || look.shown.view == View::column) { // grey are those that are 0
+            std::replace_if(
+                result.values.begin(), result.values.end(), [](double value) { return std::isnan(value); },
+                0.0);
+        }
+        return result;
     }
     const ViewerInput& input = document.input();
     const Light& light = document.light();

@@ -30,7 +30,8 @@ TEST_CASE("Viewer: groups are selected, hidden and isolated by script, click and
                    "key I\nreport alone.json\nkey A\nreport all.json\nscreenshot all.png\n"
                    "click 150 100\nreport picked.json\nkey O\nreport outlined.json\nscreenshot outlined.png\n"
                    "click 150 100\nreport through.json\nshow-group back\nhide left\noutline floor\n"
-                   "report words.json\nshow-all\nisolate right\nreport right.json\n",
+                   "report words.json\nshow-all\nisolate right\nreport right.json\n"
+                   "show-all\nclick 150 100\nshow row\nreport row.json\n",
                    small);
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
@@ -54,6 +55,13 @@ TEST_CASE("Viewer: groups are selected, hidden and isolated by script, click and
     CHECK(place.json("through.json")["picked"].is_null()); // one looks through it
     CHECK(visibilities(place.json("words.json")) == "oshss");
     CHECK(visibilities(place.json("right.json")) == "hhhsh");
+    const auto row = place.json("row.json");
+    double sum = 0.0;
+    for (std::size_t j = 3 * 36; j < 4 * 36; ++j) {
+        sum += row["values"][j].is_null() ? 0.0 : row["values"][j].get<double>();
+    }
+    CHECK(row["groups"][3]["mean"].get<double>() == Approx(sum / 36.0));
+    CHECK(row["groups"][4]["mean"] == 0.0); // a wall does not see itself
     CHECK(place.view("hide roof\n", small) == 2);
     CHECK(place.read("errors.txt").find("group roof: there is no such group") != std::string::npos);
     CHECK(place.view("hide\n", small) == 3);

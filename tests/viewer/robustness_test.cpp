@@ -26,10 +26,10 @@ std::size_t processes_in(const std::filesystem::path& folder) {
 std::string random_script(std::uint32_t seed, int events) {
     std::mt19937 random(seed);
     const auto below = [&random](std::uint32_t end) { return random() % end; };
-    constexpr std::string_view keys = "FR1375STEWBLVHCG";
+    constexpr std::string_view keys = "FR1375STEWBLVHCGINOAKDUJ";
     std::string script;
     for (int k = 0; k < events; ++k) {
-        const std::string point = fmt::format("{} {}", below(680), below(420));
+        const std::string point = fmt::format("{} {}", below(728), below(420));
         switch (below(10)) {
         case 0:
         case 1:
