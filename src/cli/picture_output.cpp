@@ -139,9 +139,8 @@ PictureCut picture_cut(const PictureOptions& options, std::span<const std::strin
     return cut;
 }
 
-PictureSettings picture_settings(const PictureOptions& options, std::span<const std::string> groups) {
+PictureSettings picture_settings(const PictureOptions& options) {
     PictureSettings settings;
-    settings.cut = picture_cut(options, groups);
     settings.width = options.size[0];
     settings.height = options.size[1];
     settings.samples = options.samples;
@@ -168,9 +167,10 @@ Report write_false_colours(const Scene& scene, const PatchMesh& mesh, FalseColou
     shown.legend = options.legend;
     shown.bands = options.bands;
     shown.iso_lines = options.iso_lines;
-    const Picture picture =
-        draw_false_colours(mesh, shown, choose_camera(scene, mesh, options),
-                           picture_settings(options, mesh.groups()), device == "cpu" ? "auto" : device);
+    PictureSettings settings = picture_settings(options);
+    settings.cut = picture_cut(options, mesh.groups());
+    const Picture picture = draw_false_colours(mesh, shown, choose_camera(scene, mesh, options), settings,
+                                               device == "cpu" ? "auto" : device);
     hemi::write_picture(*options.output, picture);
     const std::string path = options.output->string();
     Report report;
@@ -198,7 +198,8 @@ Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& 
         return report;
     }
     DrawSettings settings;
-    settings.picture = picture_settings(options, mesh.groups());
+    settings.picture = picture_settings(options);
+    settings.picture.cut = picture_cut(options, mesh.groups());
     settings.automatic_exposure = !options.exposure;
     settings.camera = choose_camera(scene, mesh, options);
     settings.show = channels_to_show(scene.channels, options.show);

@@ -37,11 +37,8 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options);
 /// @throws InvalidArgument for names that are none, and a group that both name
 [[nodiscard]] PictureCut picture_cut(const PictureOptions& options, std::span<const std::string> groups);
 
-/// How a picture is drawn; with an exposure of 1 where it is automatic.
-/// @param groups  names of all
-/// @throws as picture_cut()
-[[nodiscard]] PictureSettings picture_settings(const PictureOptions& options,
-                                               std::span<const std::string> groups);
+/// How a picture is drawn, whole; with an exposure of 1 where it is automatic.
+[[nodiscard]] PictureSettings picture_settings(const PictureOptions& options);
 
 /// Draws and writes values of patches in false colours, as the options for quantities say.
 /// @param word  what they are, for the report

@@ -126,7 +126,7 @@ private:
             input.show_option = " --show " + viewer::quoted(fmt::format("{}", fmt::join(options.show, ",")));
         }
         input.camera = choose_camera(*scene, *mesh, options);
-        input.picture = picture_settings(options, mesh->groups());
+        input.picture = picture_settings(options);
         input.automatic_exposure = !options.exposure;
         input.solution = std::move(solution);
         input.solution.exitance = patch_values(*mesh, scene->materials, &Material::exitance);
@@ -277,7 +277,9 @@ ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
     settings.open = [&source](const std::filesystem::path& file, const std::filesystem::path& factors) {
         return source.open(file, factors);
     };
-    viewer::run_viewer(source.open(path, arguments.factors.value_or(std::filesystem::path())), settings);
+    viewer::ViewerInput input = source.open(path, arguments.factors.value_or(std::filesystem::path()));
+    input.picture.cut = picture_cut(arguments.picture, input.mesh->groups()); // of the first scene alone
+    viewer::run_viewer(std::move(input), settings);
     return ExitStatus::ok;
 }
 

@@ -61,7 +61,7 @@ struct ViewerInput {
     std::string show_option;                    ///< " --show 1,2,3", where channels of the light were chosen
     std::array<std::uint32_t, 3> show{0, 0, 0}; ///< channels shown as red, green, blue
     Camera camera;                              ///< where R goes back to
-    PictureSettings picture;                    ///< width and height are the window's first size
+    PictureSettings picture;                    ///< width, height and cut are those of the first picture
     bool automatic_exposure = true;             ///< picture.exposure is chosen by automatic_exposure()
 
     /// Name of the scene, else of the file.

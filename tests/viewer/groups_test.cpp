@@ -101,6 +101,24 @@ TEST_CASE("Viewer: the command line it copies leaves out what the window leaves 
                                 HEMI_PROGRAM)) == 2);
 }
 
+TEST_CASE("Viewer: options leave groups out of the first scene, not of those that are opened after",
+          "[viewer][gl]") {
+    const Workplace place;
+    std::string other = place.read("room.json");
+    replace(other, R"({"name": "left")", R"({"name": "west")");
+    place.write("other.json", other);
+    const int status = place.view("report first.json\ndrop other.json\nreport other_report.json\n",
+                                  small + " --hide left --clip 'z<0.5'");
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    CHECK(visibilities(place.json("first.json")) == "sshss");
+    CHECK(place.json("first.json")["clip"] == "z<0.5");
+    CHECK(place.json("other_report.json")["message"] == "");
+    CHECK(visibilities(place.json("other_report.json")) == "sssss");
+    CHECK(place.json("other_report.json")["clip"].is_null());
+    CHECK(place.view("quit\n", small + " --hide roof") == 2);
+}
+
 TEST_CASE("Viewer: the list of groups is searched, and its rows select and hide", "[viewer][gl]") {
     const Workplace place;
     // The list stands below the section Show, in a panel that is 380 wide.
