@@ -148,9 +148,15 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
         int available_x = 0;
         int available_y = 0;
         glfwGetMonitorWorkarea(monitor, &x, &y, &available_x, &available_y);
+        float scale_x = 1.0F; // by which the window becomes larger
+        float scale_y = 1.0F;
+        glfwGetMonitorContentScale(monitor, &scale_x, &scale_y);
+        const auto limit = [](int available, float scale) {
+            return static_cast<std::uint32_t>(static_cast<float>(available) / std::max(scale, 1.0F));
+        };
         if (available_x > 0 && available_y > 0) {
-            width = std::min(width, static_cast<std::uint32_t>(available_x));
-            height = std::min(height, static_cast<std::uint32_t>(available_y));
+            width = std::min(width, limit(available_x, scale_x));
+            height = std::min(height, limit(available_y, scale_y));
         }
     }
     window_.reset(

@@ -165,24 +165,26 @@ TEST_CASE("Viewer: one walks by W, A, S and D, and looks around", "[viewer][gl]"
 
 TEST_CASE("Viewer: window and panels are as large as the monitor's scale asks for", "[viewer][gl]") {
     const Workplace place;
-    place.write("script.txt", "windowshot two.png\nshow irradiance\n"
-                              "drag left 200 700 400 700\nreport part.json\n");
-    // The spy keeps the display from beginning anew when no other program uses it.
-    const std::string view = Workplace::view_command("room.json", "--device osmesa " + with_panel);
+    place.write("script.txt", "windowshot large.png\nshow irradiance\ndrag left 150 525 300 525\n"
+                              "report large.json\n");
+    // At a scale of 1.5 the window would be larger than the monitor: it becomes as large as that.
+    const std::string view = Workplace::view_command(
+        "room.json", "--device osmesa --size 1600x900 --preset plain --resolution 32");
     const std::size_t program = view.find('\'' + std::string(HEMI_PROGRAM));
     REQUIRE(program != std::string::npos);
-    place.write("large.sh", "xprop -root -spy >/dev/null & spy=$!\n"
-                            "xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER \"Xft.dpi: 192\n\"\n" +
-                                view.substr(program) + "\nstatus=$?\nkill $spy\nexit $status\n");
-    const std::string display = hemi::test::virtual_display("Xauthority", "1920x1200x24");
+    place.write("large.sh",
+                "xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER \"Xft.dpi: 144\n\" && " +
+                    view.substr(program));
+    // A display that does not forget what was set when no other program uses it.
+    const std::string display = hemi::test::virtual_display("Xauthority", "1062x600x24 -noreset");
     REQUIRE(place.run(display + " sh large.sh") == 0);
-    const std::string picture = place.read("two.png");
+    const std::string picture = place.read("large.png");
     REQUIRE(picture.size() > 24);
-    CHECK(picture.substr(16, 8) == std::string("\0\0\x05\x88\0\0\x03\x20", 8)); // 1416 x 800
+    CHECK(picture.substr(16, 8) == std::string("\0\0\x04\x26\0\0\x02\x58", 8)); // 1062 x 600
     // The same drag over the legend as at a scale of 1 chooses the same range.
-    const auto part = place.json("part.json")["scale"];
     REQUIRE(place.view("show irradiance\ndrag left 100 350 200 350\nreport usual.json\n", with_panel) == 0);
-    const auto usual = place.json("usual.json")["scale"];
-    CHECK(part["low"].get<double>() == Approx(usual["low"].get<double>()));
-    CHECK(part["high"].get<double>() == Approx(usual["high"].get<double>()));
+    for (const char* end : {"low", "high"}) {
+        CHECK(place.json("large.json")["scale"][end].get<double>() ==
+              Approx(place.json("usual.json")["scale"][end].get<double>()));
+    }
 }
