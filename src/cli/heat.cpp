@@ -201,6 +201,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     }
     if (arguments.output && is_picture(*arguments.output)) { // tested before the work
         check_channel(loaded.scene.channels, arguments.picture.picture.channel);
+        (void)picture_cut(arguments.picture.picture, loaded.mesh.groups());
     }
     TerminalObserver observer(terminal);
     HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);

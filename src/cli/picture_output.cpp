@@ -32,11 +32,13 @@ namespace {
 } // namespace
 
 void add_picture_output(Outputs& outputs, const PictureOptions& options, bool heat) {
-    if (!options.quantity && (!options.of_quantities.empty() || options.logarithmic || !options.legend)) {
+    if (!options.quantity &&
+        (!options.of_quantities.empty() || options.logarithmic || options.iso_lines || !options.legend)) {
         throw InvalidArgument(
             fmt::format("{} needs --show with a quantity, such as irradiance{}",
                         !options.of_quantities.empty() ? options.of_quantities[0]
                         : options.logarithmic          ? "--log"
+                        : options.iso_lines            ? "--iso-lines"
                                                        : "--no-legend",
                         options.show.size() == 1 ? did_you_mean(options.show[0], words<Quantity>()) : ""));
     }
@@ -120,6 +122,26 @@ Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOpt
     return camera;
 }
 
+PictureCut picture_cut(const PictureOptions& options, std::span<const std::string> groups) {
+    PictureCut cut;
+    cut.clip = options.clip;
+    const auto set = [&cut, groups](const std::string& name, const char* option, Visibility visibility) {
+        const std::uint32_t group = group_by_name(groups, name, option);
+        cut.groups.resize(groups.size(), Visibility::shown);
+        if (cut.groups[group] != Visibility::shown && cut.groups[group] != visibility) {
+            throw InvalidArgument(fmt::format("--hide and --outlines-of both name {}; leave one out", name));
+        }
+        cut.groups[group] = visibility;
+    };
+    for (const std::string& name : options.hidden_groups) {
+        set(name, "--hide", Visibility::hidden);
+    }
+    for (const std::string& name : options.outlined_groups) {
+        set(name, "--outlines-of", Visibility::outlines);
+    }
+    return cut;
+}
+
 PictureSettings picture_settings(const PictureOptions& options) {
     PictureSettings settings;
     settings.width = options.size[0];
@@ -147,9 +169,12 @@ Report write_false_colours(const Scene& scene, const PatchMesh& mesh, FalseColou
     shown.map = options.map;
     shown.logarithmic = options.logarithmic;
     shown.legend = options.legend;
-    const Picture picture =
-        draw_false_colours(mesh, shown, choose_camera(scene, mesh, options), picture_settings(options),
-                           device == "cpu" ? "auto" : device, dots);
+    shown.bands = options.bands;
+    shown.iso_lines = options.iso_lines;
+    PictureSettings settings = picture_settings(options);
+    settings.cut = picture_cut(options, mesh.groups());
+    const Picture picture = draw_false_colours(mesh, shown, choose_camera(scene, mesh, options), settings,
+                                               device == "cpu" ? "auto" : device, dots);
     hemi::write_picture(*options.output, picture);
     const std::string path = options.output->string();
     Report report;
@@ -178,6 +203,7 @@ Report write_picture(const Scene& scene, const PatchMesh& mesh, const Solution& 
     }
     DrawSettings settings;
     settings.picture = picture_settings(options);
+    settings.picture.cut = picture_cut(options, mesh.groups());
     settings.automatic_exposure = !options.exposure;
     settings.camera = choose_camera(scene, mesh, options);
     settings.show = channels_to_show(scene.channels, options.show);

@@ -35,7 +35,12 @@ void add_picture_output(Outputs& outputs, const PictureOptions& options, bool he
 /// bounds; with `--orthographic`.
 [[nodiscard]] Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOptions& options);
 
-/// How a picture is drawn; with an exposure of 1 where it is automatic.
+/// What `--hide`, `--outlines-of` and `--clip` leave out.
+/// @param groups  names of all
+/// @throws InvalidArgument for names that are none, and a group that both name
+[[nodiscard]] PictureCut picture_cut(const PictureOptions& options, std::span<const std::string> groups);
+
+/// How a picture is drawn, whole; with an exposure of 1 where it is automatic.
 [[nodiscard]] PictureSettings picture_settings(const PictureOptions& options);
 
 /// Draws and writes values of patches in false colours, as the options for quantities say.

@@ -283,6 +283,7 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
             (void)channels_to_show(loaded.scene.channels, arguments.picture.show);
         }
         (void)choose_camera(loaded.scene, loaded.mesh, arguments.picture);
+        (void)picture_cut(arguments.picture, loaded.mesh.groups());
     }
     TerminalObserver observer(terminal);
     if (!arguments.refines() && !arguments.rows.error_target) { // which go over some phases again

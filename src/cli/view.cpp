@@ -34,7 +34,8 @@ const std::vector<std::string>& window_options() {
     static const std::vector<std::string> names{"--size",         "--camera",       "--flat",   "--exposure",
                                                 "--tone-mapping", "--orthographic", "--backs",  "--outlines",
                                                 "--samples",      "--background",   "--script", "--controls",
-                                                "--up",           "--show",         "--points", "--column"};
+                                                "--up",           "--show",         "--points", "--column",
+                                                "--hide",         "--outlines-of",  "--clip"};
     return names;
 }
 
@@ -286,7 +287,9 @@ ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
     settings.open = [&source](const std::filesystem::path& file, const std::filesystem::path& factors) {
         return source.open(file, factors);
     };
-    viewer::run_viewer(source.open(path, arguments.factors.value_or(std::filesystem::path())), settings);
+    viewer::ViewerInput input = source.open(path, arguments.factors.value_or(std::filesystem::path()));
+    input.picture.cut = picture_cut(arguments.picture, input.mesh->groups()); // of the first scene alone
+    viewer::run_viewer(std::move(input), settings);
     return ExitStatus::ok;
 }
 

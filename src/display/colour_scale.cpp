@@ -43,18 +43,57 @@ float linear_from_srgb(double value) {
 } // namespace
 
 double ColourScale::position(double value) const {
+    return std::clamp(place(value), 0.0, 1.0);
+}
+
+double ColourScale::place(double value) const {
     if (logarithmic) {
-        return value > low ? std::min(std::log(value / low) / std::log(high / low), 1.0) : 0.0;
+        return value > 0.0 ? std::log(value / low) / std::log(high / low) : -1.0;
     }
-    return std::clamp((value - low) / (high - low), 0.0, 1.0);
+    return (value - low) / (high - low);
 }
 
 double ColourScale::value_at(double position) const {
     return logarithmic ? low * std::pow(high / low, position) : low + position * (high - low);
 }
 
+std::array<float, 3> ColourScale::colour_at(double position) const {
+    if (bands < 2) {
+        return scale_colour(position, map);
+    }
+    const auto count = static_cast<double>(bands);
+    const double band = std::clamp(std::floor(position * count), 0.0, count - 1.0);
+    return scale_colour(band / (count - 1.0), map); // the first and the last have the ends' colours
+}
+
+std::vector<double> ColourScale::levels() const {
+    constexpr std::size_t most = 11;
+    std::vector<double> result;
+    if (bands > 1) {
+        for (std::uint32_t k = 1; k < bands; ++k) {
+            result.push_back(value_at(static_cast<double>(k) / static_cast<double>(bands)));
+        }
+        return result;
+    }
+    const double rounding = 1e-9 * (high - low);
+    for (const double mark : logarithmic ? decade_marks(low, high, most) : round_marks(low, high, most)) {
+        if (mark > low + rounding && mark < high - rounding) {
+            result.push_back(mark);
+        }
+    }
+    return result;
+}
+
 std::vector<double> ColourScale::marks() const {
     std::vector<double> result;
+    if (bands > 1 || lines) {
+        result = levels();
+        if (bands > 1) {
+            result.insert(result.begin(), low);
+            result.push_back(high);
+        }
+        return result;
+    }
     if (!logarithmic) {
         for (int k = 0; k <= 5; ++k) {
             result.push_back(low + (high - low) * k / 5.0);
@@ -93,6 +132,49 @@ std::array<float, 3> item_colour(std::uint32_t id) {
         colour[c] = linear_from_srgb(light * (0.25 + 0.75 * std::clamp(away - 1.0, 0.0, 1.0)));
     }
     return colour;
+}
+
+std::vector<double> decade_marks(double low, double high, std::size_t most) {
+    const int first = static_cast<int>(std::floor(std::log10(low)));
+    const int last = static_cast<int>(std::ceil(std::log10(high)));
+    std::vector<double> marks;
+    const auto add = [&](double mark) {
+        if (mark >= low * (1.0 - 1e-9) && mark <= high * (1.0 + 1e-9)) {
+            marks.push_back(mark);
+        }
+    };
+    for (int decade = first; decade <= last; ++decade) {
+        for (const double step : {1.0, 2.0, 5.0}) {
+            add(step * std::pow(10.0, decade));
+        }
+    }
+    for (int every = 1; marks.size() > most && every <= last - first; ++every) {
+        marks.clear();
+        for (int decade = first; decade <= last; decade += every) {
+            add(std::pow(10.0, decade));
+        }
+    }
+    if (marks.empty() || marks.size() > most) {
+        marks.assign(1, std::sqrt(low * high));
+    }
+    return marks;
+}
+
+std::vector<double> round_marks(double low, double high, std::size_t most) {
+    const auto first = [low](double step) { return std::ceil(low / step - 1e-9); };
+    const auto last = [high](double step) { return std::floor(high / step + 1e-9); };
+    double step = round_up((high - low) / static_cast<double>(most));
+    while (last(step) - first(step) + 1.0 > static_cast<double>(most)) {
+        step = round_up(1.5 * step);
+    }
+    std::vector<double> marks;
+    for (double k = first(step); k <= last(step); k += 1.0) {
+        marks.push_back(k * step + 0.0); // no -0
+    }
+    if (marks.empty()) {
+        marks.push_back(0.5 * (low + high));
+    }
+    return marks;
 }
 
 double round_up(double value) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace hemi {
@@ -73,6 +74,9 @@ float before_display(float value, const PictureSettings& settings) {
     return static_cast<float>(settings.exposure > 0.0 ? x / settings.exposure : 0.0);
 }
 
+constexpr std::uint32_t of_no_group =
+    std::numeric_limits<std::uint32_t>::max(); // groups are cut, dots are not
+
 void add(PictureMesh& mesh, const Vec3& at, double radius, const TriangleList& shape, const DotColour& colour,
          bool inwards) {
     for (const std::array<Vec3, 3>& triangle : shape) {
@@ -85,6 +89,9 @@ void add(PictureMesh& mesh, const Vec3& at, double radius, const TriangleList& s
             mesh.corners.insert(mesh.corners.end(), colour.begin(), colour.end());
         }
         mesh.patches.insert(mesh.patches.end(), colour.begin(), colour.end());
+        if (!mesh.groups.empty()) {
+            mesh.groups.push_back(of_no_group);
+        }
         ++mesh.without_outline;
     }
 }

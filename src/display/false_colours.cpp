@@ -3,6 +3,7 @@
 #include "display/false_colour_scale.hpp"
 #include "display/legend.hpp"
 #include "display/painted.hpp"
+#include "display/picture_mesh.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/display/dots.hpp"
 
@@ -44,8 +45,15 @@ bool is_in_thousands(const FalseColours& shown, const ColourScale& scale) {
 
 ColourScale scale_of(const FalseColours& shown) {
     constexpr double decades = 1e-3; // what a logarithmic scale spans
+    constexpr std::uint32_t most_bands = 32;
+    if (shown.bands == 1 || shown.bands > most_bands) {
+        throw InvalidArgument(
+            fmt::format("false colours: {} band{}; must be 2 to {}, or 0 for smooth colours", shown.bands,
+                        shown.bands == 1 ? "" : "s", most_bands),
+            {"bands"});
+    }
     const auto extent = extent_of(shown.values);
-    ColourScale scale{0.0, 1.0, shown.logarithmic, shown.map};
+    ColourScale scale{0.0, 1.0, shown.logarithmic, shown.map, shown.bands, shown.iso_lines};
     if (shown.range) {
         scale.low = (*shown.range)[0];
         scale.high = (*shown.range)[1];
@@ -118,8 +126,13 @@ Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, con
     plain.shading = Shading::flat;
     plain.tone_mapping = ToneMapping::linear;
     plain.exposure = 1.0;
-    PictureMesh drawn =
-        painted(make_picture_mesh(mesh, 1, dark, {}, {0, 0, 0}), value_colours(shown.values, scale, mesh));
+    plain.iso_lines = iso_positions(scale);
+    const SmoothSurfaces surfaces(mesh);
+    PictureMesh drawn = painted(make_picture_mesh(mesh, surfaces, 1, dark, {}, {0, 0, 0}),
+                                value_colours(shown.values, scale, mesh));
+    if (scale.lines) {
+        put_iso_values(drawn, mesh, surfaces, shown.values, scale);
+    }
     if (dots != nullptr) {
         drawn = with_dots(std::move(drawn), *dots, plain);
     }

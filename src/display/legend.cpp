@@ -123,51 +123,39 @@ private:
     int scale_;
 };
 
-/// Values between low and high, ascending: 1, 2 and 5 times powers of ten, or these alone, or every few of
-/// them.
-std::vector<double> decade_marks(double low, double high, std::size_t most) {
-    const int first = static_cast<int>(std::floor(std::log10(low)));
-    const int last = static_cast<int>(std::ceil(std::log10(high)));
-    std::vector<double> marks;
-    const auto add = [&](double mark) {
-        if (mark >= low * (1.0 - 1e-9) && mark <= high * (1.0 + 1e-9)) {
-            marks.push_back(mark);
-        }
-    };
-    for (int decade = first; decade <= last; ++decade) {
-        for (const double step : {1.0, 2.0, 5.0}) {
-            add(step * std::pow(10.0, decade));
-        }
+/// Every few of them, from the first on.
+std::vector<double> every_few(const std::vector<double>& values, std::size_t every) {
+    std::vector<double> few;
+    for (std::size_t k = 0; k < values.size(); k += every) {
+        few.push_back(values[k]);
     }
-    for (int every = 1; marks.size() > most && every <= last - first; ++every) {
-        marks.clear();
-        for (int decade = first; decade <= last; decade += every) {
-            add(std::pow(10.0, decade));
-        }
-    }
-    if (marks.empty() || marks.size() > most) {
-        marks.assign(1, std::sqrt(low * high));
-    }
-    return marks;
+    return few;
 }
 
 } // namespace
 
-std::vector<double> round_marks(double low, double high, std::size_t most) {
-    const auto first = [low](double step) { return std::ceil(low / step - 1e-9); };
-    const auto last = [high](double step) { return std::floor(high / step + 1e-9); };
-    double step = round_up((high - low) / static_cast<double>(most));
-    while (last(step) - first(step) + 1.0 > static_cast<double>(most)) {
-        step = round_up(1.5 * step);
+std::string level_text(double level, const std::vector<double>& marks) {
+    constexpr int most_decimals = 6;
+    double step = std::abs(level);
+    for (std::size_t k = 1; k < marks.size(); ++k) {
+        step = k == 1 ? marks[k] - marks[k - 1] : std::min(step, marks[k] - marks[k - 1]);
     }
-    std::vector<double> marks;
-    for (double k = first(step); k <= last(step); k += 1.0) {
-        marks.push_back(k * step + 0.0); // no -0
+    const double largest = std::max(std::abs(marks.front()), std::abs(marks.back()));
+    const int decimals = step > 0.0 ? 1 - static_cast<int>(std::floor(std::log10(step) + 1e-9)) : 0;
+    if (largest >= 1e7 || decimals > most_decimals) {
+        return fmt::format("{:.3g}", level);
     }
-    if (marks.empty()) {
-        marks.push_back(0.5 * (low + high));
+    std::string words = fmt::format("{:.{}f}", level, std::max(decimals, 0));
+    if (words.find('.') != std::string::npos) {
+        words.erase(words.find_last_not_of('0') + 1);
+        words.erase(words.find_last_not_of('.') + 1);
     }
-    return marks;
+    return words == "-0" ? "0" : words;
+}
+
+bool is_dark_colour(const std::array<float, 3>& linear) {
+    constexpr float dark = 0.12F;
+    return 0.2126F * linear[0] + 0.7152F * linear[1] + 0.0722F * linear[2] < dark;
 }
 
 std::string mark_text(double mark, const std::vector<double>& marks) {
@@ -205,7 +193,7 @@ bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view ti
     const int bar_bottom = bar_top + 8 * s;
     for (int x = bar_left; x < bar_right; ++x) {
         const std::array<float, 3> linear =
-            scale_colour((x + 0.5 - bar_left) / static_cast<double>(bar_right - bar_left), scale.map);
+            scale.colour_at((x + 0.5 - bar_left) / static_cast<double>(bar_right - bar_left));
         canvas.fill(x, bar_top, x + 1, bar_bottom,
                     {srgb_of(linear[0]), srgb_of(linear[1]), srgb_of(linear[2])});
     }
@@ -218,29 +206,49 @@ bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view ti
     const auto place = [&](double mark) {
         return bar_left + static_cast<int>(std::lround(scale.position(mark) * (bar_right - bar_left - 1)));
     };
+    const bool of_levels = scale.bands > 1 || scale.lines;
+    const std::vector<double> levels = of_levels ? scale.marks() : std::vector<double>();
     std::vector<double> marks;
     const auto words_of = [&](double mark) {
-        return scale.logarithmic ? fmt::format("{:.3g}", mark) : mark_text(mark, marks);
+        return of_levels ? level_text(mark, levels)
+                         : (scale.logarithmic ? fmt::format("{:.3g}", mark) : mark_text(mark, marks));
+    };
+    // Words of the ends of bands stay in the box.
+    const auto text_left = [&](double mark) {
+        const int width_of_words = canvas.width_of(words_of(mark));
+        const int from = place(mark) - width_of_words / 2;
+        return of_levels ? std::clamp(from, left + 2 * s,
+                                      std::max(left + 2 * s, left + box_width - 2 * s - width_of_words))
+                         : from;
     };
     const auto is_crowded = [&] {
         int free_from = left;
         for (const double mark : marks) {
-            const int half = canvas.width_of(words_of(mark)) / 2;
-            if (place(mark) - half < free_from) {
+            if (text_left(mark) < free_from) {
                 return true;
             }
-            free_from = place(mark) + half + 4 * s;
+            free_from = text_left(mark) + canvas.width_of(words_of(mark)) + 4 * s;
         }
         return free_from > left + box_width + 4 * s;
     };
-    for (std::size_t most = 8; most > 0 && (marks.empty() || is_crowded()); --most) {
+    for (std::size_t every = 1; every <= levels.size() && (marks.empty() || is_crowded()); ++every) {
+        marks = every_few(levels, every);
+    }
+    for (const double level : levels) {
+        const bool line = scale.lines && level > scale.low && level < scale.high;
+        const std::array<std::uint8_t, 3> colour =
+            line && is_dark_colour(scale.colour_at(scale.position(level))) ? ink : ground;
+        canvas.fill(place(level), line ? bar_top : bar_bottom, place(level) + s,
+                    bar_bottom + (line ? 0 : 2 * s), line ? colour : ink);
+    }
+    for (std::size_t most = 8; !of_levels && most > 0 && (marks.empty() || is_crowded()); --most) {
         marks = scale.logarithmic ? decade_marks(scale.low, scale.high, most)
                                   : round_marks(scale.low, scale.high, most);
     }
     for (const double mark : marks) {
         canvas.fill(place(mark), bar_bottom, place(mark) + s, bar_bottom + 3 * s, ink);
         const std::string words = words_of(mark);
-        canvas.text(place(mark) - canvas.width_of(words) / 2, bar_bottom + 5 * s, words);
+        canvas.text(text_left(mark), bar_bottom + 5 * s, words);
     }
     return true;
 }

@@ -11,13 +11,15 @@
 
 namespace hemi {
 
-/// Round values between low and high, ascending, at most `most` and at least one: multiples of 1, 2 or 5
-/// times a power of ten.
-[[nodiscard]] std::vector<double> round_marks(double low, double high, std::size_t most);
-/// Words of one of them, with as many digits as tell it from the next.
+/// Words of one of round_marks(), with as many digits as tell it from the next.
 [[nodiscard]] std::string mark_text(double mark, const std::vector<double>& marks);
+/// Words of one of ColourScale::marks() where these are no round ones, to a tenth of the least step.
+[[nodiscard]] std::string level_text(double level, const std::vector<double>& marks);
+/// Whether a line on that colour has to be light; as picture.frag draws iso-lines.
+/// @param linear  display linear
+[[nodiscard]] bool is_dark_colour(const std::array<float, 3>& linear);
 
-/// Draws a title and a scale with marks into the lower left of `srgb`.
+/// Draws a title and a scale with marks, bands and lines into the lower left of `srgb`.
 /// @param beyond  whether values lie below and above the scale: < and > at its ends say so
 /// @param below   legends that it stands above
 /// @return whether there was room for it

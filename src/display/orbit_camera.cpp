@@ -140,6 +140,19 @@ void OrbitCamera::zoom(double factor) {
     camera_.target = pivot_ + limited * (start_.target - pivot_);
 }
 
+void OrbitCamera::walk(double ahead, double right) {
+    const Vec3 forward = glm::normalize(camera_.target - camera_.eye);
+    const Vec3 across = glm::cross(forward, camera_.up); // level, as the turntable never rolls over
+    Vec3 level = forward - glm::dot(forward, upward_) * upward_;
+    if (!(glm::length(level) > 1e-6)) { // straight down: what is up in the picture lies ahead
+        level = camera_.up - glm::dot(camera_.up, upward_) * upward_;
+    }
+    const Vec3 way = ahead * glm::normalize(level) + right * glm::normalize(across);
+    camera_.eye += way;
+    camera_.target += way;
+    grab(camera_.target);
+}
+
 void OrbitCamera::frame_all(double aspect) {
     const Vec3 forward = glm::normalize(camera_.target - camera_.eye);
     const double radius = bounds_.diagonal() > 0.0 ? 0.5 * bounds_.diagonal() : 1.0;

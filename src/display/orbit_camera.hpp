@@ -46,6 +46,10 @@ public:
     /// Multiplies the distance to the pivot by `factor` (> 0) since grab(). The pivot keeps its place.
     void zoom(double factor);
 
+    /// Walks by lengths in scene units: `ahead` where one looks, but level, and `right`; eye and target move
+    /// alike.
+    void walk(double ahead, double right);
+
     /// Goes back or forth along the view until the whole scene is in the picture, and looks at its centre.
     /// @param aspect  width by height of the picture.
     void frame_all(double aspect);

@@ -1,6 +1,10 @@
 #include "display/painted.hpp"
 
+#include "display/vertex_colours_detail.hpp"
+
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hemi {
 
@@ -39,10 +43,42 @@ std::vector<std::array<float, 3>> value_colours(std::span<const double> values, 
                 channel *= none_level;
             }
         } else {
-            colours[i] = scale_colour(scale.position(values[i]), scale.map);
+            colours[i] = scale.colour_at(scale.position(values[i]));
         }
     }
     return colours;
+}
+
+void put_iso_values(PictureMesh& painted, const PatchMesh& mesh, const SmoothSurfaces& surfaces,
+                    std::span<const double> values, const ColourScale& scale) {
+    std::vector<double> places(values.size(), 0.0);
+    std::vector<double> left_out(values.size(), 0.0); // what has no value lends its neighbours none
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isnan(values[i])) {
+            left_out[i] = 1.0;
+        } else {
+            places[i] = scale.place(values[i]);
+        }
+    }
+    const std::vector<float> at_corners = corner_values(mesh, surfaces, 1, places, left_out);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool triangle = surfaces.corners(static_cast<std::uint32_t>(i)).size() == 3;
+        for (std::size_t k = 0; k < 4; ++k) {
+            painted.corners[(i * 4 + k) * 3] =
+                std::isnan(values[i]) ? std::numeric_limits<float>::quiet_NaN()
+                                      : at_corners[i * 4 + (triangle ? std::min(k, std::size_t{2}) : k)];
+        }
+    }
+}
+
+std::vector<float> iso_positions(const ColourScale& scale) {
+    std::vector<float> positions;
+    if (scale.lines) {
+        for (const double level : scale.levels()) {
+            positions.push_back(static_cast<float>(scale.place(level)));
+        }
+    }
+    return positions;
 }
 
 } // namespace hemi

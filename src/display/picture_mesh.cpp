@@ -89,8 +89,10 @@ PictureMesh make_picture_mesh(const PatchMesh& mesh, const SmoothSurfaces& surfa
         }
     }
     picture.positions.reserve(picture.corners.size());
+    picture.groups.reserve(mesh.size());
     picture.patches.reserve(shown.size());
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
+        picture.groups.push_back(mesh.group(patch));
         const auto ring = surfaces.corners(patch);
         // Welded positions, so that neighbours share every bit of their corners and no background shows
         // between them.

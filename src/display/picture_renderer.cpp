@@ -37,6 +37,9 @@ float linear_of(std::uint8_t srgb) {
 }
 /// Patch outlines, pixels.
 constexpr float outline_pixels = 0.75F;
+/// Iso-lines, pixels.
+constexpr float line_pixels = 1.5F;
+constexpr std::size_t most_lines = 32;
 /// Stripes on the backs of surfaces, pixels.
 constexpr float stripe_pixels = 4.0F;
 
@@ -52,15 +55,11 @@ std::array<float, 3> triple(const std::vector<float>& values, std::size_t index)
     return {values[index * 3], values[index * 3 + 1], values[index * 3 + 2]};
 }
 
-/// Vertices and triangles of a mesh: a triangle is one, a quadrilateral four around its centre, so that the
+/// Vertices of a patch: a triangle is one, a quadrilateral four triangles around its centre, so that the
 /// picture does not show along which diagonal it was cut.
-struct Triangles {
-    std::vector<Vertex> vertices;
-    std::vector<std::uint32_t> indices;
-};
-
-void add_patch(const PictureMesh& mesh, std::size_t patch, bool outlined, Triangles& out) {
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
+/// @return the number of its corners
+std::uint8_t add_patch(const PictureMesh& mesh, std::size_t patch, bool outlined,
+                       std::vector<Vertex>& vertices) {
     const auto item = static_cast<std::uint32_t>(patch + 1);
     const std::array<float, 3> flat = triple(mesh.patches, patch);
     const auto corner = [&](std::size_t k, std::array<float, 3> outline) {
@@ -69,22 +68,30 @@ void add_patch(const PictureMesh& mesh, std::size_t patch, bool outlined, Triang
     };
     if (triple(mesh.positions, patch * 4 + 2) == triple(mesh.positions, patch * 4 + 3)) {
         const float off = outlined ? 0.0F : 1.0F;
-        out.vertices.insert(out.vertices.end(), {corner(0, {1.0F, off, off}), corner(1, {off, 1.0F, off}),
-                                                 corner(2, {off, off, 1.0F})});
-        out.indices.insert(out.indices.end(), {first, first + 1, first + 2});
-        return;
+        vertices.insert(vertices.end(), {corner(0, {1.0F, off, off}), corner(1, {off, 1.0F, off}),
+                                         corner(2, {off, off, 1.0F})});
+        return 3;
     }
     Vertex centre{{}, {}, flat, {1.0F, 1.0F, 1.0F}, item};
     for (std::size_t k = 0; k < 4; ++k) {
-        out.vertices.push_back(corner(k, {outlined ? 0.0F : 1.0F, 1.0F, 1.0F}));
+        vertices.push_back(corner(k, {outlined ? 0.0F : 1.0F, 1.0F, 1.0F}));
         for (std::size_t i = 0; i < 3; ++i) {
-            centre.position[i] += 0.25F * out.vertices.back().position[i];
-            centre.gouraud[i] += 0.25F * out.vertices.back().gouraud[i];
+            centre.position[i] += 0.25F * vertices.back().position[i];
+            centre.gouraud[i] += 0.25F * vertices.back().gouraud[i];
         }
     }
-    out.vertices.push_back(centre);
+    vertices.push_back(centre);
+    return 4;
+}
+
+/// Triangles of a patch whose vertices begin at `first`, see add_patch().
+void add_indices(std::uint8_t corners, std::uint32_t first, std::vector<std::uint32_t>& indices) {
+    if (corners == 3) {
+        indices.insert(indices.end(), {first, first + 1, first + 2});
+        return;
+    }
     for (std::uint32_t k = 0; k < 4; ++k) {
-        out.indices.insert(out.indices.end(), {first + k, first + (k + 1) % 4, first + 4});
+        indices.insert(indices.end(), {first + k, first + (k + 1) % 4, first + 4});
     }
 }
 
@@ -160,6 +167,10 @@ void check(const Camera& camera, const PictureSettings& settings) {
         throw InvalidArgument(
             fmt::format("camera: field of view {}; must lie between 0 and 180", camera.fov));
     }
+    if (settings.iso_lines.size() > most_lines) {
+        throw InvalidArgument(
+            fmt::format("{} iso-lines; must be at most {}", settings.iso_lines.size(), most_lines));
+    }
 }
 
 gl::Texture2D make_texture(GLenum format, std::uint32_t width, std::uint32_t height, const char* name) {
@@ -170,6 +181,26 @@ gl::Texture2D make_texture(GLenum format, std::uint32_t width, std::uint32_t hei
     gl::label(GL_TEXTURE, texture.get(), name);
     return texture;
 }
+
+/// Cuts what is drawn while it lives, where there is a plane.
+class Clipping {
+public:
+    explicit Clipping(const PictureCut& cut) : on_(cut.clip.has_value()) {
+        if (on_) {
+            glEnable(GL_CLIP_DISTANCE0);
+        }
+    }
+    ~Clipping() {
+        if (on_) {
+            glDisable(GL_CLIP_DISTANCE0);
+        }
+    }
+    Clipping(const Clipping&) = delete;
+    Clipping& operator=(const Clipping&) = delete;
+
+private:
+    bool on_;
+};
 
 void require_complete(const gl::Framebuffer& framebuffer, const char* name) {
     const GLenum status = glCheckNamedFramebufferStatus(framebuffer.get(), GL_FRAMEBUFFER);
@@ -184,7 +215,9 @@ PictureRenderer::PictureRenderer()
     : picture_program_(gl::make_program("picture", gl::shaders::picture_vert, gl::shaders::picture_frag)),
       resolve_program_(gl::make_program("resolve", gl::shaders::fullscreen_vert, gl::shaders::resolve_frag)),
       item_program_(
-          gl::make_program("picture items", gl::shaders::picture_vert, gl::shaders::picture_item_frag)) {
+          gl::make_program("picture items", gl::shaders::picture_vert, gl::shaders::picture_item_frag)),
+      outline_program_(gl::make_program("picture outlines", gl::shaders::picture_vert,
+                                        gl::shaders::picture_outline_frag)) {
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_);
     gl::label(GL_BUFFER, vertices_.get(), "picture vertices");
     gl::label(GL_BUFFER, indices_.get(), "picture indices");
@@ -214,22 +247,54 @@ void PictureRenderer::upload(const PictureMesh& mesh) {
     if (patches * 12 > static_cast<std::size_t>(std::numeric_limits<GLsizei>::max())) {
         throw InvalidArgument(fmt::format("picture: {} patches are more than can be drawn", patches));
     }
-    Triangles triangles;
-    triangles.vertices.reserve(patches * 5);
-    triangles.indices.reserve(patches * 12);
-    for (std::size_t patch = 0; patch < patches; ++patch) {
-        add_patch(mesh, patch, patch + mesh.without_outline < patches, triangles);
+    if (!mesh.groups.empty() && mesh.groups.size() != patches) {
+        throw InvalidArgument(fmt::format("picture: {} patches, {} groups", patches, mesh.groups.size()));
     }
-    glNamedBufferData(vertices_.get(), static_cast<GLsizeiptr>(triangles.vertices.size() * sizeof(Vertex)),
-                      triangles.vertices.data(), GL_STATIC_DRAW);
-    glNamedBufferData(indices_.get(),
-                      static_cast<GLsizeiptr>(triangles.indices.size() * sizeof(std::uint32_t)),
-                      triangles.indices.data(), GL_STATIC_DRAW);
-    gl::check_errors("uploading the picture's mesh");
-    index_count_ = static_cast<GLsizei>(triangles.indices.size());
+    std::vector<Vertex> vertices;
+    vertices.reserve(patches * 5);
+    corner_counts_.clear();
+    for (std::size_t patch = 0; patch < patches; ++patch) {
+        corner_counts_.push_back(add_patch(mesh, patch, patch + mesh.without_outline < patches, vertices));
+    }
+    glNamedBufferData(vertices_.get(), static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
+                      vertices.data(), GL_STATIC_DRAW);
+    groups_ = mesh.groups;
+    upload_indices({});
     origin_ = mesh.origin;
     environment_ = mesh.environment;
     diagonal_ = mesh.bounds.diagonal() > 0.0 ? mesh.bounds.diagonal() : 1.0;
+}
+
+void PictureRenderer::upload_indices(const std::vector<Visibility>& groups) {
+    std::vector<std::uint32_t> indices;
+    std::vector<std::uint32_t> outlined;
+    indices.reserve(corner_counts_.size() * 12);
+    std::uint32_t first = 0;
+    for (std::size_t patch = 0; patch < corner_counts_.size(); ++patch) {
+        const bool known = !groups_.empty() && groups_[patch] < groups.size();
+        const Visibility visibility = known ? groups[groups_[patch]] : Visibility::shown;
+        if (visibility != Visibility::hidden) {
+            add_indices(corner_counts_[patch], first, visibility == Visibility::shown ? indices : outlined);
+        }
+        first += corner_counts_[patch] == 3 ? 3 : 5;
+    }
+    index_count_ = static_cast<GLsizei>(indices.size());
+    outline_count_ = static_cast<GLsizei>(outlined.size());
+    indices.insert(indices.end(), outlined.begin(), outlined.end());
+    glNamedBufferData(indices_.get(), static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)),
+                      indices.data(), GL_STATIC_DRAW);
+    gl::check_errors("uploading the picture's mesh");
+    selected_ = groups;
+}
+
+void PictureRenderer::select(const std::vector<Visibility>& groups) {
+    if (groups == selected_) {
+        return;
+    }
+    if (groups_.empty() && !corner_counts_.empty() && !groups.empty()) {
+        throw InvalidArgument("picture: a cut by groups, of a mesh that says of none");
+    }
+    upload_indices(groups);
 }
 
 std::vector<PictureRenderer::Tile> PictureRenderer::tiles(const PictureSettings& settings) const {
@@ -277,23 +342,24 @@ void PictureRenderer::draw_samples(const Camera& camera, const PictureSettings& 
     glUniform1i(picture_uniforms::flat_shading, settings.shading == Shading::flat ? 1 : 0);
     glUniform1f(picture_uniforms::outline_width,
                 settings.outlines ? outline_pixels * static_cast<float>(samples) : 0.0F);
+    glUniform1i(picture_uniforms::line_count, static_cast<GLint>(settings.iso_lines.size()));
+    glUniform1f(picture_uniforms::line_width, line_pixels * static_cast<float>(samples));
+    glUniform1fv(picture_uniforms::lines, static_cast<GLsizei>(settings.iso_lines.size()),
+                 settings.iso_lines.data());
     glUniform1f(picture_uniforms::stripe_width, stripe_pixels * static_cast<float>(samples));
     glUniform2f(picture_uniforms::first_sample, static_cast<float>(tile.x * samples),
                 static_cast<float>(tile.y * samples));
     draw_mesh(picture_program_, camera, settings, tile);
+    if (outline_count_ > 0) {
+        draw_outlines(camera, settings, tile);
+    }
 }
 
 void PictureRenderer::draw_mesh(const gl::Program& program, const Camera& camera,
                                 const PictureSettings& settings, const Tile& tile) {
     const gl::ReversedDepth state(GL_CCW);
-    glUseProgram(program.get());
-    const Vec3 eye = camera.eye - origin_;
-    const std::array<float, 16> matrix = projection(camera, settings, tile.x, tile.y, tile.width, tile.height,
-                                                    near_share * diagonal_, glm::length(eye) + diagonal_);
-    glUniformMatrix4fv(picture_uniforms::clip_from_direction, 1, GL_FALSE, matrix.data());
-    glUniform3f(picture_uniforms::eye, static_cast<float>(eye.x), static_cast<float>(eye.y),
-                static_cast<float>(eye.z));
-    glBindVertexArray(vertex_array_.get());
+    const Clipping clipping(settings.cut);
+    use(program, camera, settings, tile);
     glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
     if (settings.backs) {
         // A hair farther away, so that a two-sided surface shows the patch on that side.
@@ -301,6 +367,34 @@ void PictureRenderer::draw_mesh(const gl::Program& program, const Camera& camera
         state.offset(-1.0F, -16.0F);
         glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
     }
+}
+
+void PictureRenderer::draw_outlines(const Camera& camera, const PictureSettings& settings, const Tile& tile) {
+    const gl::ReversedDepth state(GL_CCW);
+    const Clipping clipping(settings.cut);
+    use(outline_program_, camera, settings, tile);
+    glUniform1f(picture_uniforms::outline_width, outline_pixels * static_cast<float>(settings.samples));
+    const auto* const first =
+        reinterpret_cast<const void*>(static_cast<std::uintptr_t>(index_count_) * sizeof(std::uint32_t));
+    glDrawElements(GL_TRIANGLES, outline_count_, GL_UNSIGNED_INT, first);
+    state.cull_fronts();
+    glDrawElements(GL_TRIANGLES, outline_count_, GL_UNSIGNED_INT, first);
+}
+
+void PictureRenderer::use(const gl::Program& program, const Camera& camera, const PictureSettings& settings,
+                          const Tile& tile) {
+    glUseProgram(program.get());
+    const Vec3 eye = camera.eye - origin_;
+    const std::array<float, 16> matrix = projection(camera, settings, tile.x, tile.y, tile.width, tile.height,
+                                                    near_share * diagonal_, glm::length(eye) + diagonal_);
+    glUniformMatrix4fv(picture_uniforms::clip_from_direction, 1, GL_FALSE, matrix.data());
+    glUniform3f(picture_uniforms::eye, static_cast<float>(eye.x), static_cast<float>(eye.y),
+                static_cast<float>(eye.z));
+    const ClipPlane plane = settings.cut.clip.value_or(ClipPlane{Vec3(0.0), 1.0});
+    glUniform4f(picture_uniforms::clip, static_cast<float>(plane.normal.x),
+                static_cast<float>(plane.normal.y), static_cast<float>(plane.normal.z),
+                static_cast<float>(plane.offset - glm::dot(plane.normal, origin_)));
+    glBindVertexArray(vertex_array_.get());
 }
 
 void PictureRenderer::resolve(const PictureSettings& settings, const Tile& tile, GLuint target,
@@ -332,6 +426,7 @@ void PictureRenderer::resolve(const PictureSettings& settings, const Tile& tile,
 
 void PictureRenderer::draw(const Camera& camera, const PictureSettings& settings, GLuint target) {
     check(camera, settings);
+    select(settings.cut.groups);
     for (const Tile& tile : tiles(settings)) {
         make_sample_target(tile.width * settings.samples, tile.height * settings.samples);
         draw_samples(camera, settings, tile);
@@ -342,6 +437,7 @@ void PictureRenderer::draw(const Camera& camera, const PictureSettings& settings
 
 Picture PictureRenderer::picture(const Camera& camera, const PictureSettings& settings) {
     check(camera, settings);
+    select(settings.cut.groups);
     Picture result;
     result.width = settings.width;
     result.height = settings.height;
@@ -418,6 +514,7 @@ std::vector<std::uint32_t> PictureRenderer::draw_items(const Camera& camera, con
 
 std::vector<std::uint32_t> PictureRenderer::items(const Camera& camera, const PictureSettings& settings) {
     check(camera, settings);
+    select(settings.cut.groups);
     PictureSettings single = settings;
     single.samples = 1;
     std::vector<std::uint32_t> result(std::size_t{settings.width} * settings.height);
@@ -440,6 +537,7 @@ std::optional<std::uint32_t> PictureRenderer::item(const Camera& camera, const P
         throw InvalidArgument(
             fmt::format("pixel {}, {} of a picture of {}x{}", x, y, settings.width, settings.height));
     }
+    select(settings.cut.groups);
     const std::uint32_t found = draw_items(camera, settings, {x, settings.height - 1 - y, 1, 1})[0];
     return found == 0 ? std::nullopt : std::optional(found - 1);
 }

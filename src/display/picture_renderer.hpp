@@ -31,14 +31,15 @@ public:
     /// Draws the picture into the lower left of framebuffer `target` (0: the window), tile by tile where the
     /// samples do not fit into one texture.
     /// @throws InvalidArgument for a size of 0 or above max_size, samples outside 1 to 8, a camera without a
-    ///   direction or with a field of view outside (0, 180), an exposure that is not finite; GlError
+    ///   direction or with a field of view outside (0, 180), an exposure that is not finite, more than 32
+    ///   lines, a cut by groups of a mesh that says of none; GlError
     void draw(const Camera& camera, const PictureSettings& settings, GLuint target);
 
     /// The same pixels, read back. @throws as draw()
     [[nodiscard]] Picture picture(const Camera& camera, const PictureSettings& settings);
 
     /// Patch seen at the centre of every pixel, row by row from the top; no_item where none is. Where backs
-    /// are shown, they count.
+    /// are shown, they count; outlines of what is looked through do not.
     /// @throws as draw()
     [[nodiscard]] std::vector<std::uint32_t> items(const Camera& camera, const PictureSettings& settings);
     /// The same of one pixel, x from the left and y from the top, inside the picture.
@@ -61,10 +62,19 @@ private:
         std::uint32_t height = 0;
     };
 
+    /// Puts the patches of groups that are shown, and behind them of those that are outlined, into the
+    /// indices, where these are of others.
+    void select(const std::vector<Visibility>& groups);
+    void upload_indices(const std::vector<Visibility>& groups);
     [[nodiscard]] std::vector<Tile> tiles(const PictureSettings& settings) const;
     void draw_samples(const Camera& camera, const PictureSettings& settings, const Tile& tile);
     void draw_mesh(const gl::Program& program, const Camera& camera, const PictureSettings& settings,
                    const Tile& tile);
+    /// Of groups that are looked through.
+    void draw_outlines(const Camera& camera, const PictureSettings& settings, const Tile& tile);
+    /// Sets what picture.vert wants of a program.
+    void use(const gl::Program& program, const Camera& camera, const PictureSettings& settings,
+             const Tile& tile);
     /// Items of a part of the picture, rows from the bottom: patch and 1, or 0.
     [[nodiscard]] std::vector<std::uint32_t> draw_items(const Camera& camera, const PictureSettings& settings,
                                                         const Tile& tile);
@@ -76,11 +86,16 @@ private:
     gl::Program picture_program_;
     gl::Program resolve_program_;
     gl::Program item_program_;
+    gl::Program outline_program_;
     gl::VertexArray vertex_array_;
     gl::VertexArray no_vertices_;
     gl::Buffer vertices_;
     gl::Buffer indices_;
-    GLsizei index_count_ = 0;
+    std::vector<std::uint8_t> corner_counts_; ///< of every patch
+    std::vector<std::uint32_t> groups_;       ///< likewise; empty: not known
+    std::vector<Visibility> selected_;        ///< what indices are of
+    GLsizei index_count_ = 0;                 ///< of patches that are shown, which come first
+    GLsizei outline_count_ = 0;               ///< of patches that are outlined
     Vec3 origin_{0.0};
     double diagonal_ = 1.0;
     std::array<float, 3> environment_{};

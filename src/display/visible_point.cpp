@@ -7,14 +7,15 @@
 namespace hemi {
 
 std::optional<VisiblePoint> visible_point(const PatchMesh& mesh, const Vec3& origin, const Vec3& direction,
-                                          bool backs) {
+                                          bool backs, const PictureCut& cut) {
     double nearest = std::numeric_limits<double>::infinity();
     VisiblePoint result{};
     for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
         const Surface& surface = mesh.surfaces()[s];
         const Vec3& normal = mesh.surface_normal(s);
         const double slope = glm::dot(direction, normal);
-        if (slope == 0.0 || (slope > 0.0 && !surface.two_sided && !backs)) {
+        if (slope == 0.0 || (slope > 0.0 && !surface.two_sided && !backs) ||
+            cut.of_group(surface.group) != Visibility::shown) {
             continue;
         }
         const double along = glm::dot(surface.vertices[0] - origin, normal) / slope;
@@ -22,7 +23,7 @@ std::optional<VisiblePoint> visible_point(const PatchMesh& mesh, const Vec3& ori
             continue;
         }
         const Vec3 point = origin + along * direction;
-        bool inside = true;
+        bool inside = cut.keeps(point);
         for (std::size_t k = 0; k < surface.vertex_count && inside; ++k) {
             const Vec3& from = surface.vertices[k];
             const Vec3& to = surface.vertices[(k + 1) % surface.vertex_count];

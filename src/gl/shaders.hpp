@@ -9,6 +9,7 @@ extern const char* const hemicube_frag;
 extern const char* const picture_vert;
 extern const char* const picture_frag;
 extern const char* const picture_item_frag;
+extern const char* const picture_outline_frag;
 extern const char* const fullscreen_vert;
 extern const char* const resolve_frag;
 

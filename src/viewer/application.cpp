@@ -1,16 +1,15 @@
 #include "viewer/application.hpp"
 
 #include "hemi/pipeline/settings.hpp"
-#include "hemi/scene/light_unit.hpp"
 
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/core/text.hpp"
-#include "hemi/io/image_file.hpp"
-#include "hemi/io/scene_writer.hpp"
-#include "viewer/command_line.hpp"
 #include "viewer/dots.hpp"
+#include "viewer/gauges.hpp"
 #include "viewer/keys.hpp"
+#include "viewer/legend_window.hpp"
+#include "viewer/measure.hpp"
 #include "viewer/overlays.hpp"
 #include "viewer/report.hpp"
 
@@ -36,6 +35,8 @@ constexpr std::chrono::milliseconds gather_interval{100};
 constexpr int gather_part = 20;
 /// A solution that took longer is not thrown away without a word.
 constexpr std::chrono::seconds long_work{60};
+/// One step of a walk, in scene diagonals.
+constexpr double walk_share = 0.01;
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code error;
@@ -46,13 +47,15 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
 
 Application::Application(ViewerInput input, const ViewerSettings& settings)
     : settings_(settings), window_(input.title(), input.picture.width, input.picture.height),
-      navigator_(settings.controls, input.mesh, input.camera), opener_(settings.open, Window::wake) {
+      gui_(window_.scale()), navigator_(settings.controls, input.mesh, input.camera),
+      opener_(settings.open, Window::wake) {
     choices_.look.shading = input.picture.shading;
     choices_.look.tone_mapping = input.picture.tone_mapping;
     choices_.look.outlines = input.picture.outlines;
     choices_.look.backs = input.picture.backs;
     choices_.look.dots_column = input.dots_column;
     choices_.samples = input.picture.samples;
+    choices_.cut = input.picture.cut;
     exchange(std::move(input));
 }
 
@@ -70,13 +73,25 @@ void Application::exchange(ViewerInput input) {
     if (!again || !same_patches) {
         choices_.picked.reset();
     }
+    if (document_ && document_->input().mesh->groups() != input.mesh->groups()) {
+        choices_.cut.groups.clear();
+        choices_.group.reset();
+    }
+    if (document_ && !again) {
+        choices_.cut.clip.reset();
+    }
+    shown_group_.reset();
+    choices_.measured.clear();
+    probe_.reset();
+    hides_backs_ = false;
     choices_.pointed_at.reset();
     choices_.materials = input.scene->materials;
     choices_.conditions = input.heat ? input.heat->conditions : std::vector<HeatCondition>();
     inset_.reset();
     under_cursor_.reset();
-    asks_to_close_ = false;
-    history_.emplace(MaterialHistory::State{choices_.materials, choices_.conditions});
+    asks_to_close_ = asks_to_close_ && again; // finer patches of the scene answer no question
+    choices_.environment = input.environment();
+    history_.emplace(MaterialHistory::State{choices_.materials, choices_.conditions, choices_.environment});
     document_.reset(); // whose threads end first
     document_ = std::make_unique<Document>(std::move(input), factor_cache_, Window::wake);
     const std::vector<std::string> channels = channel_choices(document_->input().scene->channels);
@@ -86,6 +101,8 @@ void Application::exchange(ViewerInput input) {
     saved_result_.clear();
     shown_look_.reset();
     message_.clear();
+    bookmarks_ = Bookmarks();
+    attempt([this] { bookmarks_ = Bookmarks(document_->input().file); });
     settle();
 }
 
@@ -134,8 +151,16 @@ void Application::wait_for_work(const std::function<bool()>& enough) {
 
 /// The panels see every event first; a drag that began in the view stays the view's.
 void Application::handle(const Event& event) {
+    const bool typed = gui_.has_keyboard() &&
+                       (std::holds_alternative<KeyEvent>(event) || std::holds_alternative<TextEvent>(event));
     gui_.feed(event);
     describe_panels();
+    if (typed) {
+        describe_panels(); // without the key, which may be pressed again
+        grant_wishes();
+        settle();
+        return;
+    }
     const bool of_mouse =
         std::holds_alternative<ButtonEvent>(event) || std::holds_alternative<ScrollEvent>(event);
     if (!(of_mouse && gui_.has_mouse() && !navigator_.holds())) {
@@ -161,7 +186,7 @@ void Application::act_on(const Event& event) {
                                   moved();
                               }
                           },
-                          [this](const KeyEvent& e) { on_key(e); },
+                          [this](const KeyEvent& e) { on_key(e); }, [](const TextEvent&) {},
                           [this](const RefreshEvent&) { refresh(); },
                           [this](const CloseEvent&) { ask_to_close(); },
                           [this](const DropEvent& e) { open(e.path); }},
@@ -171,10 +196,21 @@ void Application::act_on(const Event& event) {
 
 void Application::on_key(const KeyEvent& event) {
     navigator_.let_go();
+    const int number = event.key >= '1' && event.key <= '9' ? event.key - '0' : 0;
     if (event.control) {
         if (event.key == 'Z') {
             undo_or_redo(event.shift);
+        } else if (number > 0) {
+            attempt([this, number] { keep_camera(number); });
         }
+    } else if (event.alt) {
+        if (number > 0) {
+            go_to_camera(number);
+        }
+    } else if (choices_.walking &&
+               apply_walk_key(event, walk_share * document_->input().mesh->bounds().diagonal(),
+                              navigator_.orbit())) {
+        picture_changed_ = true;
     } else if (apply_camera_key(event, navigator_.aspect(), navigator_.orbit())) {
         picture_changed_ = true;
     } else if (!apply_look_key(event, document_->input(), choices_)) {
@@ -195,6 +231,16 @@ void Application::other_key(const KeyEvent& event) {
     } else if (event.key == tab_key) {
         choices_.panel = !choices_.panel;
         picture_changed_ = true;
+    } else if (event.key == 'A' || event.key == 'I' || event.key == 'N' || event.key == 'O') {
+        on_group_key(event.key);
+    } else if (event.key == 'K') {
+        clip_by_key(event.shift);
+    } else if (event.key == 'D') {
+        choices_.measuring = !choices_.measuring;
+    } else if (event.key == 'J') {
+        choices_.walking = !choices_.walking;
+    } else if (event.key == 'U') {
+        choices_.gauges = !choices_.gauges;
     } else if (event.key == 'C') {
         choices_.hemicube = !choices_.hemicube;
     } else if (event.key == help_key) {
@@ -207,8 +253,13 @@ void Application::other_key(const KeyEvent& event) {
         choices_.help = false;
     } else if (event.key == escape_key && !message_.empty()) {
         message_.clear();
-    } else if (event.key == escape_key && choices_.picked) {
+    } else if (event.key == escape_key && choices_.measuring) {
+        choices_.measuring = false;
+    } else if (event.key == escape_key && choices_.walking) {
+        choices_.walking = false;
+    } else if (event.key == escape_key && (choices_.picked || choices_.group)) {
         choices_.picked.reset();
+        choices_.group.reset();
     } else if (event.key == 'Q') {
         ask_to_close();
     }
@@ -216,8 +267,12 @@ void Application::other_key(const KeyEvent& event) {
 
 void Application::undo_or_redo(bool redo) {
     const MaterialHistory::State& state = redo ? history_->redo() : history_->undo();
+    if (state != MaterialHistory::State{choices_.materials, choices_.conditions, choices_.environment}) {
+        saved_result_.clear(); // it is of other light
+    }
     choices_.materials = state.materials;
     choices_.conditions = state.conditions;
+    choices_.environment = state.environment;
 }
 
 void Application::ask_to_close() {
@@ -232,7 +287,7 @@ std::string Application::unsaved() const {
         return {};
     }
     if (!document_->as_opened()) {
-        return "Materials or temperatures were changed, and are not saved.";
+        return "Materials, temperatures or the environment were changed, and are not saved.";
     }
     const Clock::duration worked =
         worked_ + (works_since_ ? Clock::now() - *works_since_ : Clock::duration{0});
@@ -243,45 +298,6 @@ std::string Application::unsaved() const {
                            savable ? "saved" : "found yet");
     }
     return {};
-}
-
-void Application::look_under_cursor() {
-    under_cursor_.reset();
-    dot_under_cursor_.reset();
-    if (!(choices_.panel || view_.dots()) || navigator_.dragging() || !navigator_.on_picture() ||
-        gui_.has_mouse()) {
-        return;
-    }
-    if (const auto point = navigator_.surface_under_cursor(choices_.look.backs)) {
-        under_cursor_ = UnderCursor{patch_at(*document_->input().mesh, *point), point->position};
-    }
-    if (view_.dots()) {
-        dot_under_cursor_ = dot_at(*view_.dots(), navigator_.ray_under_cursor(),
-                                   under_cursor_ ? std::optional(under_cursor_->position) : std::nullopt);
-    }
-}
-
-std::array<std::string, 2> Application::words_under_cursor() const {
-    if (!under_cursor_) {
-        return {};
-    }
-    const ViewerInput& input = document_->input();
-    const std::uint32_t i = under_cursor_->patch;
-    std::string value;
-    if (view_.field()) {
-        const FalseColours& shown = view_.field()->shown;
-        value = std::isnan(shown.values[i]) ? view_.field()->grey
-                                            : fmt::format("{:.4g} {}", shown.values[i], shown.unit);
-    } else if (document_->light().knows(i)) {
-        for (std::uint32_t c = 0; c < input.channels(); ++c) {
-            value +=
-                fmt::format("{:.3g} ", document_->light().radiosity[std::size_t{i} * input.channels() + c]);
-        }
-        value += flux_density_unit(*input.scene);
-    }
-    const Vec3& at = under_cursor_->position;
-    return {fmt::format("{}, patch {}: {}", input.mesh->groups()[input.mesh->group(i)], i, value),
-            fmt::format("at {:.4g} {:.4g} {:.4g}", at.x, at.y, at.z)};
 }
 
 template <typename Action>
@@ -330,6 +346,12 @@ void Application::grant_wishes() {
     if (wishes.save_result) {
         attempt([this] { save_result(free_name(document_->input().file.stem().string(), ".hres")); });
     }
+    if (wishes.save_probe) {
+        attempt([this] { save_probe(free_name(document_->input().file.stem().string(), ".csv")); });
+    }
+    if (wishes.bookmark) {
+        go_to_camera(*wishes.bookmark);
+    }
     if (wishes.save_camera) {
         attempt([this] { save_camera(); });
     }
@@ -357,9 +379,19 @@ void Application::grant_wishes() {
 
 void Application::pick(std::array<double, 2> pixel) {
     const auto size = view_size();
+    if (choices_.measuring) {
+        if (const auto point = navigator_.surface_under_cursor(choices_.look.backs)) {
+            if (choices_.measured.size() > 1) {
+                choices_.measured.clear();
+            }
+            choices_.measured.push_back(point->position);
+        }
+        return;
+    }
     if (pixel[0] >= 0.0 && pixel[0] < size[0] && pixel[1] >= 0.0 && pixel[1] < size[1]) {
         choices_.picked = view_.item(navigator_.camera(), size, static_cast<std::uint32_t>(pixel[0]),
                                      static_cast<std::uint32_t>(pixel[1]));
+        choices_.group.reset(); // that of the patch is taken in settle()
     }
 }
 
@@ -415,22 +447,30 @@ void Application::update() {
     }
 }
 
+std::uint32_t Application::panel_pixels() const {
+    return gui_.pixels(panel_width(gui_.layout(window_.size()), choices_.panel));
+}
+
 std::array<std::uint32_t, 2> Application::view_size() const {
     const auto size = window_.size();
-    return {size[0] - panel_width(size, choices_.panel), size[1]};
+    return {size[0] - panel_pixels(), size[1]};
 }
 
 void Application::settle() {
     const ViewerInput& input = document_->input();
     navigator_.set_view(view_size());
+    navigator_.set_walking(choices_.walking);
+    settle_cut();
+    settle_probe();
     if (why_not(choices_.look.shown, input, choices_.picked) != nullptr) {
         choices_.look.shown = {};
     }
     if (shown_look_ && shown_look_->shown != choices_.look.shown) {
         choices_.look.range.reset(); // it was of another quantity
     }
-    document_->set_materials(choices_.materials, choices_.conditions);
-    if (!gui_.holds() && history_->note({choices_.materials, choices_.conditions})) {
+    const MaterialHistory::State wanted{choices_.materials, choices_.conditions, choices_.environment};
+    document_->set_materials(wanted);
+    if (!gui_.holds() && history_->note(wanted)) {
         saved_result_.clear(); // it is of other light
     }
     const bool other_patch = shown_pick_ != choices_.picked;
@@ -445,6 +485,11 @@ void Application::settle() {
     const bool of_patch = shown == View::row || shown == View::column;
     if (other_look || (other_patch && of_patch)) {
         view_.show(*document_, choices_.look, choices_.picked);
+        values_ = shown_values(*document_, choices_.look, view_.field());
+        groups_ = group_table(*document_, values_);
+        constexpr std::size_t histogram_steps = 64;
+        histogram_ = view_.field() ? area_histogram(*view_.field(), *input.mesh, histogram_steps)
+                                   : std::vector<double>();
         picture_changed_ = true;
     }
     picked_.reset();
@@ -469,7 +514,7 @@ void Application::settle() {
 
 /// The picked patch's hemicube, where it is wanted and there is room for it.
 void Application::draw_hemicube() {
-    if (!choices_.hemicube || !choices_.picked || panel_width(window_.size(), choices_.panel) == 0) {
+    if (!choices_.hemicube || !choices_.picked || panel_pixels() == 0) {
         return;
     }
     const ViewerInput& input = document_->input();
@@ -496,24 +541,37 @@ void Application::update_title() {
 }
 
 void Application::describe_panels() {
-    const auto size = window_.size();
-    const auto view = view_size();
+    const auto pixels = window_.size();
+    const auto size = gui_.layout(pixels);
+    const auto view = gui_.layout(view_size());
     const PatchMesh& mesh = *document_->input().mesh;
-    gui_.begin({std::max(size[0], 1U), std::max(size[1], 1U)});
+    gui_.begin({std::max(pixels[0], 1U), std::max(pixels[1], 1U)});
     if (view[0] < size[0]) {
-        side_panel(
-            {*document_, picked_, navigator_.camera(), view_.field(), note_, status_, words_under_cursor()},
-            size, choices_);
+        side_panel({*document_, picked_, navigator_.camera(), bookmarks_, groups_, view_.field(), note_,
+                    status_, words_under_cursor()},
+                   size, choices_);
     }
     if (view[0] > 0 && view[1] > 0) {
         if (choices_.pointed_at) {
             mark_patch(mesh, *choices_.pointed_at, navigator_.orbit(), view, false);
         }
-        if (choices_.picked) {
+        if (!choices_.picked) {
+            mark_edges(group_edges_, navigator_.orbit(), view);
+        } else {
             mark_patch(mesh, *choices_.picked, navigator_.orbit(), view, true);
         }
         if (view_.field()) {
-            legend(*view_.field(), view);
+            legend_window(*view_.field(), histogram_, view, choices_.look);
+        }
+        if (choices_.gauges && view[0] < size[0]) {
+            gauges(*document_->input().scene, navigator_.orbit(), view, view_.field().has_value());
+        }
+        if (choices_.measuring) {
+            mark_line(choices_.measured, navigator_.orbit(), view);
+            measure_window(*document_->input().scene, probe_, values_, view, choices_);
+        }
+        if (hides_backs_) {
+            backs_note(view);
         }
         dots_overlay(view_, document_->input(), choices_.look, dot_under_cursor_, navigator_);
         if (inset_ && choices_.hemicube && choices_.picked && view[0] < size[0]) {
@@ -559,6 +617,10 @@ void Application::draw() {
         rough_ = window_.software() && (moving_ || !settings_.script.empty());
         draw_picture(target_, view, rough_);
         picture_changed_ = false;
+        if (!(window_.software() && navigator_.dragging())) {
+            hides_backs_ = navigator_.camera().orthographic && !choices_.look.backs &&
+                           view_.hides_backs(navigator_.camera(), view);
+        }
         lost_ = true;
         pace_gathering();
         rests_at_ = (document_->gathering() ? std::max(gathers_at_, Clock::now()) : Clock::now()) + rest;
@@ -593,41 +655,6 @@ void Application::draw_picture(SceneTarget& target, std::array<std::uint32_t, 2>
                           preview ? " (preview)" : "");
 }
 
-void Application::screenshot(const std::filesystem::path& path, std::array<std::uint32_t, 2> size,
-                             std::uint32_t samples) {
-    const Picture picture = view_.picture(navigator_.camera(), size, samples);
-    if (path.extension() == ".hdr") {
-        io::write_hdr(path, picture.width, picture.height, picture.linear);
-    } else {
-        io::write_png(path, picture.width, picture.height, picture.srgb);
-    }
-    note_ = fmt::format("{} ({} x {})", path.filename().string(), size[0], size[1]);
-    std::fprintf(stderr, "%s\n", path.string().c_str());
-}
-
-void Application::windowshot(const std::filesystem::path& path) {
-    const auto size = window_.size();
-    const auto view = view_size();
-    if (view[0] == 0 || view[1] == 0) {
-        return;
-    }
-    SceneTarget picture;
-    draw_picture(picture, view, false);
-    describe_panels();
-    describe_panels();
-    SceneTarget whole;
-    whole.resize(size);
-    picture.copy_to(whole.framebuffer(), size[1]);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, whole.framebuffer());
-    gui_.draw();
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-    gl::check_errors("drawing the window");
-    lost_ = true;
-    io::write_png(path, size[0], size[1], whole.pixels());
-    note_ = path.filename().string();
-    std::fprintf(stderr, "%s\n", path.string().c_str());
-}
-
 /// Under the first free number; a folder that cannot be written to is no reason to close the window.
 void Application::numbered_screenshot(bool of_window) {
     const std::filesystem::path path = free_name(document_->input().file.stem().string(), ".png");
@@ -643,52 +670,6 @@ void Application::numbered_screenshot(bool of_window) {
                               : std::array{chosen.width, chosen.height};
         screenshot(path, size, choices_.samples);
     });
-}
-
-void Application::report(const std::filesystem::path& path) const {
-    const bool hemicube = inset_ && choices_.picked && choices_.hemicube;
-    write_report(path, {*document_, choices_, view_.field(), picked_, navigator_.camera(), message_,
-                        hemicube ? inset_->seen() : std::vector<std::uint32_t>(), under_cursor_,
-                        dot_under_cursor_, asks_to_close_});
-}
-
-void Application::save_camera() {
-    io::write_scene_camera(document_->input().file, navigator_.camera());
-    note_ = fmt::format("camera saved into {}", document_->input().file.filename().string());
-}
-
-void Application::save_result(const std::filesystem::path& path) {
-    document_->save_result(path);
-    saved_result_ = path;
-    note_ = fmt::format("{} saved", path.filename().string());
-    std::fprintf(stderr, "%s\n", path.string().c_str());
-}
-
-std::string Application::command_line() const {
-    const Look& look = choices_.look;
-    if (look.shown.view != View::picture && look.shown.view != View::quantity) {
-        throw InvalidArgument("a command line draws the light or a quantity: choose one first (V)");
-    }
-    const bool heat = look.shown.view == View::quantity && is_of_heat(look.shown.quantity);
-    std::string command = heat ? document_->input().heat_command : document_->input().command;
-    if (heat && !document_->as_opened()) {
-        throw InvalidArgument("the materials are no longer those of the file, which `hemi heat` reads");
-    }
-    if (!heat && !saved_result_.empty()) {
-        command = "hemi render " + quoted(saved_result_.string());
-    } else if (!document_->as_opened()) {
-        throw InvalidArgument(
-            "the materials are no longer those of the file: save the result, then copy the command line");
-    }
-    PictureSettings picture =
-        picture_settings(choices_.look, document_->input().picture,
-                         document_->exposure() * std::exp2(choices_.look.stops), view_size());
-    picture.samples = choices_.samples;
-    command += look.shown.view == View::quantity ? quantity_options(look, view_.field()->shown)
-                                                 : document_->input().show_option;
-    command += dots_options(document_->input(), look, command);
-    return command + " -o " + quoted(document_->input().file.stem().string() + ".png") +
-           picture_options(picture, navigator_.camera(), look.shown.view == View::picture);
 }
 
 } // namespace hemi::viewer

@@ -1,9 +1,11 @@
 #pragma once
 
+#include "viewer/bookmarks.hpp"
 #include "viewer/document.hpp"
 #include "viewer/file_watch.hpp"
 #include "viewer/gui.hpp"
 #include "viewer/hemicube_inset.hpp"
+#include "viewer/line_probe.hpp"
 #include "viewer/material_history.hpp"
 #include "viewer/navigator.hpp"
 #include "viewer/opener.hpp"
@@ -68,6 +70,8 @@ public:
     /// Writes the camera into the scene's file. @throws InvalidArgument where that holds none; IoError
     void save_camera();
     void save_result(const std::filesystem::path& path);
+    /// Writes what is shown along the line that is measured. @throws InvalidArgument where there is none
+    void save_probe(const std::filesystem::path& path);
     /// Command line that draws the picture. @throws InvalidArgument where none does
     [[nodiscard]] std::string command_line() const;
     /// Pixels of the window that show the scene, from its upper left.
@@ -80,11 +84,21 @@ private:
     void on_key(const KeyEvent& event);
     void other_key(const KeyEvent& event);
     void undo_or_redo(bool redo);
+    /// Beside the scene. @param number  1 to 9
+    void keep_camera(int number);
+    void go_to_camera(int number);
+    /// Looks along the line that is measured, where its ends have changed.
+    void settle_probe();
     /// Ends, unless something would be lost: then it asks first.
     void ask_to_close();
     /// What would be lost, in words; empty: nothing.
     [[nodiscard]] std::string unsaved() const;
     void look_under_cursor();
+    /// Takes over what the choices leave out of the picture, and which group is selected.
+    void settle_cut();
+    void on_group_key(char key);
+    /// @param turn  shows the other side; else cuts through the picked patch, or no longer
+    void clip_by_key(bool turn);
     [[nodiscard]] std::array<std::string, 2> words_under_cursor() const;
     void pick(std::array<double, 2> pixel);
     void moved();
@@ -96,7 +110,7 @@ private:
     void attempt(const Action& action);
     void numbered_screenshot(bool of_window);
 
-    void show();
+    [[nodiscard]] std::uint32_t panel_pixels() const;
     void draw_hemicube();
     void update_title();
     void pace_gathering();
@@ -124,6 +138,15 @@ private:
     std::string title_;
     std::optional<UnderCursor> under_cursor_;
     std::optional<std::size_t> dot_under_cursor_;
+    PictureCut shown_cut_;
+    ShownValues values_;            ///< of what is shown
+    GroupTable groups_;             ///< likewise
+    std::vector<double> histogram_; ///< of the field
+    std::optional<LineProbe> probe_;
+    bool hides_backs_ = false; ///< in an orthographic picture, which says so
+    Bookmarks bookmarks_;
+    std::optional<std::uint32_t> shown_group_; ///< that edges are of
+    std::vector<std::array<Vec3, 2>> group_edges_;
     std::optional<MaterialHistory> history_; ///< always there once a scene is
     std::filesystem::path saved_result_;     ///< of the light as it is; empty: it was not saved
 

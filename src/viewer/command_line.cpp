@@ -11,11 +11,14 @@ std::string quantity_options(const Look& look, const FalseColours& drawn) {
                                    quoted(look.channel), to_word(look.map));
     text += look.range ? fmt::format(" --range {},{}", (*drawn.range)[0], (*drawn.range)[1]) : "";
     text += drawn.logarithmic ? " --log" : "";
+    text += drawn.bands > 0 ? fmt::format(" --bands {}", drawn.bands) : "";
+    text += drawn.iso_lines ? " --iso-lines" : "";
     text += look.celsius && look.shown.quantity == Quantity::temperature ? " --celsius" : "";
     return text;
 }
 
-std::string picture_options(const PictureSettings& settings, const Camera& camera, bool lit) {
+std::string picture_options(const PictureSettings& settings, const Camera& camera, bool lit,
+                            std::span<const std::string> groups) {
     const auto point = [](const Vec3& p) { return fmt::format("{},{},{}", p.x, p.y, p.z); };
     std::string text = fmt::format(" --size {}x{} --camera {}:{}:{}:{}", settings.width, settings.height,
                                    point(camera.eye), point(camera.target), point(camera.up), camera.fov);
@@ -27,6 +30,13 @@ std::string picture_options(const PictureSettings& settings, const Camera& camer
     text += camera.orthographic ? " --orthographic" : "";
     text += settings.outlines ? " --outlines" : "";
     text += settings.backs ? " --backs" : "";
+    for (std::uint32_t g = 0; g < groups.size(); ++g) {
+        const Visibility visibility = settings.cut.of_group(g);
+        if (visibility != Visibility::shown) {
+            text += (visibility == Visibility::hidden ? " --hide " : " --outlines-of ") + quoted(groups[g]);
+        }
+    }
+    text += settings.cut.clip ? " --clip " + quoted(clip_plane_text(*settings.cut.clip)) : "";
     if (settings.background) {
         const auto& [red, green, blue] = *settings.background;
         text += fmt::format(" --background '#{:02x}{:02x}{:02x}'", red, green, blue);

@@ -18,9 +18,10 @@
 namespace hemi::viewer {
 
 Document::Document(ViewerInput input, std::shared_ptr<FactorCache> cache, std::function<void()> wake)
-    : input_(std::move(input)), wake_(std::move(wake)), surfaces_(*input_.mesh),
-      materials_(input_.scene->materials),
-      conditions_(input_.heat ? input_.heat->conditions : std::vector<HeatCondition>()),
+    : input_(std::move(input)), wake_(std::move(wake)),
+      surfaces_(*input_.mesh), wanted_{input_.scene->materials,
+                                       input_.heat ? input_.heat->conditions : std::vector<HeatCondition>(),
+                                       input_.environment()},
       light_(of_materials()), blocked_(input_.solution.back_face_share), exposure_(input_.picture.exposure),
       exposure_settled_(!input_.automatic_exposure) {
     const bool solved = !input_.factor_settings || !input_.of_solution.empty();
@@ -72,7 +73,7 @@ void Document::show_light(std::vector<double> radiosity, State state, std::vecto
 bool Document::stays_dark() const {
     const auto is_zero = [](double value) { return value == 0.0; };
     const Scene& scene = *input_.scene;
-    return is_dark(light_.radiosity, scene.environment) &&
+    return is_dark(light_.radiosity, light_.environment) &&
            (state_ == State::solved ||
             (std::all_of(light_.exitance.begin(), light_.exitance.end(), is_zero) && !scene.sun &&
              !scene.sky));
@@ -94,9 +95,14 @@ void Document::make_light_mesh() {
                                                   input_.solution.back_face_share, input_.show)
                               : make_picture_mesh(*input_.mesh, surfaces_, input_.channels(),
                                                   light_.radiosity, left_out, input_.show, light_.vertices);
-    light_note_ =
-        evenly_lit_ || state_ == State::solved ? hemi::light_note(*input_.scene, lit(false).solution) : "";
-    light_mesh_.environment = shown_environment(*input_.scene, input_.show);
+    light_note_.clear();
+    if (evenly_lit_ || state_ == State::solved) {
+        const Lit now = lit(false);
+        light_note_ = hemi::light_note(now.scene, now.solution);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+        light_mesh_.environment[k] = static_cast<float>(light_.environment[input_.show[k]]);
+    }
     if (!exposure_settled_ && !(state_ == State::preview && gathered_ > 0)) {
         exposure_ = automatic_exposure(*input_.mesh, light_mesh_,
                                        evenly_lit_ ? std::span<const double>(input_.solution.back_face_share)
@@ -253,6 +259,7 @@ void Document::take_light() {
                       : fmt::format("sweep {}: residual {:.1e}", solution.sweeps, solution.residual);
     light_.reflectance = update->light.reflectance;
     light_.exitance = update->light.exitance;
+    light_.environment = update->light.environment;
     input_.solution.error = solution.error;
     input_.solution.patch_size_error.reset(); // it was of another light
     if (update->heat && update->heat != heat_) {
@@ -286,27 +293,25 @@ void Document::cancel() {
 }
 
 Light Document::of_materials() const {
-    Light light{patch_values(*input_.mesh, materials_, &Material::reflectance),
-                patch_values(*input_.mesh, materials_, &Material::exitance),
+    Light light{patch_values(*input_.mesh, wanted_.materials, &Material::reflectance),
+                patch_values(*input_.mesh, wanted_.materials, &Material::exitance),
                 {},
                 {},
                 {},
-                conditions_};
+                wanted_.conditions,
+                wanted_.environment};
     if (input_.heat) {
         radiate_by_conditions(input_, light);
     }
     return light;
 }
 
-void Document::set_materials(const std::vector<Material>& materials,
-                             const std::vector<HeatCondition>& conditions) {
-    if ((materials == materials_ && conditions == conditions_) || !relighter_) {
+void Document::set_materials(const MaterialHistory::State& wanted) {
+    if (wanted == wanted_ || !relighter_) {
         return;
     }
-    materials_ = materials;
-    conditions_ = conditions;
-    Light wanted = of_materials();
-    relighter_->ask(std::move(wanted));
+    wanted_ = wanted;
+    relighter_->ask(of_materials());
 }
 
 void Document::start_over() {
@@ -316,6 +321,7 @@ void Document::start_over() {
     Light wanted = of_materials();
     light_.reflectance = wanted.reflectance;
     light_.exitance = wanted.exitance;
+    light_.environment = wanted.environment;
     relighter_->ask(std::move(wanted), true);
     work_.residuals.clear();
     work_.waits = true;
@@ -355,7 +361,8 @@ const char* Document::unsavable_reason() const {
 
 Lit Document::lit(bool irradiance) const {
     Lit lit{*input_.scene, input_.solution};
-    lit.scene.materials = materials_;
+    lit.scene.materials = wanted_.materials;
+    lit.scene.environment = light_.environment;
     lit.solution.radiosity = light_.radiosity;
     lit.solution.exitance = light_.exitance;
     lit.solution.vertex_radiosity = light_.vertices;

@@ -2,6 +2,7 @@
 
 #include "display/smooth_surfaces.hpp"
 #include "viewer/look.hpp"
+#include "viewer/material_history.hpp"
 #include "viewer/relighter.hpp"
 #include "viewer/row_finder.hpp"
 #include "viewer/viewer.hpp"
@@ -37,6 +38,7 @@ public:
     /// Of scenes with temperatures, as soon as it is found; else null.
     [[nodiscard]] const Heat* heat() const { return heat_.get(); }
     [[nodiscard]] const PictureMesh& light_mesh() const { return light_mesh_; }
+    [[nodiscard]] const SmoothSurfaces& surfaces() const { return surfaces_; }
     /// Where stops count from.
     [[nodiscard]] double exposure() const { return exposure_; }
     /// The scene with its materials and its light as they stand.
@@ -70,9 +72,8 @@ public:
     /// @throws what ended the cutting
     [[nodiscard]] std::optional<ViewerInput> take_refined();
 
-    /// Asks for the light of other materials.
-    /// @param conditions  of heat
-    void set_materials(const std::vector<Material>& materials, const std::vector<HeatCondition>& conditions);
+    /// Asks for the light of other materials, temperatures and another environment.
+    void set_materials(const MaterialHistory::State& wanted);
     /// Back to the light of the lamps, and a sweep at a time from there. Needs rows.
     void start_over();
     /// The next sweep; starts over where nothing waits for one.
@@ -85,10 +86,11 @@ public:
     void save_result(const std::filesystem::path& path);
     /// Whether the light is that of the file as it was opened.
     [[nodiscard]] bool as_opened() const {
-        return materials_ == input_.scene->materials && !has_other_temperatures();
+        return wanted_.materials == input_.scene->materials && wanted_.environment == input_.environment() &&
+               !has_other_temperatures();
     }
     [[nodiscard]] bool has_other_temperatures() const {
-        return input_.heat != nullptr && conditions_ != input_.heat->conditions;
+        return input_.heat != nullptr && wanted_.conditions != input_.heat->conditions;
     }
 
 private:
@@ -110,8 +112,7 @@ private:
     ViewerInput input_;
     std::function<void()> wake_;
     SmoothSurfaces surfaces_;
-    std::vector<Material> materials_;
-    std::vector<HeatCondition> conditions_; ///< none where the scene has none
+    MaterialHistory::State wanted_;
     Light light_;
     std::shared_ptr<const Heat> heat_;
     std::vector<double> blocked_; ///< b_i as far as they are known, N; empty: none

@@ -4,7 +4,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/nearest_word.hpp"
 #include "viewer/command_line.hpp"
-#include "viewer/overlays.hpp"
+#include "viewer/legend_window.hpp"
 #include "viewer/widgets.hpp"
 
 #include <fmt/format.h>
@@ -148,7 +148,7 @@ void dots_overlay(const SceneView& scene, const ViewerInput& input, const Look& 
     }
     const FalseColours& shown = scene.dots()->shown;
     if (!shown.values.empty()) {
-        legend({shown, scale_of(shown), "no value"}, navigator.view(), scene.field() ? 1 : 0);
+        dots_legend_window({shown, scale_of(shown), "no value"}, navigator.view(), scene.field().has_value());
     }
     if (under_cursor) {
         dot_label(words_of_dot(input, look, *under_cursor), navigator.cursor(), navigator.view());

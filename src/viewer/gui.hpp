@@ -12,14 +12,18 @@ namespace hemi::viewer {
 /// frame an event, and nothing else: no clock, no files, no callbacks of its own.
 class Gui {
 public:
-    /// With the window's context current. @throws GlError
-    Gui();
+    /// With the window's context current.
+    /// @param scale  pixels of the window for each pixel of the panels' layout, at least 1
+    /// @throws GlError
+    explicit Gui(double scale);
     ~Gui();
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
     /// Before the frame that is to know of it.
     void feed(const Event& event);
+    /// Whether a field takes what is typed; keys are no commands then.
+    [[nodiscard]] bool has_keyboard() const;
     /// Whether the mouse is the panels' business, as of the last frame.
     [[nodiscard]] bool has_mouse() const;
 
@@ -28,7 +32,11 @@ public:
     /// Closes a list that is open. @return whether one was
     bool close_list();
 
+    /// Pixels of the window as pixels of the layout, and back.
+    [[nodiscard]] std::array<std::uint32_t, 2> layout(std::array<std::uint32_t, 2> window) const;
+    [[nodiscard]] std::uint32_t pixels(std::uint32_t of_layout) const;
     /// Between begin() and end() panels are described.
+    /// @param size  of the window, pixels
     void begin(std::array<std::uint32_t, 2> size);
     void end();
 
@@ -40,6 +48,7 @@ public:
 private:
     [[nodiscard]] static std::vector<unsigned char> content();
 
+    float scale_;
     std::vector<unsigned char> drawn_;
 };
 

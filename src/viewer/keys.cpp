@@ -54,31 +54,39 @@ std::vector<GuideLine> guide(Controls controls) {
                  {"shift + middle drag", "pan"},
                  {"wheel, ctrl + middle drag, right drag", "zoom at the cursor"}};
     }
-    lines.insert(lines.end(), {{"left click", "pick a patch; beside the scene: none"},
-                               {"F, Home", "frame everything"},
-                               {"R", "back to the scene's own camera"},
-                               {"1  3  7", "from the front, the right, above; shift: opposite"},
-                               {"5", "orthographic or perspective"},
-                               {"V, shift + V", "next quantity, previous one"},
-                               {"H", "heat map of the picked patch: row of F, column, none"},
-                               {"C", "hemicube of the picked patch"},
-                               {"L", "linear or logarithmic scale"},
-                               {"M, shift + M", "next colour map, previous one"},
-                               {"S", "Gouraud or flat"},
-                               {"W", "patch outlines"},
-                               {"B", "back faces: striped, or seen through"},
-                               {"T", "filmic or linear tone mapping"},
-                               {"E, shift + E", "brighter, darker by a third of a stop"},
-                               {"G, shift + G", "the next sweep from the lamps' light, all sweeps"},
-                               {"P, shift + P", "screenshot of the picture, of the whole window"},
-                               {"X", "copy a command line that draws this picture"},
-                               {"F5", "read the file again"},
-                               {"Tab", "side panel"},
-                               {"F1", "this list"},
-                               {"ctrl + Z, ctrl + shift + Z",
-                                "takes back a change of materials or temperatures; redoes it"},
-                               {"Esc", "closes a list, lets go of the patch"},
-                               {"Q", "quits; asks where something is not saved"}});
+    lines.insert(
+        lines.end(),
+        {{"left click", "pick a patch; beside the scene: none"},
+         {"F, Home", "frame everything"},
+         {"R", "back to the scene's own camera"},
+         {"1  3  7", "from the front, the right, above; shift: opposite"},
+         {"5", "orthographic or perspective"},
+         {"V, shift + V", "next quantity, previous one"},
+         {"H", "heat map of the picked patch: row of F, column, none"},
+         {"C", "hemicube of the picked patch"},
+         {"L", "linear or logarithmic scale"},
+         {"M, shift + M", "next colour map, previous one"},
+         {"S", "Gouraud or flat"},
+         {"W", "patch outlines"},
+         {"B", "back faces: striped, or seen through"},
+         {"I, O, N", "of the selected group: alone; only its outlines; not shown"},
+         {"A", "all groups"},
+         {"K, shift + K", "clipping plane through the picked patch or none; its other side"},
+         {"D", "measure: two clicks give a distance, and what is shown along the line"},
+         {"U", "axes and scale bar"},
+         {"ctrl + 1 ... 9, alt + 1 ... 9", "keep a camera beside the scene, go to it"},
+         {"J", "walk: W, A, S, D (shift: faster), drags look around; Esc or J ends it"},
+         {"T", "filmic or linear tone mapping"},
+         {"E, shift + E", "brighter, darker by a third of a stop"},
+         {"G, shift + G", "the next sweep from the lamps' light, all sweeps"},
+         {"P, shift + P", "screenshot of the picture, of the whole window"},
+         {"X", "copy a command line that draws this picture"},
+         {"F5", "read the file again"},
+         {"Tab", "side panel"},
+         {"F1", "this list"},
+         {"ctrl + Z, ctrl + shift + Z", "takes back a change of materials or temperatures; redoes it"},
+         {"Esc", "closes a list, lets go of the patch"},
+         {"Q", "quits; asks where something is not saved"}});
     return lines;
 }
 
@@ -96,6 +104,19 @@ bool apply_camera_key(const KeyEvent& event, double aspect, OrbitCamera& orbit) 
         orbit.look_along(OrbitCamera::Axis::top, event.shift, aspect);
     } else if (key == '5') {
         orbit.set_orthographic(!orbit.camera().orthographic);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+bool apply_walk_key(const KeyEvent& event, double step, OrbitCamera& orbit) {
+    constexpr double run = 4.0;
+    const double way = event.shift ? run * step : step;
+    if (event.key == 'W' || event.key == 'S') {
+        orbit.walk(event.key == 'W' ? way : -way, 0.0);
+    } else if (event.key == 'A' || event.key == 'D') {
+        orbit.walk(0.0, event.key == 'D' ? way : -way);
     } else {
         return false;
     }

@@ -10,6 +10,9 @@ namespace hemi::viewer {
 
 /// Keys that move the camera. @return whether it was one
 bool apply_camera_key(const KeyEvent& event, double aspect, OrbitCamera& orbit);
+/// Keys that walk. @return whether it was one
+/// @param step  scene units
+bool apply_walk_key(const KeyEvent& event, double step, OrbitCamera& orbit);
 /// Keys that change how the scene is shown. @return whether it was one
 bool apply_look_key(const KeyEvent& event, const ViewerInput& input, Choices& choices);
 

@@ -136,6 +136,8 @@ Field quantity_field(const Look& look, const PatchMesh& mesh, const Lit& lit, co
         show_in_celsius(field.shown);
     }
     field.shown.map = look.map;
+    field.shown.bands = look.bands;
+    field.shown.iso_lines = look.iso_lines;
     field.shown.logarithmic = look.logarithmic;
     if (look.range) {
         field.shown.range = look.range;
@@ -157,6 +159,8 @@ Field factor_field(const Look& look, const FormFactorMatrix& factors, std::uint3
     field.shown.range = {look.logarithmic_factors ? top * factor_range : 0.0, top};
     field.shown.logarithmic = look.logarithmic_factors;
     field.shown.map = look.map;
+    field.shown.bands = look.bands;
+    field.shown.iso_lines = look.iso_lines;
     field.scale = shown_scale(field.shown);
     return field;
 }

@@ -53,6 +53,8 @@ struct Look {
     std::optional<std::array<double, 2>> range; ///< of quantities' scales; none: as values ask for
     bool logarithmic = false;                   ///< false colours of quantities
     bool logarithmic_factors = true;            ///< false colours of form factors
+    std::uint32_t bands = 0;                    ///< of false colours; 0: they run smoothly
+    bool iso_lines = false;                     ///< of false colours
     bool celsius = false;                       ///< temperatures in °C, else in K
     Shading shading = Shading::gouraud;
     ToneMapping tone_mapping = ToneMapping::filmic;
@@ -73,6 +75,7 @@ struct Light {
     std::vector<float> vertices;     ///< as Solution::vertex_radiosity; empty: means over the patches
     std::vector<std::uint8_t> known; ///< whether a patch's radiosity is more than a beginning, N; empty: all
     std::vector<HeatCondition> conditions{}; ///< as HeatProblem::conditions; empty: those of the scene
+    std::vector<double> environment{};       ///< as RadiosityProblem::environment
 
     [[nodiscard]] bool knows(std::uint32_t patch) const { return known.empty() || known[patch] != 0; }
 };

@@ -41,20 +41,25 @@ void apply_set(const SetCommand& set, const ViewerInput& input, Choices& choices
         set_temperature(set, input, choices);
         return;
     }
+    const auto put = [&set](std::vector<double>& values) {
+        if (set.values.size() != 1 && set.values.size() != values.size()) {
+            throw InvalidArgument(
+                fmt::format("set: {} values for {} channels", set.values.size(), values.size()));
+        }
+        for (std::size_t c = 0; c < values.size(); ++c) {
+            values[c] = set.values[set.values.size() == 1 ? 0 : c];
+        }
+    };
+    if (set.property == SetCommand::Property::environment) {
+        put(choices.environment);
+        return;
+    }
     const auto found = std::find_if(choices.materials.begin(), choices.materials.end(),
                                     [&set](const Material& material) { return material.name == set.name; });
     if (found == choices.materials.end()) {
         throw InvalidArgument(fmt::format("set: the scene has no material \"{}\"", set.name));
     }
-    std::vector<double>& values =
-        set.property == SetCommand::Property::exitance ? found->exitance : found->reflectance;
-    if (set.values.size() != 1 && set.values.size() != values.size()) {
-        throw InvalidArgument(
-            fmt::format("set: {} values for {} channels", set.values.size(), values.size()));
-    }
-    for (std::size_t c = 0; c < values.size(); ++c) {
-        values[c] = set.values[set.values.size() == 1 ? 0 : c];
-    }
+    put(set.property == SetCommand::Property::exitance ? found->exitance : found->reflectance);
 }
 
 } // namespace hemi::viewer

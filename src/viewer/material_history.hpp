@@ -8,12 +8,13 @@
 
 namespace hemi::viewer {
 
-/// What the user has made of a scene's materials and temperatures, step by step.
+/// What the user has made of a scene's materials, temperatures and environment, step by step.
 class MaterialHistory {
 public:
     struct State {
         std::vector<Material> materials;
         std::vector<HeatCondition> conditions;
+        std::vector<double> environment;
 
         bool operator==(const State&) const = default;
     };

@@ -46,7 +46,7 @@ ViewRay Navigator::ray_under_cursor() const {
 
 std::optional<VisiblePoint> Navigator::surface_under_cursor(bool backs) const {
     const ViewRay ray = ray_under_cursor();
-    return visible_point(*mesh_, ray.origin, ray.direction, backs);
+    return visible_point(*mesh_, ray.origin, ray.direction, backs, cut_);
 }
 
 Vec3 Navigator::point_under_cursor() const {
@@ -102,6 +102,7 @@ std::optional<std::array<double, 2>> Navigator::on_button(const ButtonEvent& eve
         // Off the scene one turns about the target, not about a place in empty space.
         const auto point = surface_under_cursor();
         orbit_.grab(motion_ != Motion::orbit ? point_under_cursor()
+                    : walking_               ? camera().eye
                     : point                  ? point->position
                                              : camera().target);
         return std::nullopt;

@@ -28,6 +28,10 @@ public:
     void set_view(std::array<std::uint32_t, 2> size) { view_ = size; }
     [[nodiscard]] std::array<std::uint32_t, 2> view() const { return view_; }
     [[nodiscard]] double aspect() const;
+    /// Whether drags look around from where the eye is, instead of orbiting.
+    void set_walking(bool walking) { walking_ = walking; }
+    /// What the picture leaves out.
+    void set_cut(const PictureCut& cut) { cut_ = cut; }
 
     /// @return whether the camera moved
     bool on_cursor(const CursorEvent& event);
@@ -70,11 +74,13 @@ private:
     std::shared_ptr<const PatchMesh> mesh_;
     OrbitCamera orbit_;
     std::array<std::uint32_t, 2> view_{1, 1};
+    PictureCut cut_;
     Point cursor_{0.0, 0.0};
     Point pressed_at_{0.0, 0.0};
     std::optional<Button> button_;
     Motion motion_ = Motion::none;
     bool dragging_ = false;
+    bool walking_ = false;
 };
 
 } // namespace hemi::viewer

@@ -1,6 +1,5 @@
 #include "viewer/overlays.hpp"
 
-#include "display/false_colour_scale.hpp"
 #include "viewer/keys.hpp"
 #include "viewer/widgets.hpp"
 
@@ -13,63 +12,6 @@
 #include <string>
 
 namespace hemi::viewer {
-
-void legend(const Field& field, std::array<std::uint32_t, 2> view, int below) {
-    constexpr float margin = 10.0F;
-    constexpr float pad = 9.0F;
-    const float width = std::min(380.0F, static_cast<float>(view[0]) - 2.0F * margin);
-    const float line_height = ImGui::GetTextLineHeight();
-    const float height = 2.0F * line_height + 12.0F + 2.0F * pad + 8.0F;
-    const auto above = static_cast<float>(below) * (height + margin);
-    if (width < 150.0F || static_cast<float>(view[1]) < 3.0F * height + above) {
-        return;
-    }
-    ImDrawList* list = ImGui::GetBackgroundDrawList();
-    const ImVec2 origin{margin, static_cast<float>(view[1]) - margin - height - above};
-    list->AddRectFilled(origin, {origin.x + width, origin.y + height}, IM_COL32(22, 24, 26, 225), 3.0F);
-    const ImU32 ink = IM_COL32(235, 235, 235, 255);
-    const std::string title = legend_title(field.shown, field.scale, field.grey);
-    list->AddText({origin.x + pad, origin.y + pad - 2.0F}, ink, title.c_str());
-
-    const float left = origin.x + pad + 14.0F;
-    const float right = origin.x + width - pad - 20.0F;
-    const float top = origin.y + pad + line_height + 3.0F;
-    const float bottom = top + 12.0F;
-    const auto colour = [&](double position) {
-        const std::array<float, 3> linear = scale_colour(position, field.scale.map);
-        const auto encode = [](float value) {
-            const float srgb =
-                value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;
-            return static_cast<int>(std::lround(255.0F * srgb));
-        };
-        return IM_COL32(encode(linear[0]), encode(linear[1]), encode(linear[2]), 255);
-    };
-    constexpr int steps = 40;
-    for (int k = 0; k < steps; ++k) {
-        const float from = left + (right - left) * static_cast<float>(k) / steps;
-        const float to = left + (right - left) * static_cast<float>(k + 1) / steps;
-        const ImU32 first = colour(static_cast<double>(k) / steps);
-        const ImU32 last = colour(static_cast<double>(k + 1) / steps);
-        list->AddRectFilledMultiColor({from, top}, {to, bottom}, first, last, last, first);
-    }
-    const ColourScale told = legend_scale(field.shown, field.scale);
-    for (const double mark : told.marks()) {
-        const float x = left + (right - left) * static_cast<float>(told.position(mark));
-        list->AddLine({x, bottom}, {x, bottom + 4.0F}, ink);
-        const bool whole = std::abs(mark) >= 1000.0 && std::abs(mark) < 10000.0;
-        const std::string words = whole ? fmt::format("{:.0f}", mark) : fmt::format("{:.3g}", mark);
-        const float half = 0.5F * ImGui::CalcTextSize(words.c_str()).x;
-        list->AddText({x - half, bottom + 4.0F}, ink, words.c_str());
-    }
-    const std::array<bool, 2> beyond = values_beyond(field.shown, field.scale);
-    const float middle = 0.5F * (top + bottom - line_height);
-    if (beyond[0]) {
-        list->AddText({left - 12.0F, middle}, ink, "<");
-    }
-    if (beyond[1]) {
-        list->AddText({right + 5.0F, middle}, ink, ">");
-    }
-}
 
 void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2> view, Choices& choices) {
     constexpr float margin = 10.0F;
@@ -104,21 +46,38 @@ void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2
     ImGui::End();
 }
 
-void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
-                std::array<std::uint32_t, 2> view, bool picked) {
+namespace {
+
+void mark_edge(const Vec3& from, const Vec3& to, const OrbitCamera& orbit, std::array<std::uint32_t, 2> view,
+               ImU32 colour) {
     ImDrawList* list = ImGui::GetBackgroundDrawList();
     const auto pixel = [&view](const std::array<double, 2>& place) {
         return ImVec2(static_cast<float>(0.5 * view[0] + place[0] * view[1]),
                       static_cast<float>((0.5 - place[1]) * view[1]));
     };
+    if (const auto line = orbit.line(from, to)) {
+        const ImVec2 a = pixel((*line)[0]);
+        const ImVec2 b = pixel((*line)[1]);
+        list->AddLine(a, b, IM_COL32(0, 0, 0, 255), 4.0F);
+        list->AddLine(a, b, colour, 2.0F);
+    }
+}
+
+} // namespace
+
+void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view, bool picked) {
     const PatchCorners corners = mesh.corners(patch);
     for (std::size_t k = 0; k < corners.count; ++k) {
-        if (const auto line = orbit.line(corners.points[k], corners.points[(k + 1) % corners.count])) {
-            const ImVec2 a = pixel((*line)[0]);
-            const ImVec2 b = pixel((*line)[1]);
-            list->AddLine(a, b, IM_COL32(0, 0, 0, 255), 4.0F);
-            list->AddLine(a, b, picked ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 80, 200, 255), 2.0F);
-        }
+        mark_edge(corners.points[k], corners.points[(k + 1) % corners.count], orbit, view,
+                  picked ? IM_COL32(255, 255, 255, 255) : IM_COL32(255, 80, 200, 255));
+    }
+}
+
+void mark_edges(std::span<const std::array<Vec3, 2>> edges, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view) {
+    for (const auto& [from, to] : edges) {
+        mark_edge(from, to, orbit, view, IM_COL32(255, 210, 90, 255));
     }
 }
 
@@ -172,6 +131,15 @@ void close_question(const std::string& unsaved, bool savable, std::array<std::ui
     wishes.close = ImGui::Button("Quit (Q)") || wishes.close;
     ImGui::SameLine();
     wishes.stay = ImGui::Button("Stay (Esc)") || wishes.stay;
+    ImGui::End();
+}
+
+void backs_note(std::array<std::uint32_t, 2> view) {
+    ImGui::SetNextWindowPos({0.5F * static_cast<float>(view[0]), 10.0F}, ImGuiCond_Always, {0.5F, 0.0F});
+    ImGui::SetNextWindowBgAlpha(0.8F);
+    ImGui::Begin("backs", nullptr,
+                 fixed_window | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs);
+    text("Surfaces that face away are not drawn: B shows their backs.");
     ImGui::End();
 }
 

@@ -5,18 +5,19 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 /// What lies over the scene. Between Gui::begin() and Gui::end().
 namespace hemi::viewer {
 
-/// The colours of a field, in the lower left of the view.
-/// @param below  legends that it stands above
-void legend(const Field& field, std::array<std::uint32_t, 2> view, int below = 0);
 /// The outline of a patch, in front of everything.
 /// @param picked  else pointed at: another colour
 void mark_patch(const PatchMesh& mesh, std::uint32_t patch, const OrbitCamera& orbit,
                 std::array<std::uint32_t, 2> view, bool picked);
+/// Edges of the group that is selected, in front of everything.
+void mark_edges(std::span<const std::array<Vec3, 2>> edges, const OrbitCamera& orbit,
+                std::array<std::uint32_t, 2> view);
 /// A hemicube unfolded, as a texture of the window's context.
 struct HemicubePicture {
     std::uint32_t texture;
@@ -33,6 +34,8 @@ void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& ope
 /// @param savable  whether it can be saved
 void close_question(const std::string& unsaved, bool savable, std::array<std::uint32_t, 2> view,
                     Wishes& wishes);
+/// That surfaces which face away are not drawn, at the top of the view.
+void backs_note(std::array<std::uint32_t, 2> view);
 /// What went wrong, in the upper left of the view.
 void message_window(const std::string& message, std::array<std::uint32_t, 2> view, bool& open);
 

@@ -2,6 +2,7 @@
 
 #include "display/orbit_camera.hpp"
 #include "hemi/scene/light_unit.hpp"
+#include "viewer/clipping.hpp"
 #include "viewer/dots.hpp"
 #include "viewer/widgets.hpp"
 
@@ -16,7 +17,7 @@ namespace hemi::viewer {
 
 namespace {
 
-constexpr std::uint32_t side_width = 332;
+constexpr std::uint32_t side_width = 380;
 constexpr std::uint32_t smallest_width = 640;
 constexpr std::uint32_t smallest_height = 360;
 constexpr double most_stops = 10.0;
@@ -31,7 +32,7 @@ void faint(const std::string& words) {
 
 /// A name on the left, a value in a column of its own.
 void line(const char* name, const std::string& value) {
-    constexpr float value_at = 118.0F;
+    constexpr float value_at = 130.0F;
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     ImGui::TextUnformatted(name);
     ImGui::PopStyleColor();
@@ -96,6 +97,21 @@ void map_choice(Look& look) {
             }
         }
         ImGui::EndCombo();
+    }
+}
+
+void bands_choice(Look& look) {
+    constexpr int most_bands = 32;
+    auto bands = static_cast<int>(look.bands);
+    ImGui::SetNextItemWidth(-102.0F);
+    if (ImGui::SliderInt("##bands", &bands, 1, most_bands, bands < 2 ? "smooth colours" : "%d bands",
+                         ImGuiSliderFlags_NoInput)) {
+        look.bands = bands < 2 ? 0 : static_cast<std::uint32_t>(bands);
+    }
+    ImGui::SameLine();
+    ImGui::Checkbox("iso-lines", &look.iso_lines);
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip("Lines of equal values: where bands end, or else at round values.");
     }
 }
 
@@ -165,6 +181,7 @@ void show_section(const PanelContent& content, Choices& choices) {
             channel_choice(content.document.input(), look);
         }
         map_choice(look);
+        bands_choice(look);
         scale_choice(look.logarithmic);
         if (content.field) {
             range_choice(*content.field, look);
@@ -173,6 +190,7 @@ void show_section(const PanelContent& content, Choices& choices) {
     case View::row:
     case View::column:
         map_choice(look);
+        bands_choice(look);
         scale_choice(look.logarithmic_factors);
         break;
     case View::outlines:
@@ -186,6 +204,13 @@ void show_section(const PanelContent& content, Choices& choices) {
     ImGui::Checkbox("back faces", &look.backs);
     if (ImGui::IsItemHovered()) {
         ImGui::SetTooltip("Backs of one-sided surfaces, striped; else one looks through them.");
+    }
+    ImGui::Checkbox("axes and scale", &choices.gauges);
+    ImGui::SameLine();
+    ImGui::Checkbox("measure a line", &choices.measuring);
+    if (ImGui::IsItemHovered()) {
+        ImGui::SetTooltip(
+            "Two clicks on the scene: their distance, and what is shown along the line between.");
     }
 }
 
@@ -446,8 +471,17 @@ void material_section(const PanelContent& content, Choices& choices) {
         }
         ImGui::PopID();
     }
-    if (choices.materials != input.scene->materials && ImGui::Button("All as in the scene")) {
+    const std::vector<double> environment = input.environment();
+    double brightest_environment = *std::max_element(environment.begin(), environment.end());
+    brightest_environment =
+        brightest_environment > 0.0 ? 2.0 * brightest_environment : static_cast<double>(most_exitance);
+    text("environment");
+    channel_sliders("exitance##environment", choices.environment, static_cast<float>(brightest_environment),
+                    "%.3g");
+    const bool changed = choices.materials != input.scene->materials || choices.environment != environment;
+    if (changed && ImGui::Button("All as in the scene")) {
         choices.materials = input.scene->materials;
+        choices.environment = environment;
     }
 }
 
@@ -516,6 +550,8 @@ void camera_section(const PanelContent& content, Choices& choices) {
     if (ImGui::Checkbox("orthographic", &orthographic)) {
         choices.wishes.orthographic = orthographic;
     }
+    ImGui::SameLine();
+    ImGui::Checkbox("walk by W, A, S, D", &choices.walking);
     constexpr std::array<std::pair<const char*, char>, 5> views{
         {{"All", 'F'}, {"Scene's", 'R'}, {"Front", '1'}, {"Right", '3'}, {"Top", '7'}}};
     for (const auto& [name, key] : views) {
@@ -528,6 +564,20 @@ void camera_section(const PanelContent& content, Choices& choices) {
     if (ImGui::Button("Save into the scene")) {
         choices.wishes.save_camera = true;
     }
+    bool any = false;
+    for (int number = 1; number <= Bookmarks::count; ++number) {
+        if (content.bookmarks.camera(number)) {
+            if (any) {
+                ImGui::SameLine();
+            }
+            any = true;
+            if (ImGui::SmallButton(std::to_string(number).c_str())) {
+                choices.wishes.bookmark = number;
+            }
+        }
+    }
+    faint(any ? "ctrl + 1 ... 9 keeps this camera, alt + 1 ... 9 goes to it"
+              : "ctrl + 1 ... 9 keeps this camera beside the scene");
 }
 
 void file_section(Choices& choices) {
@@ -596,9 +646,11 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     }
     ImGui::BeginChild("sections", {0.0F, -foot});
     show_section(content, choices);
+    groups_section(content, choices);
     dots_section(content.document.input(), choices);
     heat_section(content, choices);
     patch_section(content, choices);
+    clip_section(content, choices);
     solution_section(content, choices);
     material_section(content, choices);
     camera_section(content, choices);

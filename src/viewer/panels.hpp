@@ -1,6 +1,8 @@
 #pragma once
 
+#include "viewer/bookmarks.hpp"
 #include "viewer/document.hpp"
+#include "viewer/groups.hpp"
 #include "viewer/look.hpp"
 #include "viewer/partners.hpp"
 
@@ -22,6 +24,8 @@ struct Wishes {
     bool run_on = false;
     bool screenshot = false;
     bool save_result = false;
+    bool save_probe = false;
+    std::optional<int> bookmark; ///< to go to
     bool save_camera = false;
     bool copy_command = false;
     bool reload = false;
@@ -46,6 +50,10 @@ struct PictureSize {
 struct Choices {
     Look look;
     std::optional<std::uint32_t> picked;
+    std::optional<std::uint32_t> group;      ///< that is selected: the picked patch's, or one of the list
+    std::optional<std::uint32_t> group_seen; ///< that the list was scrolled to
+    std::array<char, 64> group_search{};     ///< letters in the names of groups that are listed
+    PictureCut cut;                          ///< what the picture leaves out
     std::optional<std::uint32_t> pointed_at; ///< the patch in a list under the cursor
     bool partners_by_light = false;          ///< else by factor
     bool hemicube = true;                    ///< as the picked patch sees it
@@ -53,6 +61,11 @@ struct Choices {
     std::uint32_t hemicube_eye = 0;
     std::vector<Material> materials;       ///< as the light should be
     std::vector<HeatCondition> conditions; ///< as the heat should be; none: the scene has none
+    bool gauges = true;                    ///< axes and a scale bar
+    bool walking = false;                  ///< W, A, S, D move the camera
+    bool measuring = false;                ///< clicks set ends of a line
+    std::vector<Vec3> measured{};          ///< its ends, as far as they are set
+    std::vector<double> environment;       ///< as it should be, of every channel
     bool panel = true;
     bool help = false;
     std::size_t picture_size = 0; ///< of screenshots, into picture_sizes()
@@ -74,13 +87,15 @@ struct PanelContent {
     const Document& document;
     const std::optional<PickedPatch>& picked;
     const Camera& camera;
+    const Bookmarks& bookmarks;
+    const GroupTable& groups;
     const std::optional<Field>& field;       ///< false colours that are shown
     std::string note;                        ///< on what was done last; empty: on the light
     std::string status;                      ///< at the panel's foot
     std::array<std::string, 2> under_cursor; ///< in its place: what is there, and where; empty: nothing
 };
 
-/// Pixels of the window that the side panel takes, from the right; 0 where the window is too small for it.
+/// Pixels of the window's layout that the side panel takes, from the right; 0 where it is too small for it.
 [[nodiscard]] std::uint32_t panel_width(std::array<std::uint32_t, 2> window, bool wanted);
 
 /// The side panel. Between Gui::begin() and Gui::end().

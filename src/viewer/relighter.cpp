@@ -153,9 +153,9 @@ void Relighter::try_to_gather(SolveUpdate& update, const std::stop_token& stop) 
         !should_gather(input_.gather, *input_.factor_settings, *input_.mesh, solution)) {
         return;
     }
-    const PatchValues values{solution.channels,         update.light.reflectance, update.light.exitance,
-                             input_.scene->environment, solution.direct,          input_.scene->sun,
-                             input_.scene->sky,         input_.scene->up};
+    const PatchValues values{solution.channels,        update.light.reflectance, update.light.exitance,
+                             update.light.environment, solution.direct,          input_.scene->sun,
+                             input_.scene->sky,        input_.scene->up};
     if (!gather_) {
         gather_.emplace(*input_.mesh, solution.back_face_share, all_patches(input_.mesh->size()));
     }
@@ -175,8 +175,8 @@ void Relighter::solve(Wish wish, const std::stop_token& stop) {
     Clock::time_point began = Clock::now();
     try {
         const RadiosityProblem problem{
-            &input_.factors->matrix,   input_.channels(),    update.light.reflectance, update.light.exitance,
-            input_.scene->environment, input_.mesh->areas(), input_.solution.direct};
+            &input_.factors->matrix,  input_.channels(),    update.light.reflectance, update.light.exitance,
+            update.light.environment, input_.mesh->areas(), input_.solution.direct};
         SolverSettings settings = input_.solver;
         if (wish.stepwise && settings.method == SolverMethod::automatic) {
             settings.method = SolverMethod::gauss_seidel;

@@ -18,6 +18,10 @@ Json index_or_null(const std::optional<std::uint32_t>& patch) {
     return patch ? Json(*patch) : Json(nullptr);
 }
 
+Json number_or_null(double value) {
+    return std::isnan(value) ? Json(nullptr) : Json(value);
+}
+
 Json point(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
@@ -38,6 +42,17 @@ Json dots_json(const Report& report) {
         if (report.dot_under_cursor && !std::isnan(column.values[*report.dot_under_cursor])) {
             json["value"] = column.values[*report.dot_under_cursor];
         }
+    }
+    return json;
+}
+
+/// Length in scene units.
+Json line(const LineProbe& probe, const ShownValues& values) {
+    Json json{{"ends", {point(probe.ends[0]), point(probe.ends[1])}},
+              {"length", glm::length(probe.ends[1] - probe.ends[0])},
+              {"values", Json::array()}};
+    for (const ProbePoint& at : probe.points) {
+        json["values"].push_back(at.patch ? number_or_null(values.values[*at.patch]) : Json(nullptr));
     }
     return json;
 }
@@ -71,6 +86,20 @@ void write_report(const std::filesystem::path& path, const Report& report) {
     }
     json["dots"] = dots_json(report);
     json["asks_to_close"] = report.asks_to_close;
+    json["group"] = index_or_null(report.choices.group);
+    json["clip"] = report.choices.cut.clip ? Json(clip_plane_text(*report.choices.cut.clip)) : Json(nullptr);
+    json["line"] = report.probe ? line(*report.probe, report.values) : Json(nullptr);
+    json["histogram"] = report.histogram;
+    json["hides_backs"] = report.hides_backs;
+    json["groups"] = Json::array();
+    for (std::uint32_t g = 0; g < report.groups.lines.size(); ++g) {
+        const GroupLine& line = report.groups.lines[g];
+        json["groups"].push_back({{"name", report.document.input().mesh->groups()[g]},
+                                  {"visibility", to_word(report.choices.cut.of_group(g))},
+                                  {"area", line.area},
+                                  {"mean", number_or_null(line.mean)},
+                                  {"net_power", number_or_null(line.net_power)}});
+    }
     if (report.picked) {
         for (const Partner& partner : report.picked->partners) {
             json["partners"].push_back(partner.patch);
@@ -79,13 +108,15 @@ void write_report(const std::filesystem::path& path, const Report& report) {
     if (report.field) {
         json["values"] = Json::array();
         for (const double value : report.field->shown.values) {
-            json["values"].push_back(std::isnan(value) ? Json(nullptr) : Json(value));
+            json["values"].push_back(number_or_null(value));
         }
         const ColourScale& scale = report.field->scale;
         json["scale"] = {{"low", scale.low},
                          {"high", scale.high},
                          {"logarithmic", scale.logarithmic},
-                         {"map", to_word(scale.map)}};
+                         {"map", to_word(scale.map)},
+                         {"bands", scale.bands},
+                         {"lines", scale.lines ? scale.levels() : std::vector<double>()}};
         json["title"] = report.field->shown.title;
         json["unit"] = report.field->shown.unit;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "viewer/line_probe.hpp"
 #include "viewer/look.hpp"
 #include "viewer/panels.hpp"
 
@@ -29,15 +30,23 @@ struct Report {
     const std::optional<UnderCursor>& under_cursor;
     std::optional<std::size_t> dot_under_cursor;
     bool asks_to_close;
+    const GroupTable& groups;
+    const ShownValues& values;
+    const std::optional<LineProbe>& probe;
+    const std::vector<double>& histogram;
+    bool hides_backs;
 };
 
 /// One JSON object: {"schema": "hemi/view/1", "quantity", "picked": patch or null, "pointed_at", "partners":
 /// [patch …], "hemicube": [patch …], "values": one a patch, null where there is none, or null, "scale":
-/// {"low", "high", "logarithmic"} or null, "radiosity": [[per channel] …], "residuals": [after every sweep],
-/// "light": how it was solved, "camera": {"eye", "target", "up", "fov", "orthographic"}, "message": what went
-/// wrong last, "under_cursor": {"patch", "position"} or null, "dots": {"column", "under_cursor": point,
-/// "value" of it}, null where there is none, or null where no points are shown, "asks_to_close": whether it
-/// does}.
+/// {"low", "high", "logarithmic", "map", "bands", "lines": [values]} or null, "radiosity": [[per channel] …],
+/// "residuals": [after every sweep], "light": how it was solved, "camera": {"eye", "target", "up", "fov",
+/// "orthographic"}, "message": what went wrong last, "under_cursor": {"patch", "position"} or null,
+/// "dots": {"column", "under_cursor": point, "value" of it}, null where there is none, or null where no
+/// points are shown, "asks_to_close": whether it does, "group": index of the selected one or null, "groups":
+/// [{"name", "visibility", "area", "mean", "net_power"} …], "clip": what is shown or null, "line": {"ends",
+/// "length", "values": [one a point or null …]} or null, "histogram": [share of the area by value …],
+/// "hides_backs": whether the window says so}.
 /// @throws IoError
 void write_report(const std::filesystem::path& path, const Report& report);
 

@@ -36,6 +36,10 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
         light_ = with_unknown_grey(std::move(light_), *input.mesh, document.light(), exposure);
     }
     PictureMesh drawn = colours_.empty() ? light_ : painted(light_, colours_);
+    if (field_ && field_->scale.lines) {
+        put_iso_values(drawn, *input.mesh, document.surfaces(), field_->shown.values, field_->scale);
+        settings_.iso_lines = iso_positions(field_->scale);
+    }
     dots_ = dots_of(input, look);
     renderer_.upload(dots_ ? with_dots(std::move(drawn), *dots_, settings_) : drawn);
 }
@@ -49,6 +53,7 @@ PictureSettings SceneView::settings(std::array<std::uint32_t, 2> size, std::uint
     settings.width = std::max(size[0], 1U);
     settings.height = std::max(size[1], 1U);
     settings.samples = samples;
+    settings.cut = cut_;
     return settings;
 }
 
@@ -76,6 +81,15 @@ std::optional<std::uint32_t> SceneView::item(const Camera& camera, std::array<st
                                              std::uint32_t x, std::uint32_t y) {
     const std::optional<std::uint32_t> item = renderer_.item(camera, settings(size, 1), x, y);
     return item && *item < light_.patches.size() / 3 ? item : std::nullopt; // not of a dot
+}
+
+bool SceneView::hides_backs(const Camera& camera, std::array<std::uint32_t, 2> size) {
+    constexpr std::uint32_t coarser = 16;
+    PictureSettings settings = this->settings({size[0] / coarser, size[1] / coarser}, 1);
+    settings.backs = false;
+    const std::vector<std::uint32_t> fronts = renderer_.items(camera, settings);
+    settings.backs = true;
+    return fronts != renderer_.items(camera, settings);
 }
 
 } // namespace hemi::viewer

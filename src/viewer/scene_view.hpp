@@ -20,6 +20,9 @@ public:
     /// Puts on the scene what the look asks for. Needed again after document, look or picked patch changed.
     void show(const Document& document, const Look& look, std::optional<std::uint32_t> picked);
 
+    /// What is left out of it from now on.
+    void cut(const PictureCut& cut) { cut_ = cut; }
+
     /// The field that is shown in false colours; none: the picture, outlines, items.
     [[nodiscard]] const std::optional<Field>& field() const { return field_; }
     /// Points that are shown.
@@ -35,11 +38,15 @@ public:
     [[nodiscard]] std::optional<std::uint32_t> item(const Camera& camera, std::array<std::uint32_t, 2> size,
                                                     std::uint32_t x, std::uint32_t y);
 
+    /// Whether surfaces that face away would be seen somewhere in the picture, were backs shown.
+    [[nodiscard]] bool hides_backs(const Camera& camera, std::array<std::uint32_t, 2> size);
+
 private:
     [[nodiscard]] PictureSettings settings(std::array<std::uint32_t, 2> size, std::uint32_t samples) const;
 
     PictureRenderer renderer_;
     PictureSettings settings_; ///< but for size and samples
+    PictureCut cut_;
     std::optional<Field> field_;
     std::optional<Dots> dots_;
     std::vector<std::array<float, 3>> colours_; ///< what was painted

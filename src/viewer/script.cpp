@@ -127,18 +127,25 @@ DragCommand parse_drag(Line& line) {
 KeyCommand parse_key(Line& line) {
     std::string_view name = line.word("a key");
     const bool control = take("ctrl+", name);
+    const bool alt = take("alt+", name);
     const bool shift = take("shift+", name);
-    constexpr std::array<std::pair<std::string_view, char>, 5> named{
-        {{"Escape", escape_key}, {"Tab", tab_key}, {"Home", home_key}, {"F1", help_key}, {"F5", reload_key}}};
+    constexpr std::array<std::pair<std::string_view, char>, 7> named{{{"Escape", escape_key},
+                                                                      {"Tab", tab_key},
+                                                                      {"Home", home_key},
+                                                                      {"F1", help_key},
+                                                                      {"F5", reload_key},
+                                                                      {"Enter", enter_key},
+                                                                      {"Backspace", backspace_key}}};
     for (const auto& [word, key] : named) {
         if (name == word) {
-            return {{key, shift, control}};
+            return {{key, shift, control, alt}};
         }
     }
     if (name.size() != 1 || std::isalnum(static_cast<unsigned char>(name[0])) == 0) {
-        line.fail(fmt::format("key \"{}\"; must be a letter, a digit, Escape, Tab, Home, F1 or F5", name));
+        line.fail(fmt::format(
+            "key \"{}\"; must be a letter, a digit, Escape, Tab, Home, Enter, Backspace, F1 or F5", name));
     }
-    return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift, control}};
+    return {{static_cast<char>(std::toupper(static_cast<unsigned char>(name[0]))), shift, control, alt}};
 }
 
 /// WIDTHxHEIGHT; nothing if the word is none.
@@ -189,11 +196,14 @@ std::string parse_file(Line& line, std::string_view command, std::string_view ex
 SetCommand parse_set(Line& line) {
     const std::string_view property = line.word("a property");
     using Property = SetCommand::Property;
-    if (property != "reflectance" && property != "exitance" && property != "temperature") {
-        line.fail(fmt::format("property \"{}\"; must be reflectance, exitance or temperature", property));
+    if (property != "reflectance" && property != "exitance" && property != "temperature" &&
+        property != "environment") {
+        line.fail(fmt::format("property \"{}\"; must be reflectance, exitance, temperature or environment",
+                              property));
     }
     SetCommand set{property == "exitance"      ? Property::exitance
                    : property == "temperature" ? Property::temperature
+                   : property == "environment" ? Property::environment
                                                : Property::reflectance,
                    {},
                    {}};
@@ -212,6 +222,9 @@ SetCommand parse_set(Line& line) {
             break;
         }
         values.remove_prefix(end + 1);
+    }
+    if (set.property == Property::environment) {
+        line.end();
     }
     set.name = line.rest();
     return set;
@@ -253,12 +266,74 @@ RangeCommand parse_range(Line& line) {
     return {std::array{low, high}};
 }
 
+BandsCommand parse_bands(Line& line) {
+    if (line.rest() == "off") {
+        (void)line.next();
+        return {0};
+    }
+    const double count = line.number("the number of bands");
+    if (count != std::floor(count) || count < 2.0 || count > 32.0) {
+        line.fail(fmt::format("{} bands; must be a whole number from 2 to 32, or off", count));
+    }
+    return {static_cast<std::uint32_t>(count)};
+}
+
+IsoLinesCommand parse_iso_lines(Line& line) {
+    const std::string_view word = line.word("on or off");
+    if (word != "on" && word != "off") {
+        line.fail(fmt::format("iso-lines \"{}\"; must be on or off", word));
+    }
+    return {word == "on"};
+}
+
+ClipCommand parse_clip(Line& line) {
+    const std::string word(line.word("a plane"));
+    if (word == "patch" || word == "off") {
+        return {word == "patch", std::nullopt};
+    }
+    try {
+        return {false, parse_clip_plane(word)};
+    } catch (const InvalidArgument& error) {
+        line.fail(fmt::format("clip {}, patch or off", error.what()));
+    }
+}
+
+/// Nothing where the command is not of groups.
+std::optional<GroupCommand> parse_group(std::string_view command, Line& line) {
+    using Action = GroupCommand::Action;
+    constexpr std::array<std::pair<std::string_view, Action>, 6> known{{{"select", Action::select},
+                                                                        {"show-group", Action::show},
+                                                                        {"outline", Action::outlines},
+                                                                        {"hide", Action::hide},
+                                                                        {"isolate", Action::isolate},
+                                                                        {"show-all", Action::show_all}}};
+    for (const auto& [word, action] : known) {
+        if (word != command) {
+            continue;
+        }
+        GroupCommand result{action, {}};
+        if (action == Action::show_all) {
+            line.end();
+        } else if ((result.group = line.rest()).empty()) {
+            line.fail("a group is missing");
+        }
+        return result;
+    }
+    return std::nullopt;
+}
+
 ScriptCommand parse_command(std::string_view command, Line& line, std::size_t number) {
     if (command == "screenshot") {
         return {number, parse_screenshot(line)};
     }
     if (command == "set") {
         return {number, parse_set(line)};
+    }
+    if (std::optional<GroupCommand> of_group = parse_group(command, line)) {
+        return {number, *std::move(of_group)};
+    }
+    if (command == "type") {
+        return {number, TypeCommand{std::string(line.rest())}};
     }
     if (command == "windowshot") {
         return {number, WindowshotCommand{parse_file(line, command, ".png")}};
@@ -272,6 +347,9 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
             line.fail("a file is missing");
         }
         return {number, DropCommand{std::string(path)}};
+    }
+    if (command == "save-probe") {
+        return {number, SaveProbeCommand{parse_file(line, command, ".csv")}};
     }
     if (command == "save-result") {
         return {number, SaveResultCommand{parse_file(line, command, ".hres")}};
@@ -303,6 +381,13 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
     } else if (command == "click") {
         const double x = line.number("x");
         result.action = ClickCommand{x, line.number("y")};
+    } else if (command == "measure") {
+        MeasureCommand measure{};
+        for (auto* end : {&measure.from, &measure.to}) {
+            (*end)[0] = line.number("x");
+            (*end)[1] = line.number("y");
+        }
+        result.action = measure;
     } else if (command == "move") {
         const double x = line.number("x");
         result.action = MoveCommand{x, line.number("y")};
@@ -312,6 +397,12 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = parse_map(line);
     } else if (command == "range") {
         result.action = parse_range(line);
+    } else if (command == "bands") {
+        result.action = parse_bands(line);
+    } else if (command == "iso-lines") {
+        result.action = parse_iso_lines(line);
+    } else if (command == "clip") {
+        result.action = parse_clip(line);
     } else if (command == "key") {
         result.action = parse_key(line);
     } else if (command == "resize") {
@@ -345,8 +436,11 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = CancelCommand{};
     } else if (command != "quit") {
         line.fail(fmt::format(
-            "command \"{}\"; must be drag, click, move, scroll, key, show, channel, map, range, dots, set, "
+            "command \"{}\"; must be drag, click, move, scroll, key, type, show, channel, map, range, dots, "
+            "bands, "
+            "iso-lines, select, show-group, outline, hide, isolate, show-all, clip, measure, set, "
             "fov, resize, minimise, restore, screenshot, windowshot, report, command, save-result, "
+            "save-probe, "
             "save-camera, drop, reload, "
             "changed, live, preview, rows, patches, wait, cancel or quit",
             command));

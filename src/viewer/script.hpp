@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/display/colour_map.hpp"
+#include "hemi/display/picture_cut.hpp"
 #include "viewer/events.hpp"
 
 #include <array>
@@ -57,10 +58,32 @@ struct DotsCommand {
 };
 /// A material's values, one or one a channel, or the temperature of a group, K.
 struct SetCommand {
-    enum class Property { reflectance, exitance, temperature };
+    enum class Property { reflectance, exitance, temperature, environment };
     Property property;
     std::vector<double> values;
-    std::string name; ///< of the material, or of the group
+    std::string name; ///< of the material, or of the group; of the environment none
+};
+/// Of false colours; 0: smooth ones.
+struct BandsCommand {
+    std::uint32_t count;
+};
+struct IsoLinesCommand {
+    bool drawn;
+};
+/// How much of a group is shown.
+struct GroupCommand {
+    enum class Action { select, show, outlines, hide, isolate, show_all };
+    Action action;
+    std::string group; ///< of all but show_all
+};
+/// Where the picture is cut.
+struct ClipCommand {
+    bool through_patch = false;     ///< the picked one
+    std::optional<ClipPlane> plane; ///< else that; none: it is not cut
+};
+/// Types letters into the field that was clicked.
+struct TypeCommand {
+    std::string text;
 };
 struct ResizeCommand {
     std::uint32_t width;
@@ -81,6 +104,15 @@ struct ReloadCommand {};
 struct ChangedCommand {};
 struct SaveResultCommand {
     std::string path;
+};
+/// Of the line that is measured.
+struct SaveProbeCommand {
+    std::string path;
+};
+/// As D and two clicks.
+struct MeasureCommand {
+    std::array<double, 2> from;
+    std::array<double, 2> to;
 };
 struct SaveCameraCommand {};
 /// Writes the command line that draws the picture.
@@ -122,8 +154,9 @@ struct QuitCommand {};
 struct ScriptCommand {
     std::size_t line;
     std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand,
-                 ChannelCommand, MapCommand, RangeCommand, DotsCommand, SetCommand, ResizeCommand,
-                 ScreenshotCommand, WindowshotCommand, ReportCommand, LiveCommand, WaitCommand,
+                 ChannelCommand, MapCommand, RangeCommand, DotsCommand, BandsCommand, IsoLinesCommand,
+                 GroupCommand, ClipCommand, TypeCommand, MeasureCommand, SaveProbeCommand, SetCommand,
+                 ResizeCommand, ScreenshotCommand, WindowshotCommand, ReportCommand, LiveCommand, WaitCommand,
                  PreviewCommand, RowsCommand, PatchesCommand, CancelCommand, DropCommand, ReloadCommand,
                  ChangedCommand, SaveResultCommand, SaveCameraCommand, CommandLineCommand, FovCommand,
                  MinimiseCommand, QuitCommand>
@@ -137,13 +170,22 @@ struct ScriptCommand {
 /// click X Y              with the left button
 /// move X Y               of the cursor
 /// scroll X Y AMOUNT
-/// key [ctrl+][shift+]NAME  a letter, a digit, Escape, Tab, Home, F1 or F5
+/// key [ctrl+|alt+][shift+]NAME  a letter, a digit, Escape, Tab, Home, F1 or F5
 /// show QUANTITY          picture, outlines, items, radiosity, reflectance, exitance, row-error, error, row
 ///                        or column
 /// dots COLUMN            of the points that dots show, or none
 /// set reflectance|exitance VALUE[,VALUE ...] MATERIAL
 ///                        one value, or one a channel; waits until the light has followed
 /// set temperature KELVIN GROUP
+/// set environment VALUE[,VALUE ...]
+/// bands N, bands off     of false colours
+/// iso-lines on|off
+/// select|show-group|outline|hide|isolate GROUP
+///                        selects it; how much of it is shown; show-all
+/// clip PLANE             as parse_clip_plane() reads it; `patch`: through the picked one; `off`
+/// measure X0 Y0 X1 Y1    the line between what is seen at two pixels
+/// save-probe FILE        .csv: what is shown along it
+/// type TEXT              into the field that was clicked
 /// fov DEGREES            field of view
 /// resize WIDTH HEIGHT
 /// minimise, restore      the window

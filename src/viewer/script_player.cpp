@@ -2,6 +2,7 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/io/output_file.hpp"
+#include "viewer/clipping.hpp"
 #include "viewer/dots.hpp"
 #include "viewer/material_change.hpp"
 
@@ -16,6 +17,28 @@ namespace {
 /// How long things outside may take, seconds.
 constexpr std::chrono::seconds resize_patience{2};
 constexpr std::chrono::seconds change_patience{60};
+
+/// Selects a group, or says how much of it is shown.
+void apply_group(const GroupCommand& command, const ViewerInput& input, Choices& choices) {
+    using Action = GroupCommand::Action;
+    const std::vector<std::string>& names = input.mesh->groups();
+    if (command.action == Action::show_all) {
+        choices.cut.groups.clear();
+        return;
+    }
+    const std::uint32_t group = group_by_name(names, command.group, "group");
+    if (command.action == Action::select) {
+        select_group(choices, group, *input.mesh);
+    } else if (command.action == Action::isolate) {
+        isolate(choices, group, names.size());
+    } else {
+        set_visibility(choices, group,
+                       command.action == Action::show       ? Visibility::shown
+                       : command.action == Action::outlines ? Visibility::outlines
+                                                            : Visibility::hidden,
+                       names.size());
+    }
+}
 
 class Player {
 public:
@@ -70,6 +93,45 @@ public:
     void perform(const DotsCommand& command) {
         choose_dots(application_.document().input(), command.column, application_.choices().look);
         application_.settle();
+    }
+    void perform(const BandsCommand& command) {
+        application_.choices().look.bands = command.count;
+        application_.settle();
+    }
+    void perform(const IsoLinesCommand& command) {
+        application_.choices().look.iso_lines = command.drawn;
+        application_.settle();
+    }
+    void perform(const GroupCommand& command) {
+        apply_group(command, application_.document().input(), application_.choices());
+        application_.settle();
+    }
+    void perform(const ClipCommand& command) {
+        Choices& choices = application_.choices();
+        if (command.through_patch && !choices.picked) {
+            throw InvalidArgument("clip patch: click a patch first");
+        }
+        choices.cut.clip =
+            command.through_patch
+                ? std::optional(plane_of_patch(*application_.document().input().mesh, *choices.picked))
+                : command.plane;
+        application_.settle();
+    }
+    void perform(const MeasureCommand& command) {
+        Choices& choices = application_.choices();
+        choices.measuring = true;
+        choices.measured.clear();
+        perform(ClickCommand{command.from[0], command.from[1]});
+        perform(ClickCommand{command.to[0], command.to[1]});
+        if (choices.measured.size() < 2) {
+            throw InvalidArgument("measure: nothing is seen at one of the ends");
+        }
+    }
+    void perform(const SaveProbeCommand& command) { application_.save_probe(command.path); }
+    void perform(const TypeCommand& command) {
+        for (const char letter : command.text) { // ASCII, as fields of the window take
+            application_.handle(TextEvent{static_cast<char32_t>(static_cast<unsigned char>(letter))});
+        }
     }
     void perform(const SetCommand& set) {
         apply_set(set, application_.document().input(), application_.choices());

@@ -65,7 +65,7 @@ struct ViewerInput {
     std::filesystem::path points_file;          ///< that they are from
     std::optional<std::size_t> dots_column;     ///< of the points, to begin with
     Camera camera;                              ///< where R goes back to
-    PictureSettings picture;                    ///< width and height are the window's first size
+    PictureSettings picture;                    ///< width, height and cut are those of the first picture
     bool automatic_exposure = true;             ///< picture.exposure is chosen by automatic_exposure()
 
     /// Name of the scene, else of the file.
@@ -73,6 +73,10 @@ struct ViewerInput {
         return scene->name.empty() ? file.filename().string() : scene->name;
     }
     [[nodiscard]] std::uint32_t channels() const { return solution.channels; }
+    /// Exitance of the scene's environment, of every channel.
+    [[nodiscard]] std::vector<double> environment() const {
+        return scene->environment.empty() ? std::vector<double>(channels(), 0.0) : scene->environment;
+    }
 };
 
 struct ViewerSettings {

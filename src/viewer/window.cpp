@@ -47,6 +47,12 @@ std::optional<char> key_name(int key, int scancode) {
     if (key == GLFW_KEY_HOME) {
         return home_key;
     }
+    if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) {
+        return enter_key;
+    }
+    if (key == GLFW_KEY_BACKSPACE) {
+        return backspace_key;
+    }
     const char* name = glfwGetKeyName(key, scancode);
     if (name == nullptr || std::string_view(name).size() != 1) {
         return std::nullopt;
@@ -105,9 +111,13 @@ struct Window::Callbacks {
             return;
         }
         if (const std::optional<char> name = key_name(key, scancode)) {
-            events(window).push_back(
-                KeyEvent{*name, (modifiers & GLFW_MOD_SHIFT) != 0, (modifiers & GLFW_MOD_CONTROL) != 0});
+            events(window).push_back(KeyEvent{*name, (modifiers & GLFW_MOD_SHIFT) != 0,
+                                              (modifiers & GLFW_MOD_CONTROL) != 0,
+                                              (modifiers & GLFW_MOD_ALT) != 0});
         }
+    }
+    static void text(GLFWwindow* window, unsigned int letter) noexcept {
+        events(window).push_back(TextEvent{static_cast<char32_t>(letter)});
     }
     static void resized(GLFWwindow* window, int, int) noexcept { events(window).push_back(RefreshEvent{}); }
     static void refresh(GLFWwindow* window) noexcept { events(window).push_back(RefreshEvent{}); }
@@ -129,6 +139,7 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
     glfwWindowHintString(GLFW_X11_CLASS_NAME, "hemi");
     glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "hemi");
     // Depth and samples are the renderer's own.
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     glfwWindowHint(GLFW_DEPTH_BITS, 0);
     glfwWindowHint(GLFW_STENCIL_BITS, 0);
     if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
@@ -137,9 +148,15 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
         int available_x = 0;
         int available_y = 0;
         glfwGetMonitorWorkarea(monitor, &x, &y, &available_x, &available_y);
+        float scale_x = 1.0F; // by which the window becomes larger
+        float scale_y = 1.0F;
+        glfwGetMonitorContentScale(monitor, &scale_x, &scale_y);
+        const auto limit = [](int available, float scale) {
+            return static_cast<std::uint32_t>(static_cast<float>(available) / std::max(scale, 1.0F));
+        };
         if (available_x > 0 && available_y > 0) {
-            width = std::min(width, static_cast<std::uint32_t>(available_x));
-            height = std::min(height, static_cast<std::uint32_t>(available_y));
+            width = std::min(width, limit(available_x, scale_x));
+            height = std::min(height, limit(available_y, scale_y));
         }
     }
     window_.reset(
@@ -163,6 +180,7 @@ void Window::listen() {
     glfwSetMouseButtonCallback(window, Callbacks::button);
     glfwSetScrollCallback(window, Callbacks::scroll);
     glfwSetKeyCallback(window, Callbacks::key);
+    glfwSetCharCallback(window, Callbacks::text);
     glfwSetFramebufferSizeCallback(window, Callbacks::resized);
     glfwSetWindowRefreshCallback(window, Callbacks::refresh);
     glfwSetWindowCloseCallback(window, Callbacks::close);
@@ -179,6 +197,13 @@ std::array<std::uint32_t, 2> Window::size() const {
     int height = 0;
     glfwGetFramebufferSize(window_.get(), &width, &height);
     return {static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0))};
+}
+
+double Window::scale() const {
+    float x = 1.0F;
+    float y = 1.0F;
+    glfwGetWindowContentScale(window_.get(), &x, &y);
+    return static_cast<double>(std::max(x, y));
 }
 
 void Window::resize(std::uint32_t width, std::uint32_t height) {

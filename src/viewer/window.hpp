@@ -25,6 +25,8 @@ public:
 
     /// Pixels; 0 while the window is minimised.
     [[nodiscard]] std::array<std::uint32_t, 2> size() const;
+    /// Pixels a point of the monitor's scale: 2 on a display of twice the usual density.
+    [[nodiscard]] double scale() const;
     void resize(std::uint32_t width, std::uint32_t height);
     void set_title(const std::string& title);
     void minimise(bool minimised);

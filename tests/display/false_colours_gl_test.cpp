@@ -53,6 +53,11 @@ TEST_CASE("Legend: marks are round, in range, few, and told from each other", "[
     CHECK(mark_text(500.0, {500.0, 1000.0}) == "500");
     CHECK(mark_text(-20000.0, {-20000.0, 0.0}) == "-20000");
     CHECK(mark_text(2e9, {0.0, 2e9}) == "2e+09");
+    CHECK(level_text(50.0, {0.0, 50.0, 100.0}) == "50");
+    CHECK(level_text(0.41125, {0.0, 0.41125, 0.8225}) == "0.41");
+    CHECK(level_text(293.25, {293.15, 293.25, 293.35}) == "293.25");
+    CHECK(level_text(100.0, {0.01, 0.1, 1.0, 10.0, 100.0}) == "100");
+    CHECK(level_text(2e9, {0.0, 2e9}) == "2e+09");
 }
 
 TEST_CASE("False colours: the lowest and the highest value have the ends of the scale", "[display][gl]") {
@@ -120,4 +125,74 @@ TEST_CASE("False colours: the lowest and the highest value have the ends of the 
     CHECK_THROWS_AS(draw_false_colours(mesh, shown, camera, settings, "osmesa"), InvalidArgument);
     shown.values.push_back(std::numeric_limits<double>::infinity());
     CHECK_THROWS_AS(draw_false_colours(mesh, shown, camera, settings, "osmesa"), InvalidArgument);
+}
+
+TEST_CASE("False colours: bands have one colour each, the ends' first and last", "[display][gl]") {
+    test::SceneBuilder builder;
+    builder.floor("floor", -1.0, -1.0, 1.0, 1.0, {8, 1});
+    FalseColours shown{{0.0, 0.9, 1.1, 1.9, 2.1, 2.9, 3.1, 4.0}, "T", "K"};
+    shown.bands = 4;
+    PictureSettings settings;
+    settings.width = 240;
+    settings.height = 200;
+    settings.samples = 1;
+    const double fov = 2.0 * std::atan(0.25) * 180.0 / std::numbers::pi;
+    const Camera camera{{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, fov};
+    const Picture picture = draw_false_colours(builder.mesh(), shown, camera, settings, "osmesa");
+    // The floor is 200 pixels wide: 25 a patch, from 20 on.
+    for (std::uint32_t patch = 0; patch < 8; ++patch) {
+        CHECK(is_scale(pixel(picture, 20 + 25 * patch + 12, 60), (patch / 2) / 3.0));
+    }
+    shown.bands = 1;
+    CHECK_THROWS_AS(draw_false_colours(builder.mesh(), shown, camera, settings, "osmesa"), InvalidArgument);
+    shown.bands = 33;
+    CHECK_THROWS_AS(draw_false_colours(builder.mesh(), shown, camera, settings, "osmesa"), InvalidArgument);
+    CHECK(ColourScale{0.0, 4.0, false, ColourMap::viridis, 4}.marks() ==
+          std::vector<double>{0.0, 1.0, 2.0, 3.0, 4.0});
+}
+
+TEST_CASE("False colours: iso-lines lie where the interpolated value is round, or a band ends",
+          "[display][gl]") {
+    test::SceneBuilder builder;
+    builder.floor("floor", -1.0, -1.0, 1.0, 1.0, {10, 2});
+    FalseColours shown{{}, "T", "K"};
+    for (int k = 0; k < 20; ++k) {
+        shown.values.push_back(k % 10 + 0.5); // the value at x is 5 (x + 1)
+    }
+    shown.range = {0.0, 10.0};
+    shown.bands = 2;
+    shown.legend = false;
+    shown.iso_lines = true;
+    PictureSettings settings;
+    settings.width = 200;
+    settings.height = 200;
+    const double fov = 2.0 * std::atan(0.25) * 180.0 / std::numbers::pi;
+    const Camera camera{{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, fov};
+    const auto dark_columns = [&] {
+        const Picture picture = draw_false_colours(builder.mesh(), shown, camera, settings, "osmesa");
+        FalseColours without = shown;
+        without.iso_lines = false;
+        const Picture bare = draw_false_colours(builder.mesh(), without, camera, settings, "osmesa");
+        std::vector<std::uint32_t> columns;
+        for (std::uint32_t x = 0; x < 200; ++x) {
+            if (pixel(picture, x, 70) != pixel(bare, x, 70)) {
+                columns.push_back(x);
+            }
+        }
+        return columns;
+    };
+    const std::vector<std::uint32_t> middle = dark_columns();
+    REQUIRE_FALSE(middle.empty());
+    CHECK(middle.size() <= 4);
+    CHECK(middle.front() >= 97);
+    CHECK(middle.back() <= 102);
+    shown.bands = 0; // lines at 1, 2 … 9: every 20 pixels
+    const std::vector<std::uint32_t> all = dark_columns();
+    for (const std::uint32_t x : all) {
+        CHECK(std::abs(std::remainder(x + 0.5, 20.0)) <= 3.0);
+    }
+    CHECK(all.size() >= 9);
+    CHECK(ColourScale{0.0, 10.0, false, ColourMap::viridis, 0, true}.levels().size() == 9);
+    shown.values[4] = std::numeric_limits<double>::quiet_NaN(); // lends nothing, has no line
+    CHECK_NOTHROW(dark_columns());
 }

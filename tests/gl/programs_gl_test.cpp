@@ -91,16 +91,24 @@ TEST_CASE("shaders: uniforms of the picture are where the constants say", "[gl][
     const auto context = gl::make_context("osmesa");
     {
         using namespace picture_uniforms;
-        const Locations shared{{"eye", eye}, {"clip_from_direction", clip_from_direction}};
+        const Locations shared{{"eye", eye}, {"clip_from_direction", clip_from_direction}, {"clip", clip}};
         Locations all{{"flat_shading", flat_shading},
                       {"outline_width", outline_width},
                       {"stripe_width", stripe_width},
-                      {"first_sample", first_sample}};
+                      {"first_sample", first_sample},
+                      {"line_count", line_count},
+                      {"line_width", line_width},
+                      {"lines[0]", lines}};
         all.insert(shared.begin(), shared.end());
         CHECK(locations(gl::make_program("picture", gl::shaders::picture_vert, gl::shaders::picture_frag),
                         GL_UNIFORM) == all);
         CHECK(locations(gl::make_program("items", gl::shaders::picture_vert, gl::shaders::picture_item_frag),
                         GL_UNIFORM) == shared);
+        Locations outlines{{"outline_width", outline_width}};
+        outlines.insert(shared.begin(), shared.end());
+        CHECK(locations(
+                  gl::make_program("outlines", gl::shaders::picture_vert, gl::shaders::picture_outline_frag),
+                  GL_UNIFORM) == outlines);
     }
     using namespace resolve_uniforms;
     const gl::Program resolve =

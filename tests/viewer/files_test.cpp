@@ -173,8 +173,12 @@ TEST_CASE("Viewer: quantities have the pixels that hemi render draws of them", "
         CHECK(std::find(seen.begin(), seen.end(), window) == seen.end());
         seen.push_back(window);
     }
-    CHECK(place.json("own.json")["scale"] ==
-          nlohmann::json({{"low", 0.1}, {"high", 2.0}, {"logarithmic", true}, {"map", "turbo"}}));
+    CHECK(place.json("own.json")["scale"] == nlohmann::json({{"low", 0.1},
+                                                             {"high", 2.0},
+                                                             {"logarithmic", true},
+                                                             {"map", "turbo"},
+                                                             {"bands", 0},
+                                                             {"lines", nlohmann::json::array()}}));
     CHECK(place.json("other.json")["scale"]["high"] != 2.0);
     CHECK(place.view("show radiance\n", small) == 3);
     CHECK(place.read("errors.txt").find("radiosity") != std::string::npos);

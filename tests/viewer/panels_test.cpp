@@ -137,6 +137,37 @@ TEST_CASE("Viewer: light follows a change of materials as a fresh solution has i
     CHECK(place.view("set reflectance 1 white\n", small) == 3);
 }
 
+TEST_CASE("Viewer: light follows a change of the environment, and is stored with it", "[viewer][gl]") {
+    const Workplace place;
+    const int status = place.view("screenshot start.png\nset environment 3,1,2\nreport changed.json\n"
+                                  "screenshot changed.png\nsave-result changed.hres\ncommand changed.txt\n"
+                                  "key ctrl+Z\nwait\nscreenshot back.png\n",
+                                  small);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    REQUIRE(place.view("report fresh.json\n", small + " --environment 3,1,2") == 0);
+    const auto changed = place.json("changed.json")["radiosity"];
+    const auto fresh = place.json("fresh.json")["radiosity"];
+    REQUIRE(changed.size() == fresh.size());
+    double largest = 0.0;
+    for (std::size_t i = 0; i < fresh.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double was = fresh[i][c];
+            const double is = changed[i][c];
+            largest = std::max(largest, std::abs(is - was) / was);
+        }
+    }
+    CHECK(largest < 2e-5); // both are solved to a residual of 1e-6
+    CHECK(place.read("back.png") == place.read("start.png"));
+    CHECK(place.read("changed.txt").starts_with("hemi render changed.hres "));
+    place.write("draw.sh", place.read("changed.txt"));
+    REQUIRE(place.run(fmt::format("PATH='{}':$PATH sh draw.sh",
+                                  std::filesystem::path(HEMI_PROGRAM).parent_path().string())) == 0);
+    CHECK(place.read("room.png") == place.read("changed.png"));
+    CHECK(place.view("set environment 1,2\n", small) == 2);
+    CHECK(place.view("set environment 1 white\n", small) == 3);
+}
+
 TEST_CASE("Viewer: while a scene is solved, it is shown by the light of its lamps", "[viewer][gl]") {
     const Workplace place;
     const int status =
@@ -154,7 +185,7 @@ TEST_CASE("Viewer: while a scene is solved, it is shown by the light of its lamp
 
 TEST_CASE("Viewer: solving can be stopped, by hand and by closing the window", "[viewer][gl]") {
     const Workplace place;
-    const std::string slow = "--size 660x400 --patches-per-face 200 --preset exact";
+    const std::string slow = "--size 708x400 --patches-per-face 200 --preset exact";
     REQUIRE(place.view("live\ncancel\nreport stopped.json\nwindowshot stopped.png\n", slow) == 0);
     const auto stopped = place.json("stopped.json");
     CHECK(stopped["light"].get<std::string>().starts_with("stopped: "));
@@ -192,7 +223,7 @@ TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
 
 TEST_CASE("Viewer: Escape closes what is open, and never the window", "[viewer][gl]") {
     const Workplace place;
-    // The list of quantities stands at the top of the panel, which is 332 wide.
+    // The list of quantities stands at the top of the panel, which is 380 wide.
     const int status = place.view("windowshot start.png\nclick 480 41\nwindowshot list.png\nkey Escape\n"
                                   "move 100 200\nwindowshot closed.png\n"
                                   "key F1\nkey Escape\nclick 150 200\nkey Escape\nreport let_go.json\n"
@@ -220,6 +251,11 @@ TEST_CASE("Viewer: changes that are not saved are asked for before it quits", "[
     CHECK_FALSE(place.has("never.json"));
     REQUIRE(place.view("set reflectance 0.1 white\nkey Q\nkey Q\nreport never.json\n", small) == 0);
     CHECK_FALSE(place.has("never.json"));
+    // What is taken back after saving is other light again; at once, before it is found.
+    REQUIRE(place.view("set reflectance 0.1 white\nset reflectance 0.2 white\nsave-result kept.hres\n"
+                       "key ctrl+Z\nkey Q\nreport undone.json\nkey Q\n",
+                       small) == 0);
+    CHECK(place.json("undone.json")["asks_to_close"] == true);
 }
 
 TEST_CASE("Viewer: changes of materials are taken back and redone to the bits of the light", "[viewer][gl]") {
@@ -271,11 +307,11 @@ TEST_CASE("Viewer: what cannot be shown is refused with the reason", "[viewer][g
 
 TEST_CASE("Viewer: the window shows the pixels of the screenshot beside its panel", "[viewer][gl]") {
     const Workplace place;
-    REQUIRE(place.view("drag left 150 200 190 180\nwindowshot window.png\nscreenshot picture.png\n",
+    REQUIRE(place.view("key U\ndrag left 150 200 190 180\nwindowshot window.png\nscreenshot picture.png\n",
                        with_panel) == 0);
     const hemi::test::SrgbPicture window = hemi::test::read_png(place.path("window.png"));
     const hemi::test::SrgbPicture picture = hemi::test::read_png(place.path("picture.png"));
-    REQUIRE(window.width == 660);
+    REQUIRE(window.width == 708);
     REQUIRE(window.height == 400);
     REQUIRE(picture.height == 400);
     REQUIRE(picture.width > 300);

@@ -26,10 +26,10 @@ std::size_t processes_in(const std::filesystem::path& folder) {
 std::string random_script(std::uint32_t seed, int events) {
     std::mt19937 random(seed);
     const auto below = [&random](std::uint32_t end) { return random() % end; };
-    constexpr std::string_view keys = "FR1375STEWBLVHCG";
+    constexpr std::string_view keys = "FR1375STEWBLVHCGINOAKDUJ";
     std::string script;
     for (int k = 0; k < events; ++k) {
-        const std::string point = fmt::format("{} {}", below(680), below(420));
+        const std::string point = fmt::format("{} {}", below(728), below(420));
         switch (below(10)) {
         case 0:
         case 1:
@@ -83,7 +83,7 @@ TEST_CASE("Viewer: survives being minimised", "[viewer][gl]") {
 
 TEST_CASE("Viewer: closing the window while it solves ends the workers", "[viewer][gl]") {
     const Workplace place;
-    const std::string slow = "--size 660x400 --patches-per-face 400 --preset exact --jobs 2";
+    const std::string slow = "--size 708x400 --patches-per-face 400 --preset exact --jobs 2";
     REQUIRE(place.view("live\nwindowshot open.png\nquit\n", slow) == 0);
     CHECK(place.read("errors.txt").find("error") == std::string::npos);
     // A worker ends when it notices that nobody listens.

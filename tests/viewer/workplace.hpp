@@ -25,7 +25,7 @@ namespace hemi::viewer_test {
 /// Options for windows that are quick on software OpenGL: one without room for the side panel, and one with
 /// it beside a picture of about that size.
 inline const std::string small = "--size 300x200 --preset plain --resolution 32";
-inline const std::string with_panel = "--size 660x400 --preset plain --resolution 32";
+inline const std::string with_panel = "--size 708x400 --preset plain --resolution 32";
 
 /// Puts `to` where `from` stands first, which must stand there.
 inline void replace(std::string& text, const std::string& from, const std::string& to) {

@@ -4,6 +4,7 @@
 #include "hemi/display/picture.hpp"
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,10 @@ struct FalseColours {
     bool logarithmic = false; ///< equal steps of colour are equal ratios; values below 0 are at the low end
     ColourMap map = ColourMap::viridis; ///< which colours
     bool legend = true;                 ///< whether there is one
+    /// Colours, of equal steps of the scale, 2 to 32; 0: they run smoothly.
+    std::uint32_t bands = 0;
+    /// Lines of equal values, interpolated between patches: where bands end, else at round values.
+    bool iso_lines = false;
 };
 
 struct Dots;
@@ -35,7 +40,8 @@ struct Dots;
 /// @param settings  size, samples, outlines and backs count
 /// @param device    auto, egl, egl:N or osmesa
 /// @param dots      in the picture, with a legend above the other one; may be null
-/// @throws InvalidArgument for another number of values, infinite ones, and a range that does not ascend or,
+/// @throws InvalidArgument for another number of values, 1 band or more than 32, infinite ones, and a range
+///   that does not ascend or,
 ///   where logarithmic, does not begin above 0; as draw_picture()
 [[nodiscard]] Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown,
                                          const Camera& camera, const PictureSettings& settings,

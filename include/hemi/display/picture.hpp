@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/names.hpp"
+#include "hemi/display/picture_cut.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/scene/scene.hpp"
 
@@ -48,6 +49,10 @@ struct PictureSettings {
     bool backs = false;
     /// Shown where no surface is, sRGB; none: the environment, or a dark neutral grey where there is none.
     std::optional<std::array<std::uint8_t, 3>> background;
+    PictureCut cut; ///< what is left out
+    /// Gouraud values of the first channel along which a line is drawn, ascending, at most 32. For colours
+    /// that are no light: lines are black, or light on dark colours.
+    std::vector<float> iso_lines;
 };
 
 /// Radiosity prepared for drawing: three linear sRGB channels a patch corner and a patch.
@@ -56,6 +61,7 @@ struct PictureMesh {
     std::vector<float> positions;
     std::vector<float> corners;         ///< 3 per corner, Gouraud values
     std::vector<float> patches;         ///< 3 per patch, flat values
+    std::vector<std::uint32_t> groups;  ///< of every patch, for PictureCut; empty: all patches are shown
     Vec3 origin{0.0};                   ///< scene units; keeps digits of scenes far from 0
     Bounds bounds;                      ///< scene units, absolute
     std::array<float, 3> environment{}; ///< radiosity behind all surfaces; zero: there is none
@@ -110,7 +116,8 @@ struct Picture {
 /// is seen, the environment is; where there is none, `srgb` is a dark neutral grey and `linear` zero.
 /// Afterwards no context is current on the thread.
 /// @throws NoDevice, GlError; InvalidArgument for a size outside 1 to 16384, samples outside 1 to 8, an
-///   exposure that is negative or not finite, a camera without a direction or field of view.
+///   exposure that is negative or not finite, a camera without a direction or field of view, more than 32
+///   lines, and a cut by groups of a mesh that says of none.
 [[nodiscard]] Picture draw_picture(const PictureMesh& mesh, const Camera& camera,
                                    const PictureSettings& settings, const std::string& device);
 

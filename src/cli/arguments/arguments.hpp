@@ -78,6 +78,11 @@ struct PictureOptions {
     bool logarithmic = false;
     bool celsius = false; ///< of temperatures
     bool legend = true;
+    std::uint32_t bands = 0; ///< of colours; 0: they run smoothly
+    bool iso_lines = false;
+    std::vector<std::string> hidden_groups;
+    std::vector<std::string> outlined_groups;
+    std::optional<ClipPlane> clip;
     std::vector<std::string> of_quantities; ///< options given that only they have
     std::optional<CameraOption> camera;
     std::optional<UpAxis> up; ///< none: the scene's

@@ -43,9 +43,22 @@ std::vector<CLI::Option*> add_drawn(CLI::App& app, PictureOptions& picture, Scen
     options.flag("--orthographic", picture.orthographic, "parallel rays, at the scale of the target's depth");
     options.flag("--outlines", picture.outlines, "draw outlines of patches");
     options.flag("--backs", picture.backs, "show the backs of one-sided surfaces, striped");
-    for (const char* name : {"--orthographic", "--outlines", "--backs"}) {
+    options.groups("--hide", picture.hidden_groups,
+                   "leave GROUP out of the picture, not out of the light; repeatable");
+    options.groups("--outlines-of", picture.outlined_groups,
+                   "draw of GROUP only the outlines of its patches; repeatable");
+    for (const char* name : {"--orthographic", "--outlines", "--backs", "--hide", "--outlines-of"}) {
         added.push_back(app.get_option(name));
     }
+    added.push_back(options.value("--clip", "PLANE",
+                                  "show only one side of a plane, such as 'x<1.5', 'z>0' or '0.6,0.8,0<1.5'",
+                                  [&picture](const std::string& text) {
+                                      try {
+                                          picture.clip = parse_clip_plane(text);
+                                      } catch (const InvalidArgument& error) {
+                                          throw InvalidArgument(fmt::format("--clip {}", error.what()));
+                                      }
+                                  }));
     added.push_back(
         options.value("--background", "COLOUR",
                       "where no surface is: environment (the default), black, white, grey or #RRGGBB",
@@ -114,6 +127,15 @@ std::vector<CLI::Option*> add_quantities(CLI::App& app, PictureOptions& picture,
             picture.map = map;
             given("--map");
         }));
+    added.push_back(options.value("--bands", "N", "colours in N equal steps, 2 to 32, instead of smooth ones",
+                                  [&picture, given](const std::string& text) {
+                                      picture.bands =
+                                          static_cast<std::uint32_t>(parse_whole("--bands", text, 2, 32));
+                                      given("--bands");
+                                  }));
+    options.flag("--iso-lines", picture.iso_lines,
+                 "lines of equal values: where bands end, or else at round values");
+    added.push_back(app.get_option("--iso-lines"));
     if (logarithmic) {
         options.flag("--log", picture.logarithmic, "equal steps of colour are equal ratios");
         added.push_back(app.get_option("--log"));
