@@ -36,7 +36,7 @@ TEST_CASE("repair: plain rows are left alone unless it is asked for", "[cli]") {
     CHECK(closed["radiosity"][0][0].get<double>() ==
           Approx(plain["radiosity"][0][0].get<double>()).epsilon(0.02));
 
-    const Outcome text = run_hemi(quick({"solve", scene, "--repair", "reciprocity"}));
+    const Outcome text = run_hemi(quick({"solve", scene, "--repair", "reciprocity", "-v"}));
     CHECK(text.out_has("repair        reciprocity"));
     CHECK(text.out_has("reciprocity error"));
 }

@@ -356,7 +356,7 @@ Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const
     report.add(seconds.report());
     const Report light = light_report(loaded, solution);
     if (!in_full) {
-        report.text = brief_error(solution, loaded.mesh) +
+        report.text = chosen_report(solution.chosen_for).text + brief_error(solution, loaded.mesh) +
                       light_balance_report(balance, loaded.scene.unit.value_or(1.0),
                                            loaded.scene.photometric ? " lm" : "")
                           .text +
