@@ -2,6 +2,7 @@
 #include "cli/loaded_scene.hpp"
 #include "cli/report/factor_report.hpp"
 #include "cli/report/factor_tables.hpp"
+#include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/io/factor_file.hpp"
@@ -63,7 +64,8 @@ ExitStatus factors_of_file(const FactorsArguments& arguments, const Terminal& te
         check_row(*arguments.row, factors, path);
     }
     const Stopwatch repair_watch;
-    prepare_form_factors(factors, arguments.rows.factors.repair);
+    TerminalObserver observer(terminal);
+    prepare_form_factors(factors, arguments.rows.factors.repair, observer);
     seconds["repair"] = repair_watch.seconds();
     if (arguments.row) {
         const FormFactors merged = merge_parts(std::move(factors));

@@ -130,7 +130,8 @@ ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, c
         discard(checkpoint);
     }
     const Stopwatch repair_watch;
-    prepare_form_factors(factors, arguments.rows.factors.repair);
+    TerminalObserver observer(terminal);
+    prepare_form_factors(factors, arguments.rows.factors.repair, observer);
     seconds["repair"] = repair_watch.seconds();
     if (arguments.patches) {
         loaded.write_patches(*arguments.patches, factors.matrix);

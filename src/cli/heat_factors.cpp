@@ -376,7 +376,7 @@ FormFactors find_heat_rows(const CommonOptions& common, const RowOptions& rows, 
     if (input.areas) {
         factors.areas = read_areas(*input.areas, loaded.mesh.size());
     }
-    prepare_form_factors(factors, rows.factors.repair);
+    prepare_form_factors(factors, rows.factors.repair, observer);
     const Reciprocity pairs = reciprocity(factors.matrix, factors.areas);
     if (!is_reciprocal(pairs)) {
         if (rows.factors.repair == Repair::none) {

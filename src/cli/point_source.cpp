@@ -148,6 +148,9 @@ std::optional<std::size_t> dots_column(const DotOptions& options, const PointTab
         return names.empty() ? std::nullopt : std::optional<std::size_t>(0);
     }
     const auto found = std::find(names.begin(), names.end(), options.column);
+    if (found == names.end() && options.column == "none") {
+        return std::nullopt;
+    }
     if (found == names.end()) {
         throw InvalidArgument(fmt::format("--column {}: {} has no such column of values{}", options.column,
                                           options.points->string(),

@@ -204,7 +204,7 @@ Lit light(const PointsArguments& arguments, LoadedScene& loaded, Observer& obser
             observer, terminal, nullptr);
         seconds["factors"] = rows_watch.seconds();
         const Stopwatch repair_watch;
-        prepare_form_factors(factors, arguments.rows.factors.repair);
+        prepare_form_factors(factors, arguments.rows.factors.repair, observer);
         seconds["repair"] = repair_watch.seconds();
         report_buried(row_sums(factors.matrix), terminal);
         const Solution solution =
@@ -265,7 +265,13 @@ Lit light_of_scene(const PointsArguments& arguments, Observer& observer, const T
         leave_sky(arguments, loaded.scene);
     }
     seconds["load"] = loaded.seconds;
-    find(loaded.as_read ? PatchMesh(loaded.uncut()) : loaded.mesh);
+    if (loaded.as_read && arguments.grid) {
+        Scene faces = loaded.uncut();
+        faces.surfaces = loaded.as_read->surfaces; // each with its own subdivision
+        find(PatchMesh(faces));
+    } else {
+        find(loaded.mesh);
+    }
     return heat ? light_by_heat(arguments, loaded, observer, terminal, seconds)
                 : light(arguments, loaded, observer, terminal, seconds);
 }

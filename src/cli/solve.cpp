@@ -125,12 +125,10 @@ std::vector<Phase> phases_of(const SolveArguments& arguments, const LoadedScene&
     const bool weighted =
         settings.method == Method::hemicube && plan_rows(settings, loaded.mesh.size()).weighted.has_value();
     std::vector<Phase> phases;
-    if (!has_rows(arguments)) {
-        if (weighted) {
-            phases = {Phase::visibility, Phase::pairs};
-        }
-        phases.push_back(Phase::form_factors);
+    if (weighted) {
+        phases = {Phase::visibility, Phase::pairs};
     }
+    phases.push_back(Phase::form_factors);
     if (settings.repair.value_or(weighted ? Repair::closure : Repair::none) == Repair::closure) {
         phases.push_back(Phase::closure);
     }
@@ -286,7 +284,8 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         (void)picture_cut(arguments.picture, loaded.mesh.groups());
     }
     TerminalObserver observer(terminal);
-    if (!arguments.refines() && !arguments.rows.error_target) { // which go over some phases again
+    // Refinement goes over some phases again; and stored rows may be of another preset.
+    if (!arguments.refines() && !arguments.rows.error_target && !has_rows(arguments)) {
         observer.plan(phases_of(arguments, loaded));
     }
     Report refinement;

@@ -168,8 +168,9 @@ std::vector<double> round_marks(double low, double high, std::size_t most) {
         step = round_up(1.5 * step);
     }
     std::vector<double> marks;
-    for (double k = first(step); k <= last(step); k += 1.0) {
-        marks.push_back(k * step + 0.0); // no -0
+    const double count = last(step) - first(step);
+    for (int k = 0; k <= count; ++k) { // where numbers are so close that + 1.0 is nothing, too
+        marks.push_back((first(step) + k) * step + 0.0); // no -0
     }
     if (marks.empty()) {
         marks.push_back(0.5 * (low + high));

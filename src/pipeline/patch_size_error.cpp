@@ -132,6 +132,9 @@ public:
                 field[c].end_patch(sample[k].weight, field[c].squares() - before[2 * c + 1]);
             }
         }
+        if (!observer.progress(Phase::patch_size, 100, 100)) {
+            throw Cancelled();
+        }
         PatchSizeError result;
         result.groups = group_errors(groups);
         result.patches = model_patches(sample, squares);

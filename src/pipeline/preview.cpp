@@ -79,7 +79,7 @@ std::optional<std::vector<double>> coarse_preview(const Scene& scene, const Patc
     quick.engine.jobs = 1; // quicker than starting workers
     FormFactors factors =
         compute_raw_form_factors(scene, coarse, reflecting_patches(scene, coarse), quick, preview);
-    prepare_form_factors(factors, quick.repair);
+    prepare_form_factors(factors, quick.repair, preview);
     SolverSettings rough = solver;
     rough.tolerance = std::max(rough.tolerance, coarse_tolerance);
     const Solution solution = solve_radiosity(scene, coarse, factors, rough, preview, false);

@@ -73,7 +73,8 @@ std::optional<Repair> repair_argument(const std::optional<std::string>& word) {
 }
 
 /// Prepares raw form factors, and keeps them as they are, too: a `.hff` holds raw rows.
-FactorsPointer prepared(ScenePointer scene, FormFactors raw, const FactorSettings& settings) {
+FactorsPointer prepared(ScenePointer scene, FormFactors raw, const FactorSettings& settings,
+                        Observer& observer = no_observer()) {
     auto result = std::make_shared<FactorsOfScene>();
     result->settings = settings;
     const PatchParts scene_parts = scene ? scene->parts : PatchParts();
@@ -83,7 +84,7 @@ FactorsPointer prepared(ScenePointer scene, FormFactors raw, const FactorSetting
     }
     result->factors = raw;
     result->raw = std::move(raw);
-    prepare_form_factors(result->factors, settings.repair);
+    prepare_form_factors(result->factors, settings.repair, observer);
     return result;
 }
 
@@ -115,8 +116,9 @@ form_factors(const ScenePointer& scene, const std::string& preset, std::optional
     }
     PythonObserver observer(progress);
     return run([&] {
-        return prepared(
-            scene, compute_raw_form_factors(scene->scene, scene->mesh, wanted, settings, observer), settings);
+        return prepared(scene,
+                        compute_raw_form_factors(scene->scene, scene->mesh, wanted, settings, observer),
+                        settings, observer);
     });
 }
 

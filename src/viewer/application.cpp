@@ -53,7 +53,6 @@ Application::Application(ViewerInput input, const ViewerSettings& settings)
     choices_.look.tone_mapping = input.picture.tone_mapping;
     choices_.look.outlines = input.picture.outlines;
     choices_.look.backs = input.picture.backs;
-    choices_.look.dots_column = input.dots_column;
     choices_.samples = input.picture.samples;
     choices_.cut = input.picture.cut;
     exchange(std::move(input));
@@ -78,7 +77,9 @@ void Application::exchange(ViewerInput input) {
         choices_.group.reset();
     }
     if (document_ && !again) {
-        choices_.cut.clip.reset();
+        choices_.cut = {};
+        choices_.group.reset();
+        choices_.group_search.fill('\0');
     }
     shown_group_.reset();
     choices_.measured.clear();
@@ -89,6 +90,9 @@ void Application::exchange(ViewerInput input) {
     choices_.conditions = input.heat ? input.heat->conditions : std::vector<HeatCondition>();
     inset_.reset();
     under_cursor_.reset();
+    dot_under_cursor_.reset();
+    choices_.look.dots_column =
+        document_ ? column_again(document_->input(), input, choices_.look.dots_column) : input.dots_column;
     asks_to_close_ = asks_to_close_ && again; // finer patches of the scene answer no question
     choices_.environment = input.environment();
     history_.emplace(MaterialHistory::State{choices_.materials, choices_.conditions, choices_.environment});
@@ -210,7 +214,7 @@ void Application::on_key(const KeyEvent& event) {
     } else if (choices_.walking &&
                apply_walk_key(event, walk_share * document_->input().mesh->bounds().diagonal(),
                               navigator_.orbit())) {
-        picture_changed_ = true;
+        moved();
     } else if (apply_camera_key(event, navigator_.aspect(), navigator_.orbit())) {
         picture_changed_ = true;
     } else if (!apply_look_key(event, document_->input(), choices_)) {
@@ -484,7 +488,14 @@ void Application::settle() {
     const View shown = choices_.look.shown.view;
     const bool of_patch = shown == View::row || shown == View::column;
     if (other_look || (other_patch && of_patch)) {
-        view_.show(*document_, choices_.look, choices_.picked);
+        try {
+            view_.show(*document_, choices_.look, choices_.picked);
+        } catch (const InvalidArgument& error) { // such a range, for example
+            message_ = error.what();
+            choices_.look.range.reset();
+            choices_.look.logarithmic = false;
+            view_.show(*document_, choices_.look, choices_.picked);
+        }
         values_ = shown_values(*document_, choices_.look, view_.field());
         groups_ = group_table(*document_, values_);
         constexpr std::size_t histogram_steps = 64;
@@ -573,7 +584,10 @@ void Application::describe_panels() {
         if (hides_backs_) {
             backs_note(view);
         }
-        dots_overlay(view_, document_->input(), choices_.look, dot_under_cursor_, navigator_);
+        dots_overlay(view_, document_->input(), choices_.look, dot_under_cursor_,
+                     {navigator_.cursor()[0] * view[0] / view_size()[0],
+                      navigator_.cursor()[1] * view[1] / view_size()[1]},
+                     view);
         if (inset_ && choices_.hemicube && choices_.picked && view[0] < size[0]) {
             hemicube_window(inset_->picture(), view, choices_);
         }

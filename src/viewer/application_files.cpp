@@ -18,6 +18,9 @@ namespace hemi::viewer {
 
 void Application::screenshot(const std::filesystem::path& path, std::array<std::uint32_t, 2> size,
                              std::uint32_t samples) {
+    if (view_.dots() && path.extension() == ".hdr") {
+        throw InvalidArgument("points are drawn as .png: .hdr holds light");
+    }
     const Picture picture = view_.picture(navigator_.camera(), size, samples);
     if (path.extension() == ".hdr") {
         io::write_hdr(path, picture.width, picture.height, picture.linear);
@@ -78,16 +81,11 @@ std::string Application::command_line() const {
     }
     const bool heat = look.shown.view == View::quantity && is_of_heat(look.shown.quantity);
     std::string command = heat ? document_->input().heat_command : document_->input().command;
-    if (heat && !document_->as_opened()) {
-        throw InvalidArgument(
-            "materials or environment are no longer those of the file, which `hemi heat` reads");
-    }
-    if (!heat && !saved_result_.empty()) {
+    if (!saved_result_.empty()) {
         command = "hemi render " + quoted(saved_result_.string());
     } else if (!document_->as_opened()) {
         throw InvalidArgument("materials or environment are no longer those of the file: save the result, "
-                              "then copy the command "
-                              "line");
+                              "then copy the command line");
     }
     PictureSettings picture =
         picture_settings(choices_.look, document_->input().picture,

@@ -25,7 +25,7 @@ void Application::look_under_cursor() {
         under_cursor_ = UnderCursor{patch_at(*document_->input().mesh, *point), point->position};
     }
     if (view_.dots()) {
-        dot_under_cursor_ = dot_at(*view_.dots(), navigator_.ray_under_cursor(),
+        dot_under_cursor_ = dot_at(*view_.dots(), choices_.cut, navigator_.ray_under_cursor(),
                                    under_cursor_ ? std::optional(under_cursor_->position) : std::nullopt);
     }
 }

@@ -43,15 +43,20 @@ Json point(const Vec3& p) {
 
 } // namespace
 
-Bookmarks::Bookmarks(const std::filesystem::path& scene) : file_(scene.string() + ".cameras") {
-    if (!std::filesystem::exists(file_)) {
-        return;
+Bookmarks::Bookmarks(const std::filesystem::path& scene)
+    : file_(scene.string() + ".cameras"), cameras_(read(file_)) {}
+
+Bookmarks::Cameras Bookmarks::read(const std::filesystem::path& file) {
+    Cameras cameras;
+    std::error_code unknown; // a name that no file can have
+    if (!std::filesystem::exists(file, unknown)) {
+        return cameras;
     }
-    const auto refuse = [this](const std::string& what) {
+    const auto refuse = [&file](const std::string& what) {
         throw InputError(
-            fmt::format("{}: {}; must be cameras as the window keeps them", file_.string(), what));
+            fmt::format("{}: {}; must be cameras as the window keeps them", file.string(), what));
     };
-    const std::string text = io::read_file(file_);
+    const std::string text = io::read_file(file);
     try {
         const Json json = Json::parse(text);
         if (json.at("schema") != schema) {
@@ -64,16 +69,20 @@ Bookmarks::Bookmarks(const std::filesystem::path& scene) : file_(scene.string() 
                 if (!is_usable(camera)) {
                     refuse(fmt::format("camera {} has no direction, or no field of view", number));
                 }
-                cameras_[static_cast<std::size_t>(number - 1)] = camera;
+                cameras[static_cast<std::size_t>(number - 1)] = camera;
             }
         }
     } catch (const Json::exception& error) {
         refuse(error.what());
     }
+    return cameras;
 }
 
 void Bookmarks::store(int number, const Camera& camera) {
-    std::array<std::optional<Camera>, count> cameras = cameras_;
+    if (file_.empty()) {
+        throw IoError("no camera can be kept: the file of those beside the scene is not one of cameras");
+    }
+    Cameras cameras = read(file_); // another window may have kept one
     cameras[static_cast<std::size_t>(number - 1)] = camera;
     Json json{{"schema", schema}, {"cameras", Json::object()}};
     for (std::size_t k = 0; k < cameras.size(); ++k) {

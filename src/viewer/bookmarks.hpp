@@ -23,15 +23,18 @@ public:
     [[nodiscard]] const std::optional<Camera>& camera(int number) const {
         return cameras_[static_cast<std::size_t>(number - 1)];
     }
-    /// Keeps a camera, and writes the file.
-    /// @throws IoError
+    /// Keeps a camera beside those that are in the file, and writes it.
+    /// @throws IoError; InputError where the file is no longer one of cameras
     void store(int number, const Camera& camera);
     /// Where they are kept.
     [[nodiscard]] const std::filesystem::path& file() const { return file_; }
 
 private:
+    using Cameras = std::array<std::optional<Camera>, count>;
+    static Cameras read(const std::filesystem::path& file);
+
     std::filesystem::path file_;
-    std::array<std::optional<Camera>, count> cameras_;
+    Cameras cameras_;
 };
 
 } // namespace hemi::viewer

@@ -62,7 +62,21 @@ std::optional<Dots> dots_of(const ViewerInput& input, const Look& look) {
                : std::nullopt;
 }
 
-std::optional<std::size_t> dot_at(const Dots& dots, const ViewRay& ray, const std::optional<Vec3>& surface) {
+std::optional<std::size_t> column_again(const ViewerInput& before, const ViewerInput& now,
+                                        std::optional<std::size_t> column) {
+    if (!before.points || !now.points || !column) {
+        return before.points && now.points ? std::nullopt : now.dots_column;
+    }
+    const std::string& name = before.points->columns[*column].name;
+    const auto& columns = now.points->columns;
+    const auto found = std::find_if(columns.begin(), columns.end(),
+                                    [&name](const PointTable::Column& other) { return other.name == name; });
+    return found == columns.end() ? now.dots_column
+                                  : std::optional(static_cast<std::size_t>(found - columns.begin()));
+}
+
+std::optional<std::size_t> dot_at(const Dots& dots, const PictureCut& cut, const ViewRay& ray,
+                                  const std::optional<Vec3>& surface) {
     const Vec3 way = glm::normalize(ray.direction);
     double nearest = surface ? glm::dot(*surface - ray.origin, way) + dots.radius
                              : std::numeric_limits<double>::infinity();
@@ -71,7 +85,7 @@ std::optional<std::size_t> dot_at(const Dots& dots, const ViewRay& ray, const st
         const Vec3 to = dots.positions[k] - ray.origin;
         const double along = glm::dot(to, way);
         const double beside = glm::length(to - along * way);
-        if (along > 0.0 && along < nearest && beside <= dots.radius) {
+        if (along > 0.0 && along < nearest && beside <= dots.radius && cut.keeps(dots.positions[k])) {
             nearest = along;
             found = k;
         }
@@ -108,8 +122,8 @@ std::string dots_options(const ViewerInput& input, const Look& look, std::string
         throw InvalidArgument("points are drawn by `hemi render`: save the result, then copy the command "
                               "line, or hide them");
     }
-    return " --points " + quoted(input.points_file.string()) +
-           (look.dots_column ? " --column " + quoted(input.points->columns[*look.dots_column].name) : "");
+    return " --points " + quoted(input.points_file.string()) + " --column " +
+           (look.dots_column ? quoted(input.points->columns[*look.dots_column].name) : std::string("none"));
 }
 
 void dots_section(const ViewerInput& input, Choices& choices) {
@@ -142,16 +156,17 @@ void dots_section(const ViewerInput& input, Choices& choices) {
 }
 
 void dots_overlay(const SceneView& scene, const ViewerInput& input, const Look& look,
-                  std::optional<std::size_t> under_cursor, const Navigator& navigator) {
+                  std::optional<std::size_t> under_cursor, std::array<double, 2> cursor,
+                  std::array<std::uint32_t, 2> view) {
     if (!scene.dots()) {
         return;
     }
     const FalseColours& shown = scene.dots()->shown;
     if (!shown.values.empty()) {
-        dots_legend_window({shown, scale_of(shown), "no value"}, navigator.view(), scene.field().has_value());
+        dots_legend_window({shown, scale_of(shown), "no value"}, view, scene.field().has_value());
     }
     if (under_cursor) {
-        dot_label(words_of_dot(input, look, *under_cursor), navigator.cursor(), navigator.view());
+        dot_label(words_of_dot(input, look, *under_cursor), cursor, view);
     }
 }
 

@@ -43,6 +43,12 @@ HeatProblem problem_of(const ViewerInput& input, const Light& light) {
         patch_values(*input.mesh, input.scene->materials, &Material::reflectance);
     const std::vector<double> exitance =
         patch_values(*input.mesh, input.scene->materials, &Material::exitance);
+    const std::vector<double> opened = input.environment();
+    for (std::uint32_t k = 0; k < problem.bands && !light.environment.empty() && !opened.empty(); ++k) {
+        problem.environment.resize(problem.bands, 0.0);
+        problem.environment[k] += of_band(light.environment, 0, k, channels, problem.bands) -
+                                  of_band(opened, 0, k, channels, problem.bands);
+    }
     const bool lit = !input.solution.direct.empty();
     for (std::uint32_t i = 0; i < input.mesh->size(); ++i) {
         for (std::uint32_t k = 0; k < problem.bands; ++k) {

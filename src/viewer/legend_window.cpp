@@ -139,8 +139,12 @@ void choose_range(const ColourScale& scale, const Box& box, Look& look) {
     if (ImGui::IsItemActive()) {
         ImGui::GetWindowDrawList()->AddRectFilled({box.x_of(low), box.top}, {box.x_of(high), box.bottom},
                                                   IM_COL32(255, 255, 255, 70));
-    } else if (ImGui::IsItemDeactivated() && high > low) {
-        look.range = {scale.value_at(low), scale.value_at(high)};
+    } else if (ImGui::IsItemDeactivated()) {
+        constexpr double least = 1e-6; // of the values: below that floats would not tell them apart
+        const std::array<double, 2> range{scale.value_at(low), scale.value_at(high)};
+        if (range[1] - range[0] > least * std::max(std::abs(range[0]), std::abs(range[1]))) {
+            look.range = range;
+        }
     }
 }
 

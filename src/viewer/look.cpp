@@ -40,7 +40,7 @@ ColourScale shown_scale(FalseColours& shown) {
             return shown.range ? (*shown.range)[1] : high;
         }();
         shown.logarithmic = highest > 0.0;
-        if (shown.range && !((*shown.range)[0] > 0.0)) {
+        if (shown.logarithmic && shown.range && !((*shown.range)[0] > 0.0)) {
             (*shown.range)[0] = decades * highest;
         }
     }

@@ -16,7 +16,7 @@ namespace hemi::viewer {
 namespace {
 
 constexpr ImU32 line_colour = IM_COL32(90, 220, 255, 255);
-constexpr float plot_height = 70.0F;
+constexpr float probe_height = 70.0F;
 
 /// Value of what is seen at a point of the line; not a number where there is none.
 double value_at(const ProbePoint& point, const ShownValues& values) {
@@ -44,14 +44,14 @@ void plot(const Scene& scene, const LineProbe& probe, const ShownValues& values)
     }
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
-    ImGui::InvisibleButton("plot", {width, plot_height});
+    ImGui::InvisibleButton("plot", {width, probe_height});
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner, {corner.x + width, corner.y + plot_height}, IM_COL32(40, 44, 48, 255));
+    list.AddRectFilled(corner, {corner.x + width, corner.y + probe_height}, IM_COL32(40, 44, 48, 255));
     const auto last = static_cast<float>(probe.points.size() - 1);
     const auto place = [&](std::size_t k) {
         const double share = (value_at(probe.points[k], values) - low) / (high - low);
         return ImVec2(corner.x + width * static_cast<float>(k) / last,
-                      corner.y + 2.0F + (plot_height - 4.0F) * static_cast<float>(1.0 - share));
+                      corner.y + 2.0F + (probe_height - 4.0F) * static_cast<float>(1.0 - share));
     };
     for (std::size_t k = 1; k < probe.points.size(); ++k) {
         if (!std::isnan(value_at(probe.points[k - 1], values)) &&

@@ -86,10 +86,15 @@ std::optional<std::uint32_t> SceneView::item(const Camera& camera, std::array<st
 bool SceneView::hides_backs(const Camera& camera, std::array<std::uint32_t, 2> size) {
     constexpr std::uint32_t coarser = 16;
     PictureSettings settings = this->settings({size[0] / coarser, size[1] / coarser}, 1);
-    settings.backs = false;
-    const std::vector<std::uint32_t> fronts = renderer_.items(camera, settings);
-    settings.backs = true;
-    return fronts != renderer_.items(camera, settings);
+    const auto patches = [&](bool backs) {
+        settings.backs = backs;
+        std::vector<std::uint32_t> items = renderer_.items(camera, settings);
+        for (std::uint32_t& item : items) { // those of dots stand behind all patches'
+            item = item > light_.patches.size() / 3 ? 0 : item;
+        }
+        return items;
+    };
+    return patches(false) != patches(true);
 }
 
 } // namespace hemi::viewer

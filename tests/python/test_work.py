@@ -59,7 +59,7 @@ def test_progress_tells_phases_and_their_ends(small_box):
     calls = []
     factors = hemi.form_factors(small_box, device="osmesa", progress=lambda *call: calls.append(call))
     phases = list(dict.fromkeys(phase for phase, _, _ in calls))
-    assert phases == ["visibility", "combining pairs", "form factors", "comparing rows"]
+    assert phases == ["visibility", "combining pairs", "form factors", "comparing rows", "closing rows"]
     for phase in phases[:3]:
         done = [done for name, done, _ in calls if name == phase]
         assert done == sorted(done) and done[-1] == 54
@@ -167,7 +167,7 @@ def test_true_shows_bars_by_tqdm(small_box, monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
     monkeypatch.setitem(sys.modules, "tqdm.auto", module)
     hemi.form_factors(small_box, device="osmesa", progress=True)
-    assert [bar.desc for bar in bars] == ["visibility", "combining pairs", "form factors", "comparing rows"]
+    assert [bar.desc for bar in bars] == ["visibility", "combining pairs", "form factors", "comparing rows", "closing rows"]
     assert all(bar.closed and bar.n == bar.total for bar in bars)
 
 

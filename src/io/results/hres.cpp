@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -216,7 +217,15 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
     }
     if (head.has("heat")) {
         const JsonNode heat = head.member("heat");
-        scene.thermal = Thermal{heat.member("band_limits").numbers(), {}, std::nullopt};
+        const JsonNode limits = heat.member("band_limits");
+        const std::vector<double> values = limits.numbers();
+        if (!(values.empty() || values.size() + 1 == scene.channels.size()) ||
+            !std::is_sorted(values.begin(), values.end(), std::less_equal<>()) ||
+            (!values.empty() && !(values.front() > 0.0))) {
+            limits.expect(fmt::format("none, or the {} limits between the channels, above 0 and ascending",
+                                      scene.channels.size() - 1));
+        }
+        scene.thermal = Thermal{values, {}, std::nullopt};
     }
     scene.photometric = head.has("photometric") && head.member("photometric").boolean();
     if (head.has("sun")) {
