@@ -158,6 +158,27 @@ TEST_CASE("hemi points: sky view factor and irradiance in a street, of a scene a
     }
 }
 
+TEST_CASE("hemi points: faces under a grid are cut as the command line says, also where others touch them",
+          "[cli][points]") {
+    const Directory directory;
+    Json room = cube(1);
+    for (Json& surface : room["surfaces"]) {
+        surface.erase("patches");
+    }
+    room["patch_size"] = 1e-5; // more patches than there may be
+    room["surfaces"].push_back(
+        {{"name", "post"},
+         {"material", "white"},
+         {"two_sided", true},
+         {"polygon", Json::parse("[[0.5,0.2,0],[0.5,0.8,0],[0.5,0.8,0.5],[0.5,0.2,0.5]]")}});
+    const Outcome run =
+        run_hemi(on_cpu({"points", directory.write("room.json", room), "--patch-size", "0.5", "--grid",
+                         "floor", "0.4", "0.2", "--preset", "fast", "-o", directory.path("grid.csv")}));
+    INFO(run.err);
+    CHECK(run.status == 0);
+    CHECK(directory.has("grid.csv"));
+}
+
 TEST_CASE("hemi points: a grid as table, for ParaView and as a map", "[cli][points]") {
     const Directory directory;
     const std::string scene = directory.write("cube.json", warm_cube());

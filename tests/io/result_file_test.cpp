@@ -176,6 +176,14 @@ TEST_CASE("HRES: heat has temperatures, net fluxes and its own exitance, unknown
     io::complete_solution(b, PatchMesh(b.scene, b.subdivision));
     CHECK(b.solution.exitance == exitance);
 
+    for (const std::vector<double>& limits : {std::vector{4.0, 5.0}, std::vector{-1.0}}) {
+        io::ResultFile bad = a;
+        bad.scene.thermal = Thermal{limits, {}, std::nullopt};
+        io::write_hres(folder / "limits.hres", bad);
+        require_parts(message_of<InputError>([&] { (void)io::read_hres(folder / "limits.hres"); }),
+                      {"limits.hres", "band_limits", "above 0 and ascending"});
+    }
+
     const auto refusal = [&](double temperature, double flux) {
         io::ResultFile bad = a;
         bad.solution.temperature[0] = temperature;

@@ -90,6 +90,9 @@ TEST_CASE("Viewer: the histogram is of area, and a drag over it chooses the rang
     CHECK(sum(part) == Approx(static_cast<double>(inside) / static_cast<double>(values.size())));
     CHECK(place.json("again.json")["scale"]["low"].get<double>() == low);
     CHECK(part["camera"] == whole["camera"]); // the drag was not the scene's
+    // No range that a drag can give closes the window.
+    REQUIRE(place.view("show irradiance\nrange -200 -100\nkey L\nreport negative.json\n", small) == 0);
+    CHECK(place.json("negative.json")["scale"]["logarithmic"] == false);
 }
 
 TEST_CASE("Viewer: cameras are kept beside the scene", "[viewer][gl]") {

@@ -259,7 +259,8 @@ TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat dr
         "set reflectance 0.5 lamp at 700 K\nshow temperature\nreport other.json\n"
         "set temperature 400 ceiling\nreport cool.json\nshow exitance\nreport emitted.json\n"
         "set reflectance 0.1 lamp at 700 K\n"
-        "show flux\nreport cool_flux.json\n",
+        "show flux\nreport cool_flux.json\n"
+        "show temperature\nreport dark.json\nset environment 2000\nreport sky.json\n",
         options);
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
@@ -280,6 +281,7 @@ TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat dr
               Approx(table["net_flux"][wall].get<double>()).margin(1e-6));
     }
     CHECK(place.json("kelvin.json")["unit"] == "K");
+    CHECK(mean(place.json("sky.json"), 2, 4.0) > mean(place.json("dark.json"), 2, 4.0) + 10.0); // adiabatic
     CHECK(place.json("cool.json")["values"][40] == 400.0);
     REQUIRE(place.run(fmt::format("'{}' heat room.json --device osmesa --preset fast --resolution 32 --json "
                                   "--temperature ceiling=400",
