@@ -58,6 +58,7 @@ ExitStatus bake_scene(const BakeArguments& arguments, const Outputs& outputs, co
     TerminalObserver observer(terminal);
     const auto loaded = load_scene(arguments.scene, terminal);
     (void)channels_to_show(loaded.scene.channels, arguments.picture.show, false);
+    advise_patch_size(loaded, terminal);
     FactorSettings settings = arguments.rows.factors;
     settings.estimate_error = false;
     FormFactors factors = compute_raw_form_factors(

@@ -14,7 +14,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numeric>
 #include <system_error>
 #include <utility>
 
@@ -94,7 +96,41 @@ void warn_of_turned_faces(const Scene& scene, const Terminal& terminal) {
     }
 }
 
+/// Of what the command line or the file says and nothing comes of.
+void warn_of_no_effect(const Scene& scene, const SceneOptions& options, const Terminal& terminal) {
+    if (!options.environment.empty() && scene.enclosure == Enclosure::closed) {
+        terminal.warn("--environment has no effect: the scene is closed, and nothing comes in");
+    }
+    const bool all_have_patches =
+        !scene.surfaces.empty() &&
+        std::all_of(scene.surfaces.begin(), scene.surfaces.end(),
+                    [](const Surface& surface) { return surface.patches.has_value(); });
+    if (scene.patch_size && all_have_patches) {
+        terminal.warn(fmt::format("{}: \"patch_size\" has no effect: every surface has \"patches\"",
+                                  options.path.string()));
+    }
+}
+
 } // namespace
+
+void advise_patch_size(const LoadedScene& loaded, const Terminal& terminal) {
+    constexpr std::size_t enough = 1000; // patches, to see how light changes
+    const Scene& scene = loaded.scene;
+    const auto shines = [](double value) { return value > 0.0; };
+    const bool lit = scene.sun || scene.sky ||
+                     std::any_of(scene.environment.begin(), scene.environment.end(), shines) ||
+                     std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& surface) {
+                         const std::vector<double>& exitance = scene.materials[surface.material].exitance;
+                         return std::any_of(exitance.begin(), exitance.end(), shines);
+                     });
+    if (!lit || loaded.patches().size() >= enough || !loaded.has_whole_faces()) {
+        return;
+    }
+    const double area = std::accumulate(loaded.mesh.areas().begin(), loaded.mesh.areas().end(), 0.0);
+    terminal.warn(fmt::format("every face is one patch, on which the light is one value: --patch-size {:.1g} "
+                              "makes about {} of them",
+                              std::sqrt(area / enough), count_text(enough)));
+}
 
 LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     const Stopwatch watch;
@@ -120,6 +156,7 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     if (!options.environment.empty()) {
         replace_environment(scene, options.environment);
     }
+    warn_of_no_effect(scene, options, terminal);
     PatchMesh mesh = make_mesh(scene, options);
     Subdivision subdivision = options.subdivision;
     std::optional<SceneAsRead> as_read;

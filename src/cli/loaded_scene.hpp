@@ -77,6 +77,9 @@ struct LoadedScene {
     void write_patches(const std::filesystem::path& path, const FormFactorMatrix& factors) const;
 };
 
+/// Warns where a scene that is lit has one patch a face and few of them, and proposes a size.
+void advise_patch_size(const LoadedScene& loaded, const Terminal& terminal);
+
 /// Reads the scene and cuts it into patches, after its faces were cut where they touch;
 /// `--enclosure` and `--environment` replace the scene's own.
 /// @throws InputError for the file; InvalidArgument for options that do not fit it.

@@ -274,6 +274,9 @@ ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
         adopt_mesh_of_rows(loaded, arguments.scene, *arguments.factors, arguments.parts);
     }
     seconds["load"] = loaded.seconds;
+    if (!arguments.refines() && !has_rows(arguments)) {
+        advise_patch_size(loaded, terminal);
+    }
     if (arguments.picture.output) { // tested before the work
         if (arguments.picture.quantity) {
             check_channel(loaded.scene.channels, arguments.picture.channel);

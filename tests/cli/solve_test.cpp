@@ -178,6 +178,34 @@ TEST_CASE("solve: the summary has patches, renderer, row sums, sweeps, residual,
     }
 }
 
+TEST_CASE("solve: what has no effect, and faces that are too large to show light, are warned of", "[cli]") {
+    const Directory directory;
+    Json room = cube(2);
+    const std::string scene = directory.write("room.json", room);
+    const Outcome closed = run_hemi(quick({"solve", scene, "--environment", "3"}));
+    CHECK(closed.status == 0);
+    CHECK(closed.err_has("--environment has no effect: the scene is closed"));
+    CHECK_FALSE(run_hemi(quick({"solve", scene})).err_has("has no effect"));
+    room["patch_size"] = 0.1;
+    const Outcome size = run_hemi(quick({"solve", directory.write("size.json", room)}));
+    CHECK(size.err_has("size.json: \"patch_size\" has no effect: every surface has \"patches\""));
+
+    for (Json& surface : room["surfaces"]) {
+        surface.erase("patches");
+    }
+    CHECK_FALSE(
+        run_hemi(quick({"solve", directory.write("cut.json", room)})).err_has("every face is one patch"));
+    room.erase("patch_size");
+    const std::string faces = directory.write("faces.json", room);
+    const char* const advice = "every face is one patch, on which the light is one value: --patch-size 0.08 "
+                               "makes about 1,000 of them";
+    CHECK(run_hemi(quick({"solve", faces})).err_has(advice));
+    CHECK(run_hemi(quick({"bake", faces, "-o", directory.path("a.ply")})).err_has(advice));
+    room["materials"]["lamp"]["exitance"] = 0;
+    CHECK_FALSE(
+        run_hemi(quick({"solve", directory.write("dark.json", room)})).err_has("every face is one patch"));
+}
+
 TEST_CASE("solve: the table of groups has the light of each, as the JSON has", "[cli]") {
     const Directory directory;
     Json room = cube(2); // 1 W/m² of one wall of a cube

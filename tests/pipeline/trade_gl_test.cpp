@@ -283,7 +283,9 @@ TEST_CASE("trade: smaller patches are slower and better, and the front is what n
         double last = 1.0;
         for (const Trade::Answer& answer : trade.answers) {
             const FactorSettings& settings = answer.candidate.settings;
-            if (settings.preset != preset || settings.eye_points || answer.error_target) {
+            // Other methods, for which a quick machine has time, have a preset that means nothing.
+            if (settings.method != Method::hemicube || settings.preset != preset || settings.eye_points ||
+                answer.error_target) {
                 continue;
             }
             INFO(answer.patches << " patches, " << answer.candidate.label() << ": " << answer.vertices());
