@@ -86,7 +86,9 @@ private:
 /// The unit cube seen from inside: groups floor, ceiling, left, right, front, back of n x n patches, material
 /// "white" (reflectance 0.5); the ceiling is of material "lamp" (reflectance 0, exitance 1).
 [[nodiscard]] Json cube(int n, const std::string& enclosure = "closed");
-/// The same without its ceiling.
+/// The same with three channels that differ.
+[[nodiscard]] Json coloured(int n);
+/// A cube without its ceiling.
 [[nodiscard]] Json open_cube(int n, const std::string& enclosure);
 
 // Implementation.
@@ -222,6 +224,13 @@ inline Json cube(int n, const std::string& enclosure) {
           face("back", "white", polygon("[[0,1,0],[1,1,0],[1,1,1],[0,1,1]]"), n),
           face("ceiling", "lamp", polygon("[[0,0,1],[0,1,1],[1,1,1],[1,0,1]]"), n)}},
         {"enclosure", enclosure}};
+}
+
+inline Json coloured(int n) {
+    Json scene = cube(n);
+    scene["channels"] = {"red", "green", "blue"};
+    scene["materials"]["white"]["reflectance"] = {0.7, 0.5, 0.2};
+    return scene;
 }
 
 inline Json open_cube(int n, const std::string& enclosure) {
