@@ -48,8 +48,28 @@ Outputs check_outputs(const SolveArguments& arguments) {
     return outputs;
 }
 
+/// Only rows that are neither stored nor refined may be those of clusters.
+void check_clusters(const SolveArguments& arguments) {
+    if (arguments.rows.factors.clusters != Clusters::on) {
+        return;
+    }
+    const auto refuse = [](std::string_view option, std::string_view why) {
+        throw InvalidArgument(fmt::format("--clusters on excludes {}, {}; leave one out", option, why));
+    };
+    if (arguments.factors) {
+        refuse("--factors", "as files hold factors of single patches");
+    }
+    if (arguments.refines() || arguments.rows.error_target) {
+        refuse("--error-target and --refine", "which need the pairs of patches");
+    }
+    if (arguments.rows.factors.preset == Preset::plain) {
+        refuse("--preset plain", "since clusters are made of visibility");
+    }
+}
+
 void check_input(const SolveArguments& arguments) {
     refuse_chosen_settings(arguments.common, arguments.rows);
+    check_clusters(arguments);
     if (arguments.parts && !arguments.refines() && !has_rows(arguments)) {
         throw InvalidArgument("--parts needs --error-target or --refine, by which patches are cut, or the "
                               "--factors of such patches");
@@ -264,8 +284,12 @@ Report draw(const SolveArguments& arguments, const LoadedScene& loaded, const So
 
 } // namespace
 
-ExitStatus run(const SolveArguments& arguments, const Terminal& terminal) {
-    check_input(arguments);
+ExitStatus run(const SolveArguments& given, const Terminal& terminal) {
+    check_input(given);
+    SolveArguments arguments = given;
+    if (arguments.factors || arguments.refines() || arguments.rows.error_target) {
+        arguments.rows.factors.clusters = Clusters::off;
+    }
     const Outputs outputs = check_outputs(arguments);
     Seconds seconds(
         {"load", "factors", "repair", "solve", "gather", "estimate", "search", "refine", "render"});

@@ -2,6 +2,7 @@
 
 #include "core/parallel_for.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/matrix/product.hpp"
 #include "matrix/pairs.hpp"
 
 #include <fmt/format.h>
@@ -109,6 +110,9 @@ RowSums row_sums(const FormFactorMatrix& factors) {
 
 Reciprocity reciprocity(const FormFactorMatrix& factors, std::span<const double> areas) {
     check_areas(factors, areas);
+    if (factors.clusters() != nullptr) {
+        throw InvalidArgument("rows of clusters of sources are one-way: they have no pairs to compare");
+    }
     const std::span<const RowBlock> blocks = factors.blocks();
     const std::vector<std::uint32_t> cuts = slice_rows(blocks);
     std::vector<ReciprocityTally> tallies(cuts.size() - 1, ReciprocityTally(areas));
@@ -170,9 +174,8 @@ GroupFactors group_factors(const FormFactorMatrix& factors, std::span<const doub
         }
         const RowView row = factors.row(i);
         std::fill(row_of_groups.begin(), row_of_groups.end(), 0.0);
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            row_of_groups[group_of[row.columns[k]]] += static_cast<double>(row.values[k]);
-        }
+        visit_sources(factors, row,
+                      [&](std::uint32_t j, double factor) { row_of_groups[group_of[j]] += factor; });
         const std::uint32_t g = group_of[i];
         double* const factors_of_group = result.factors.data() + std::size_t{g} * groups;
         for (std::uint32_t h = 0; h < groups; ++h) {

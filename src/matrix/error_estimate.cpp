@@ -2,6 +2,7 @@
 
 #include "core/parallel_for.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +10,9 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <numeric>
+#include <utility>
 
 namespace hemi {
 
@@ -114,6 +118,59 @@ void compare(const RowView& row, const RowView& reference, std::span<const std::
     }
 }
 
+/// A better row as far as another one tells sources apart: patches of a cluster stand together.
+class ComparableRow {
+public:
+    /// @param factors    with or without clusters
+    /// @param i          row
+    /// @param reference  without clusters; must outlive this
+    ComparableRow(const FormFactorMatrix& factors, std::uint32_t i, const FormFactorMatrix& reference)
+        : view_(reference.row(i)) {
+        if (factors.clusters() == nullptr) {
+            return;
+        }
+        const std::uint32_t size = factors.size();
+        std::vector<std::uint32_t> column_of(size);
+        std::iota(column_of.begin(), column_of.end(), 0u);
+        for (const std::uint32_t column : factors.row(i).columns) {
+            if (column >= size) {
+                for (const std::uint32_t patch : factors.clusters()->patches(column - size)) {
+                    column_of[patch] = column;
+                }
+            }
+        }
+        std::map<std::uint32_t, double> sums;
+        for (std::size_t k = 0; k < view_.columns.size(); ++k) {
+            sums[column_of[view_.columns[k]]] += static_cast<double>(view_.values[k]);
+        }
+        for (const auto& [column, sum] : sums) {
+            columns_.push_back(column);
+            values_.push_back(static_cast<float>(sum));
+        }
+        view_.columns = columns_;
+        view_.values = values_;
+    }
+    ComparableRow(const ComparableRow&) = delete;
+    ComparableRow& operator=(const ComparableRow&) = delete;
+
+    [[nodiscard]] const RowView& view() const { return view_; }
+
+private:
+    RowView view_;
+    std::vector<std::uint32_t> columns_;
+    std::vector<float> values_;
+};
+
+/// Values of the patches, with the means of the clusters of a matrix behind them.
+std::vector<double> with_clusters(const FormFactorMatrix& factors, std::vector<double> values,
+                                  std::size_t stride = 1) {
+    if (factors.clusters() != nullptr) {
+        values.resize(factors.columns() * stride);
+        factors.clusters()->fill(values, stride);
+    }
+    return values;
+}
+
 /// Rows that are in both.
 std::vector<std::uint32_t> sampled_rows(const FormFactorMatrix& factors, const FormFactorMatrix& reference) {
     if (factors.size() != reference.size()) {
@@ -203,6 +260,21 @@ double share_of(const FormFactorMatrix& factors, std::span<const std::uint32_t> 
                : static_cast<double>(columns.size()) / static_cast<double>(factors.size());
 }
 
+/// What a row gathers, less what it gathers as single patches.
+/// @param row      of single patches
+/// @param joined   the same, in columns of patches and clusters
+/// @param sources  values of both
+double inside_clusters(const RowView& row, const RowView& joined, std::span<const double> sources) {
+    const auto gather = [sources](const RowView& from) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < from.columns.size(); ++k) {
+            sum += static_cast<double>(from.values[k]) * sources[from.columns[k]];
+        }
+        return sum;
+    };
+    return gather(joined) - gather(row);
+}
+
 /// Of the irradiance sum_j F(i, j) b_j. Rows sum to what they should nearly always, so that only what differs
 /// from the mean of b counts; the sample says how much more it errs than if factors erred independently.
 Variances irradiance_variances(const FormFactorMatrix& factors, const FormFactorMatrix& reference,
@@ -218,6 +290,8 @@ Variances irradiance_variances(const FormFactorMatrix& factors, const FormFactor
     std::vector<double> weights(b.size());
     std::transform(b.begin(), b.end(), weights.begin(),
                    [even](double value) { return (value - even) * (value - even); });
+    weights = with_clusters(factors, std::move(weights));
+    const std::vector<double> sources = with_clusters(factors, {b.begin(), b.end()});
     const double share = share_of(factors, columns);
     std::vector<double> squares(sampled.size());
     double area = 0.0;
@@ -227,11 +301,15 @@ Variances irradiance_variances(const FormFactorMatrix& factors, const FormFactor
     for (std::size_t k = 0; k < sampled.size(); ++k) {
         const double counts = areas[sampled[k]];
         double error = 0.0;
-        compare(factors.row(sampled[k]), reference.row(sampled[k]), columns,
+        const ComparableRow better(factors, sampled[k], reference);
+        compare(factors.row(sampled[k]), better.view(), columns,
                 [&](std::uint32_t j, double difference, double should) {
                     squares[k] += difference * difference + rounding * should * rounding * should;
-                    error += difference * b[j];
+                    error += difference * sources[j];
                 });
+        if (factors.clusters() != nullptr) { // whose patches are not equally bright
+            error += inside_clusters(reference.row(sampled[k]), better.view(), sources);
+        }
         squares[k] /= share;
         area += counts;
         area_squares += counts * counts;
@@ -284,7 +362,8 @@ FactorErrorEstimate estimate_factor_error(const FormFactorMatrix& factors, const
     std::vector<double> largest(sampled.size());
     std::uint64_t pairs = 0;
     for (std::size_t k = 0; k < sampled.size(); ++k) {
-        compare(factors.row(sampled[k]), reference.row(sampled[k]), columns,
+        const ComparableRow better(factors, sampled[k], reference);
+        compare(factors.row(sampled[k]), better.view(), columns,
                 [&](std::uint32_t, double error, double should) {
                     squares[k] += error * error + rounding * should * rounding * should;
                     largest[k] = std::max({largest[k], std::abs(error), rounding * should});
@@ -379,6 +458,8 @@ IrradianceErrors irradiance_errors(const FormFactorMatrix& factors, const FormFa
     }
     IrradianceErrors result{sampled_rows(factors, reference), {}};
     result.errors.resize(result.rows.size() * channels);
+    const std::vector<double> sources =
+        with_clusters(factors, {radiosity.begin(), radiosity.end()}, channels);
     for (std::size_t k = 0; k < result.rows.size(); ++k) {
         const RowView row = factors.row(result.rows[k]);
         const RowView better = reference.row(result.rows[k]);
@@ -387,7 +468,7 @@ IrradianceErrors irradiance_errors(const FormFactorMatrix& factors, const FormFa
         }
         compare(row, better, {}, [&](std::uint32_t j, double difference, double /*should*/) {
             for (std::uint32_t c = 0; c < channels; ++c) {
-                result.errors[k * channels + c] += difference * radiosity[std::size_t{j} * channels + c];
+                result.errors[k * channels + c] += difference * sources[std::size_t{j} * channels + c];
             }
         });
     }

@@ -1,6 +1,7 @@
 #include "hemi/matrix/form_factor_matrix.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 
 #include <fmt/format.h>
 
@@ -55,7 +56,7 @@ void check_share(const RowBlock& block, std::uint32_t row, const char* name, dou
     }
 }
 
-void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t size) {
+void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t all_columns) {
     const std::uint32_t row = block.first_row + local;
     const std::uint64_t begin = block.begin[local];
     const std::uint64_t end = block.begin[local + 1];
@@ -69,7 +70,7 @@ void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t size) {
     // is.
     const std::uint32_t* const columns = block.columns.data();
     const float* const values = block.values.data();
-    std::uint32_t wrong = begin < end && columns[end - 1] >= size ? 1 : 0;
+    std::uint32_t wrong = begin < end && columns[end - 1] >= all_columns ? 1 : 0;
     for (std::uint64_t k = begin; k + 1 < end; ++k) {
         wrong |= columns[k] >= columns[k + 1] ? 1u : 0u;
     }
@@ -78,9 +79,9 @@ void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t size) {
     }
     for (std::uint64_t k = begin; k < end && wrong != 0; ++k) {
         const std::uint32_t column = block.columns[k];
-        if (column >= size || (k > begin && column <= block.columns[k - 1])) {
-            refuse(block,
-                   fmt::format("row {}: column {}; columns must ascend and be below {}", row, column, size));
+        if (column >= all_columns || (k > begin && column <= block.columns[k - 1])) {
+            refuse(block, fmt::format("row {}: column {}; columns must ascend and be below {}", row, column,
+                                      all_columns));
         }
         if (!(block.values[k] >= 0.0F) || !std::isfinite(block.values[k])) {
             refuse(block, fmt::format("F({}, {}) = {}; it must be finite and not negative", row, column,
@@ -99,7 +100,15 @@ double RowView::sum() const {
     return sum;
 }
 
-FormFactorMatrix::FormFactorMatrix(std::uint32_t size) : size_(size) {
+FormFactorMatrix::FormFactorMatrix(std::uint32_t size, std::shared_ptr<const SourceClusters> clusters)
+    : size_(size), columns_(size), clusters_(std::move(clusters)) {
+    if (clusters_ != nullptr) {
+        if (clusters_->size() != size) {
+            throw InvalidArgument(fmt::format("{} rows and clusters of {} patches; it must be as many", size,
+                                              clusters_->size()));
+        }
+        columns_ += static_cast<std::uint32_t>(clusters_->nodes().size());
+    }
     blocks_.resize(size / block_rows + (size % block_rows != 0 ? 1 : 0));
     std::uint32_t first_row = 0;
     for (RowBlock& block : blocks_) {
@@ -164,7 +173,7 @@ std::uint64_t FormFactorMatrix::memory_bytes() const noexcept {
 void FormFactorMatrix::set_block(RowBlock block) {
     check_shape(block, size_);
     for (std::uint32_t local = 0; local < block.rows(); ++local) {
-        check_row(block, local, size_);
+        check_row(block, local, columns_);
     }
     blocks_[block.first_row / block_rows] = std::move(block);
 }

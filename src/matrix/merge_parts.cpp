@@ -2,6 +2,7 @@
 
 #include "core/parallel_for.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/matrix/product.hpp"
 
 #include <fmt/format.h>
 
@@ -30,13 +31,13 @@ public:
              known&& is_left ? std::span<const std::uint32_t>(parts) : std::span<const std::uint32_t>()) {
             const double share = factors_.areas[part] / areas_[patch];
             const RowView row = factors_.matrix.row(part);
-            for (std::size_t k = 0; k < row.columns.size(); ++k) {
-                const std::uint32_t column = factors_.parts.patch_of[row.columns[k]];
-                if (sums_[column] == 0.0 && row.values[k] > 0.0f) {
+            visit_sources(factors_.matrix, row, [&](std::uint32_t source, double factor) {
+                const std::uint32_t column = factors_.parts.patch_of[source];
+                if (sums_[column] == 0.0 && factor > 0.0) {
                     columns_.push_back(column);
                 }
-                sums_[column] += share * row.values[k];
-            }
+                sums_[column] += share * factor;
+            });
             environment += share * row.environment;
             blocked += share * row.blocked;
         }

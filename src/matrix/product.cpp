@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace hemi {
 
@@ -15,6 +16,13 @@ void multiply(const FormFactorMatrix& factors, std::span<const double> values, s
     if (values.size() != size || product.size() != size) {
         throw InvalidArgument(fmt::format("a product of {} rows in {} channels, from {} values into {}",
                                           factors.size(), channels, values.size(), product.size()));
+    }
+    std::vector<double> with_means;
+    if (factors.clusters() != nullptr) {
+        with_means.assign(values.begin(), values.end());
+        with_means.resize(std::size_t{factors.columns()} * channels);
+        factors.clusters()->fill(with_means, channels);
+        values = with_means;
     }
     parallel_for(factors.size(), FormFactorMatrix::block_rows, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

@@ -195,6 +195,16 @@ RepairReport repair(FormFactorMatrix& factors, std::span<const double> areas, Re
     RepairReport report;
     report.repair = repair;
     report.row_error_before = report.row_error_after = row_error(factors);
+    if (factors.clusters() != nullptr) {
+        if (repair != Repair::none) {
+            throw InvalidArgument(
+                fmt::format("repair {}: rows of clusters of sources balance already, and are "
+                            "reciprocal only near each other; leave it out",
+                            to_word(repair)),
+                {"repair", "clusters"});
+        }
+        return report;
+    }
     report.reciprocity_before = report.reciprocity_after = reciprocity(factors, areas);
     if (repair == Repair::none) {
         return report;

@@ -6,6 +6,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/engine/exchange_area.hpp"
+#include "hemi/matrix/product.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "pipeline/point_daylight.hpp"
 
@@ -68,9 +69,8 @@ public:
         }
         const Eyes eyes = eyes_of(i);
         SkyMoments hidden;
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            hidden += static_cast<double>(row.values[k]) * behind(i, eyes, row.columns[k]);
-        }
+        visit_sources(factors_, row,
+                      [&](std::uint32_t j, double factor) { hidden += factor * behind(i, eyes, j); });
         return PointDaylight::split(row.environment, row.blocked, open_sky(mesh_.normal(i), up_), hidden);
     }
 

@@ -3,6 +3,7 @@
 #include "hemi/core/buried.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/engine/leaks.hpp"
+#include "hemi/matrix/product.hpp"
 #include "hemi/scene/near_surface.hpp"
 
 #include <fmt/format.h>
@@ -79,12 +80,11 @@ void examine_rows(Diagnosis& diagnosis, const FormFactorMatrix& factors, double 
 std::vector<bool> seen_patches(const FormFactorMatrix& factors) {
     std::vector<bool> seen(factors.size(), false);
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        const RowView row = factors.row(i);
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            if (row.values[k] > 0.0f) {
-                seen[row.columns[k]] = true;
+        visit_sources(factors, factors.row(i), [&seen](std::uint32_t j, double factor) {
+            if (factor > 0.0) {
+                seen[j] = true;
             }
-        }
+        });
     }
     return seen;
 }

@@ -4,6 +4,7 @@
 #include "hemi/core/interrupt.hpp"
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/core/text.hpp"
+#include "hemi/engine/clustered_rows.hpp"
 #include "hemi/engine/reference_rows.hpp"
 #include "hemi/engine/touching_faces.hpp"
 #include "hemi/io/factor_file.hpp"
@@ -21,7 +22,7 @@ namespace {
 // Relative error of unoccluded factors by the exact rule, see RepairSettings.
 constexpr double exact_unoccluded_error = 3e-5;
 
-/// Whether the table of pairs and the matrix fit; says so where they do not.
+/// Whether the table of pairs and the matrix fit; says so where they do not, and what is done instead.
 bool pairs_fit(VisibilityProvider& visibility, std::span<const std::uint32_t> patches,
                const FactorSettings& settings, Observer& observer) {
     const bool sample = patches.size() > unsampled_rows;
@@ -35,12 +36,14 @@ bool pairs_fit(VisibilityProvider& visibility, std::span<const std::uint32_t> pa
     if (estimate.memory_bytes <= memory_limit(settings)) {
         return true;
     }
-    observer.warning(
-        fmt::format("preset {} would need {} for the pairs of {} patches; the limit is {}. Plain "
-                    "hemicube rows are computed instead",
-                    to_word(settings.preset), memory_text(estimate.memory_bytes),
-                    count_text(visibility.size()), memory_limit_text(settings)),
-        "max-memory");
+    const std::string need = fmt::format(
+        "preset {} would need {} for the pairs of {} patches; the limit is {}", to_word(settings.preset),
+        memory_text(estimate.memory_bytes), count_text(visibility.size()), memory_limit_text(settings));
+    if (settings.clusters == Clusters::automatic) {
+        observer.note(fmt::format("{}. Far patches are seen in clusters", need));
+    } else {
+        observer.warning(fmt::format("{}. Plain hemicube rows are computed instead", need), "max-memory");
+    }
     return false;
 }
 
@@ -72,13 +75,39 @@ FormFactors compute_plain_rows(const Scene& scene, const PatchMesh& mesh,
     return factors;
 }
 
+FormFactors compute_rows_of_clusters(const Scene& scene, const PatchMesh& mesh,
+                                     std::span<const std::uint32_t> patches, const FactorSettings& settings,
+                                     Observer& observer) {
+    const RowPlan plan = plan_clustered_rows(settings, mesh.size());
+    const auto engine = make_visibility_provider(mesh, plan.hemicube, settings);
+    FormFactors factors = describe_form_factors(scene, mesh, settings);
+    factors.provenance.eye_points = plan.hemicube.eye_points;
+    factors.provenance.shadow_rays = plan.weighted->shadow_rays;
+    Computation<VisibilityRow> computation(factors, *engine, observer, nullptr, {});
+    ClusterSettings clusters;
+    clusters.rule = factors.provenance.exchange_rule;
+    clusters.opening = cluster_opening(settings.cluster_error);
+    clusters.max_memory = memory_limit(settings);
+    factors.matrix = compute_clustered(computation.rows(), mesh, patches, clusters, scene.enclosure,
+                                       computation.timed_progress(Phase::visibility));
+    computation.finish(mesh, patches.size());
+    return factors;
+}
+
 FormFactors compute_visibility_weighted_rows(const Scene& scene, const PatchMesh& mesh,
                                              std::span<const std::uint32_t> patches,
                                              const FactorSettings& settings, Observer& observer,
                                              RowCheckpoint* checkpoint) {
+    if (settings.clusters == Clusters::on) {
+        return compute_rows_of_clusters(scene, mesh, patches, settings, observer);
+    }
     const RowPlan plan = plan_rows(settings, mesh.size());
     const auto engine = make_visibility_provider(mesh, plan.hemicube, settings);
     if (!pairs_fit(*engine, patches, settings, observer)) {
+        if (settings.clusters == Clusters::automatic) {
+            stop_if_interrupted();
+            return compute_rows_of_clusters(scene, mesh, patches, settings, observer);
+        }
         FactorSettings plain = settings;
         plain.preset = Preset::plain;
         return compute_plain_rows(scene, mesh, patches, plain, observer, checkpoint);
@@ -159,8 +188,9 @@ FormFactors compute_form_factors(const Scene& scene, const PatchMesh& mesh, Pres
 void prepare_form_factors(FormFactors& factors, std::optional<Repair> wanted, Observer& observer) {
     if (!factors.repair) {
         mark_touching_faces_buried(factors.matrix, factors.touching, factors.enclosure);
-        const Repair chosen =
-            wanted.value_or(factors.matrix.has_visibility() ? Repair::closure : Repair::none);
+        const Repair chosen = wanted.value_or(
+            factors.matrix.has_visibility() && factors.matrix.clusters() == nullptr ? Repair::closure
+                                                                                    : Repair::none);
         RepairSettings settings;
         if (factors.provenance.exchange_rule == ExchangeRule::exact) {
             settings.unoccluded_error = exact_unoccluded_error;

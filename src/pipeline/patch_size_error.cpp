@@ -111,7 +111,9 @@ public:
         direct_ = direct_irradiances(scene_, fine, factors, rows);
         rows_ = std::move(rows);
         near_ = patches_near_surfaces(mesh_);
-        find_importance(bytes_of(rows_.size(), fine.size()), settings, observer);
+        if (factors_.matrix.clusters() == nullptr) { // one-way rows cannot be solved backwards
+            find_importance(bytes_of(rows_.size(), fine.size()), settings, observer);
+        }
         find_variation(fine, parents);
         std::vector<SampledErrors> vertices(channels_);
         std::vector<SampledErrors> field(channels_);

@@ -89,6 +89,17 @@ RowPlan plan_rows(const FactorSettings& settings, std::uint32_t patches) {
     return plan;
 }
 
+RowPlan plan_clustered_rows(const FactorSettings& settings, std::uint32_t patches) {
+    RowPlan plan = plan_rows(settings, patches);
+    if (!settings.eye_points && settings.preset == Preset::standard) {
+        plan.hemicube.eye_points = eye_points_for(standard_hemicubes, patches, 1, 16);
+    }
+    if (plan.weighted) {
+        plan.weighted->shadow_rays = 0;
+    }
+    return plan;
+}
+
 BaselineSettings plan_baseline(const FactorSettings& settings) {
     if (settings.method == Method::hemicube) {
         throw InvalidArgument("hemicube is no baseline method", {"method"});

@@ -7,7 +7,11 @@
 #include <hwy/foreach_target.h>
 
 // Must come after foreach_target.h.
+#include "hemi/matrix/source_clusters.hpp"
+
 #include <hwy/highway.h>
+
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace hemi::HWY_NAMESPACE {
@@ -65,6 +69,18 @@ HWY_AFTER_NAMESPACE();
 namespace hemi {
 
 HWY_EXPORT(sum_all);
+
+ChannelField with_clusters(ChannelField field, const FormFactorMatrix& factors) {
+    field.resize(factors.columns());
+    fill_clusters(field, factors);
+    return field;
+}
+
+void fill_clusters(ChannelField& field, const FormFactorMatrix& factors) {
+    if (factors.clusters() != nullptr) {
+        factors.clusters()->fill(field.values(), field.stride());
+    }
+}
 
 void row_product(const RowView& row, const ChannelField& x, double* sums) {
     HWY_DYNAMIC_DISPATCH(sum_all)(row, x.patch(0), x.stride(), sums);

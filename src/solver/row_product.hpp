@@ -21,6 +21,9 @@ public:
         return channels <= 2 ? channels : (std::size_t{channels} + 3) / 4 * 4;
     }
 
+    /// Gets values for more patches, 0, or loses some.
+    void resize(std::uint32_t patches) { values_.resize(std::size_t{patches} * stride_, 0.0); }
+
     [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
     [[nodiscard]] double* patch(std::uint32_t i) { return values_.data() + i * stride_; }
     [[nodiscard]] const double* patch(std::uint32_t i) const { return values_.data() + i * stride_; }
@@ -31,6 +34,12 @@ private:
     std::size_t stride_;
     std::vector<double> values_;
 };
+
+/// The field with the means of the clusters of a matrix, if it has any, behind the values of the patches:
+/// what rows of clusters are multiplied by.
+[[nodiscard]] ChannelField with_clusters(ChannelField field, const FormFactorMatrix& factors);
+/// Finds these means again.
+void fill_clusters(ChannelField& field, const FormFactorMatrix& factors);
 
 /// Sums F(i, j)·x_j over the entries of a row, per channel, by the best instruction set that the processor
 /// has: the same bits by all of them.

@@ -98,6 +98,16 @@ Choice choose(const RadiosityProblem& problem, const SolverSettings& settings, d
         }
         return sweeps(dominance_text + ", but conjugate gradients need areas, which are not known");
     }
+    if (problem.factors->clusters() != nullptr) {
+        if (asked) {
+            throw InvalidArgument(
+                "conjugate gradients need reciprocal rows, and those of clusters of sources "
+                "are not; use Gauss-Seidel, which does not need them",
+                {"clusters", "solver"});
+        }
+        return sweeps(dominance_text + ", but rows of clusters of sources are not reciprocal, as conjugate "
+                                       "gradients need them");
+    }
     const Reciprocity pairs = reciprocity(*problem.factors, problem.areas);
     if (is_reciprocal(pairs)) {
         return {SolverMethod::conjugate_gradient,
@@ -161,6 +171,7 @@ std::vector<double> irradiance(const RadiosityProblem& problem, std::span<const 
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
         std::copy_n(radiosity.data() + std::size_t{i} * channels, channels, field.patch(i));
     }
+    field = with_clusters(std::move(field), factors);
     std::vector<double> sums(field.stride());
     std::vector<double> result;
     result.reserve(radiosity.size());

@@ -23,6 +23,7 @@ public:
 
     /// One sweep over all rows: reads `read`, writes `written` (the same field for Gauss–Seidel).
     Change sweep(ChannelField& read, ChannelField& written) {
+        fill_clusters(read, system_.factors()); // as they were before the sweep
         const std::uint32_t channels = system_.channels();
         std::vector<double> squares(channels, 0.0);
         std::vector<double> value_squares(channels, 0.0);
@@ -55,7 +56,8 @@ public:
     }
 
     /// The worst channel's ||E' - (I - rho F) B|| / ||E'||.
-    double residual(const ChannelField& radiosity) {
+    double residual(ChannelField& radiosity) {
+        fill_clusters(radiosity, system_.factors());
         std::vector<double> squares(system_.channels(), 0.0);
         for (std::uint32_t i = 0; i < system_.size(); ++i) {
             row_product(system_.factors().row(i), radiosity, sums_.data());
@@ -125,7 +127,8 @@ ChannelField solve_by_sweeps(const RadiositySystem& system, const SolverRun& run
     const SolverSettings& settings = run.settings;
     Solution& solution = run.solution;
     Sweeper sweeper(system);
-    ChannelField radiosity = settings.start.empty() ? system.source() : system.scaled(settings.start);
+    ChannelField radiosity = with_clusters(
+        settings.start.empty() ? system.source() : system.scaled(settings.start), system.factors());
     const bool jacobi = solution.method == SolverMethod::jacobi;
     ChannelField previous = jacobi ? radiosity : ChannelField(0, system.channels());
 

@@ -41,6 +41,7 @@ struct Reciprocity {
 /// Compares both directions of all pairs. Memory: O(N). The same bits on any number of threads.
 /// @param factors  N rows
 /// @param areas    N areas
+/// @throws InvalidArgument for clusters of sources, which see nothing
 [[nodiscard]] Reciprocity reciprocity(const FormFactorMatrix& factors, std::span<const double> areas);
 
 /// Whether A_i F(i, j) and A_j F(j, i) differ by no more than the rounding of both to floats.

@@ -2,10 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace hemi {
+
+class SourceClusters;
 
 /// Visibility of a pair of patches as it is stored beside its factor: V = code / visibility_clear.
 /// Only pairs of which no sample was hidden are clear; all others are kept below.
@@ -42,17 +46,26 @@ struct RowBlock {
 
 /// Form factors F(i, j) of N patches: compressed sparse rows (float32 values, 32-bit columns) in independent
 /// blocks of `block_rows` rows, with the balance of every row in double.
-/// Memory: 8 bytes an entry (9 with visibility) plus about 25 bytes a row.
+///
+/// In scenes of very many patches, far sources may stand together in clusters: columns from N on are the
+/// nodes of SourceClusters. Such factors are neither square nor reciprocal, but the rows balance as others
+/// do. Memory: 8 bytes an entry (9 with visibility) plus about 25 bytes a row.
 class FormFactorMatrix {
 public:
     /// Rows in every block but the last.
     static constexpr std::uint32_t block_rows = 64;
 
     /// A matrix whose rows are all unknown.
-    explicit FormFactorMatrix(std::uint32_t size);
+    /// @param size      N
+    /// @param clusters  of its N patches that columns may be; null: columns are patches
+    explicit FormFactorMatrix(std::uint32_t size, std::shared_ptr<const SourceClusters> clusters = nullptr);
 
     /// N, the number of patches.
     [[nodiscard]] std::uint32_t size() const noexcept { return size_; }
+    /// Clusters that columns from N on stand for, or null.
+    [[nodiscard]] const std::shared_ptr<const SourceClusters>& clusters() const noexcept { return clusters_; }
+    /// Number of columns: N, and one for every cluster.
+    [[nodiscard]] std::uint32_t columns() const noexcept { return columns_; }
     /// Row i, valid until its block is replaced; empty if it is not known.
     [[nodiscard]] RowView row(std::uint32_t i) const;
     /// Whether row i was computed; `solve` leaves out rows that the scene does not require.
@@ -78,6 +91,8 @@ public:
 
 private:
     std::uint32_t size_;
+    std::uint32_t columns_;
+    std::shared_ptr<const SourceClusters> clusters_;
     std::vector<RowBlock> blocks_;
 };
 

@@ -1,11 +1,32 @@
 #pragma once
 
 #include "hemi/matrix/form_factor_matrix.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 namespace hemi {
+
+/// Calls `visit(j, F(i, j))` for the entries of a row. What comes from a cluster of patches is shared out
+/// among them by their areas; then patches come in no order, and one of area 0 may come with 0.
+template <class Visit>
+void visit_sources(const FormFactorMatrix& factors, const RowView& row, const Visit& visit) {
+    const std::uint32_t patches = factors.size();
+    for (std::size_t k = 0; k < row.columns.size(); ++k) {
+        const auto value = static_cast<double>(row.values[k]);
+        if (row.columns[k] < patches) {
+            visit(row.columns[k], value);
+            continue;
+        }
+        const std::uint32_t cluster = row.columns[k] - patches;
+        const SourceClusters& clusters = *factors.clusters();
+        for (const std::uint32_t j : clusters.patches(cluster)) {
+            visit(j, value * clusters.share(j, cluster));
+        }
+    }
+}
 
 /// F X: of radiosities X the irradiance that comes from patches. Sums in double, in column order: the same
 /// bits on any number of threads. Rows that are not known give 0.

@@ -81,7 +81,9 @@ struct RepairReport {
 /// @param repair    what is made true; none only measures
 /// @param settings  tolerances and limits
 /// @param progress  of closure, an estimate in per cent
-/// @throws InvalidArgument for areas or settings that do not fit; Cancelled, after which there are no rows
+/// @throws InvalidArgument for areas or settings that do not fit, and for all but `none` where far sources
+/// are
+///   in clusters; Cancelled, after which there are no rows
 RepairReport repair(FormFactorMatrix& factors, std::span<const double> areas, Repair repair,
                     const RepairSettings& settings = {}, const Progress& progress = {});
 

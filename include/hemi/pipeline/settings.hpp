@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/core/names.hpp"
 #include "hemi/engine/baselines.hpp"
 #include "hemi/engine/engine.hpp"
 #include "hemi/engine/point_rows.hpp"
@@ -15,6 +16,21 @@
 
 namespace hemi {
 
+/// Where far sources of light stand together in clusters, see SourceClusters.
+enum class Clusters {
+    off,       ///< nowhere
+    automatic, ///< where the pairs of all patches do not fit into the memory
+    on,        ///< in any scene
+};
+
+/// Words of Clusters.
+template <>
+struct Names<Clusters> {
+    /// Every value with its word.
+    static constexpr NamedValue<Clusters> table[] = {
+        {Clusters::off, "off"}, {Clusters::automatic, "auto"}, {Clusters::on, "on"}};
+};
+
 /// How form factors are wanted. An empty optional is the preset's own, or the method's own.
 struct FactorSettings {
     Preset preset = Preset::standard;         ///< of hemicubes
@@ -27,7 +43,9 @@ struct FactorSettings {
     bool merge_lattices = true;               ///< draw coplanar lattices of patches as one polygon
     /// What is enforced on F; empty: reciprocity and closure where factors have visibility, else nothing.
     std::optional<Repair> repair;
-    bool estimate_error = true;              ///< computes better rows of a sample, about a tenth of the work
+    bool estimate_error = true;        ///< computes better rows of a sample, about a tenth of the work
+    Clusters clusters = Clusters::off; ///< of far sources; not every use of form factors can have them
+    double cluster_error = 1e-3; ///< what clusters may change the light that is gathered by, relative, rms
     std::optional<std::uint64_t> max_memory; ///< bytes; empty: 80 % of what is free
     /// Device and workers. An empty worker_program stands for find_worker_program() here.
     EngineSettings engine;
@@ -43,6 +61,9 @@ struct RowPlan {
 /// large, sample points matter most; where they are many and small, texels do: presets share a number of
 /// hemicubes out among the patches.
 [[nodiscard]] RowPlan plan_rows(const FactorSettings& settings, std::uint32_t patches);
+/// The same where far patches are seen in clusters, which many patches make up for single ones: fewer sample
+/// points are enough, and no pair gets shadow rays.
+[[nodiscard]] RowPlan plan_clustered_rows(const FactorSettings& settings, std::uint32_t patches);
 /// The same for a baseline method.
 /// @throws InvalidArgument if the method is hemicube
 [[nodiscard]] BaselineSettings plan_baseline(const FactorSettings& settings);

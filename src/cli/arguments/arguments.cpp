@@ -150,6 +150,22 @@ void add_max_memory(CLI::App& app, RowOptions& rows) {
                });
 }
 
+/// Far sources taken together. After add_rows and add_estimate.
+void add_clusters(CLI::App& app, RowOptions& rows) {
+    rows.factors.clusters = Clusters::automatic;
+    Options options(app, "Form factors");
+    options
+        .choice<Clusters>("--clusters", "WHEN",
+                          "far patches are seen in clusters, which takes less memory: auto (where the pairs "
+                          "of all patches do not fit), on or off",
+                          rows.factors.clusters)
+        ->excludes(app.get_option("--method"));
+    options.value("--cluster-error", "T", "what clusters may change the gathered light by, relative (0.1%)",
+                  [&rows](const std::string& text) {
+                      rows.factors.cluster_error = parse_share("--cluster-error", text);
+                  });
+}
+
 void add_environment(CLI::App& app, SceneOptions& scene) {
     Options options(app, "Scene");
     options.value("--environment", "E[,E...]",
@@ -184,6 +200,7 @@ void add_solve(CLI::App& app, SolveArguments& a) {
     add_rows(app, a.rows);
     add_repair(app, a.rows.factors.repair);
     add_estimate(app, a.rows);
+    add_clusters(app, a.rows);
     add_refinement(app, a.rows, a.refinement, true);
     Options(app, "Refinement")
         .flag("--parts", a.parts,

@@ -65,7 +65,11 @@ Report repair_report(const FormFactors& factors, double seconds) {
     const Reciprocity& pairs_before = repair.reciprocity_before;
     const Reciprocity& pairs_after = repair.reciprocity_after;
     Report report;
-    if (repair.repair == Repair::none) {
+    if (factors.matrix.clusters() != nullptr) {
+        report.add("repair", fmt::format("none; far patches in clusters, near pairs reciprocal; largest row "
+                                         "imbalance {:.2g}",
+                                         rows_before.max));
+    } else if (repair.repair == Repair::none) {
         report.add("repair", fmt::format("none; largest row imbalance {:.2g}, reciprocity error {:.2g} "
                                          "(relative, rms)",
                                          rows_before.max, pairs_before.relative_rms));

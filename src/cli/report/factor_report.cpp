@@ -34,7 +34,9 @@ Report entries_report(const FormFactorMatrix& matrix, const std::string& remark 
     report.add(
         "entries",
         fmt::format("{}{}, {}", count_text(matrix.entries()), remark, memory_text(matrix.memory_bytes())),
-        {{"entries", matrix.entries()}, {"memory", matrix.memory_bytes()}});
+        {{"entries", matrix.entries()},
+         {"memory", matrix.memory_bytes()},
+         {"clusters", matrix.clusters() != nullptr}});
     return report;
 }
 
@@ -79,7 +81,8 @@ Report rows_report(const FormFactors& factors, const RowSums& sums, const Enclos
     Report report;
     report.add("renderer", factors.provenance.renderer, {{"renderer", factors.provenance.renderer}});
     report.add("hemicubes", hemicubes_text(factors));
-    report.add(entries_report(matrix, fmt::format(" ({:.0f} a row)", per_row)));
+    report.add(entries_report(matrix, fmt::format(" ({:.0f} a row{})", per_row,
+                                                  matrix.clusters() != nullptr ? ", in clusters" : "")));
     report.add(row_sum_report(sums));
     report.add("",
                fmt::format("share to the environment up to {}, to back faces up to {}{}",

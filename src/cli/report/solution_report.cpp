@@ -366,14 +366,14 @@ Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const
     report.json.update(light.json);
     report.json.update(group_means_json(loaded, factors.matrix, solution));
     report.json["reciprocity"] =
-        factors.matrix.all_known()
+        factors.matrix.all_known() && factors.matrix.clusters() == nullptr
             ? reciprocity_json(factors.repair->reciprocity_after, factors.parts.patch_of)
             : Json(nullptr);
     report.select("hemi/solve/1",
                   {"renderer",       "patches",  "parts",       "channels", "groups",     "areas",
                    "radiosity",      "exitance", "environment", "blocked",  "light",      "weights",
                    "solver",         "row_sum",  "reciprocity", "repair",   "chosen_for", "error",
-                   "error_estimate", "balance",  "photometric", "seconds"});
+                   "error_estimate", "balance",  "photometric", "seconds",  "clusters"});
     return report;
 }
 

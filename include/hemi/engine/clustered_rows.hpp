@@ -1,0 +1,49 @@
+#pragma once
+
+#include "hemi/core/enclosure.hpp"
+#include "hemi/core/progress.hpp"
+#include "hemi/engine/visibility_provider.hpp"
+#include "hemi/matrix/form_factor_matrix.hpp"
+#include "hemi/matrix/provenance.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace hemi {
+
+/// How far sources are taken together.
+struct ClusterSettings {
+    ExchangeRule rule = ExchangeRule::standard; ///< of F0
+    /// A cluster is far where its radius is below this share of its distance from the receivers.
+    double opening = 0.2;
+    std::uint64_t max_memory = ~std::uint64_t{0}; ///< bytes that the rows may take
+};
+
+/// The opening with which clusters change the light that rows gather by about so much, relative, rms, where
+/// patches near each other differ most: lamps strewn over a city, 1.2e-2 with 0.66 and 2.5e-2 with 1.1. Under
+/// a bright sky it is a tenth of that.
+/// @param error  above 0
+[[nodiscard]] double cluster_opening(double error);
+
+/// Form factors as unoccluded factors times visibility in scenes where not all pairs fit into memory.
+///
+/// F(i, j) = F0(i, j) V(i, j) as in compute_visibility_weighted(). Pairs near each other are found both ways,
+/// so that they are reciprocal. What is far is found one way, and stands together in clusters of patches that
+/// look about the same way (SourceClusters): a row has some hundred entries more or less however many patches
+/// there are. Patches that no texel covers are as visible as the others of their cluster. Rows balance: where
+/// they see the environment of an open scene, it gets what is left of 1; else all factors are changed as
+/// little as makes up for it, by their variances (Repair::closure, of the near pairs).
+/// @param visibility   computes rows of visibility
+/// @param mesh         its N patches
+/// @param patches      whose rows are wanted, ascending; all others stay unknown
+/// @param settings     how
+/// @param enclosure    as the scene says
+/// @param progress     called after every row; may be empty
+/// @throws Cancelled; OutOfMemory if the rows do not fit
+[[nodiscard]] FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMesh& mesh,
+                                                 std::span<const std::uint32_t> patches,
+                                                 const ClusterSettings& settings, Enclosure enclosure,
+                                                 const Progress& progress = {});
+
+} // namespace hemi

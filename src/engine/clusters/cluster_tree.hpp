@@ -1,0 +1,58 @@
+#pragma once
+
+#include "hemi/core/geometry.hpp"
+#include "hemi/matrix/source_clusters.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// Where a cluster lies, and what it looks at.
+struct ClusterShape {
+    Vec3 centre;               ///< of a sphere that holds its patches
+    double radius;             ///< of that sphere, scene units; not smaller than that of a child
+    Vec3 axis;                 ///< mean direction of the normals
+    double cone;               ///< largest angle between a normal and the axis, radians
+    bool one_direction = true; ///< whether the cone is narrow enough for one source
+};
+
+/// Clusters of the patches of a mesh by direction and place. A receiver sees a patch far away in the largest
+/// cluster that is small and far enough to be one source. What is near is so both ways, so that pairs near
+/// each other can be made reciprocal.
+class ClusterTree {
+public:
+    explicit ClusterTree(const PatchMesh& mesh);
+
+    /// For a matrix.
+    [[nodiscard]] const std::shared_ptr<const SourceClusters>& clusters() const noexcept { return clusters_; }
+    [[nodiscard]] const ClusterShape& shape(std::uint32_t node) const { return shapes_[node]; }
+    /// Of the sphere about a patch, scene units.
+    [[nodiscard]] double radius_of(std::uint32_t patch) const { return shapes_[leaf_of_[patch]].radius; }
+    /// Position of a patch in SourceClusters::order().
+    [[nodiscard]] std::uint32_t position(std::uint32_t patch) const { return position_[patch]; }
+
+    /// One source of a receiver, or a patch near it.
+    struct Part {
+        std::uint32_t node; ///< a leaf where it is near
+        bool far;
+    };
+    /// How a patch sees all patches, itself among them: nodes in the order of their patches, which make up
+    /// the whole tree.
+    /// @param opening  a cluster is far where its radius and the patch's are below this share of the gap
+    /// between
+    ///   their spheres
+    /// @param parts    overwritten
+    void seen_from(std::uint32_t patch, double opening, std::vector<Part>& parts) const;
+
+private:
+    std::vector<ClusterShape> shapes_;
+    std::vector<std::uint32_t> position_;
+    std::vector<std::uint32_t> leaf_of_; ///< of a patch
+    std::shared_ptr<const SourceClusters> clusters_;
+};
+
+} // namespace hemi

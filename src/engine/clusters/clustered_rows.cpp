@@ -1,0 +1,450 @@
+#include "hemi/engine/clustered_rows.hpp"
+
+#include "core/parallel_for.hpp"
+#include "engine/clusters/cluster_tree.hpp"
+#include "engine/visibility_weighted/factor_assembly.hpp"
+#include "engine/visibility_weighted/pair_visibility.hpp"
+#include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
+#include "hemi/engine/exchange_area.hpp"
+#include "hemi/matrix/repair.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace hemi {
+
+namespace {
+
+/// What is known of one source of a row.
+struct Entry {
+    std::uint32_t column;
+    float value;
+    std::uint8_t visibility;
+};
+
+/// One row while all are computed.
+struct Row {
+    std::vector<Entry> near; ///< patches, ascending
+    std::vector<Entry> far;  ///< clusters, ascending
+    double environment = 0.0;
+    double blocked = 0.0;
+
+    [[nodiscard]] std::size_t bytes() const {
+        return sizeof(Row) + (near.capacity() + far.capacity()) * sizeof(Entry);
+    }
+};
+
+/// A row of visibility, kept.
+struct KeptRow {
+    std::uint32_t patch = 0;
+    std::vector<std::uint32_t> columns;
+    std::vector<float> shares;
+    std::vector<std::uint8_t> texels;
+    double environment = 0.0;
+    double blocked = 0.0;
+};
+
+std::uint8_t code_of(double visibility, bool clear) {
+    return clear ? PairVisibility::clear().stored() : PairVisibility::from(visibility).stored();
+}
+
+/// Makes rows of factors of rows of visibility. One a thread.
+class RowMaker {
+public:
+    /// All must outlive this.
+    RowMaker(const PatchMesh& mesh, const ClusterTree& tree, const ExchangeAreas& exchange, double opening)
+        : mesh_(mesh), tree_(tree), exchange_(exchange), opening_(opening), part_of_(mesh.size()),
+          share_(mesh.size(), unknown) {}
+
+    [[nodiscard]] Row make(const KeptRow& seen) {
+        stand_at(seen.patch);
+        sums_.assign(parts_.size(), {});
+        Row row{{}, {}, seen.environment, seen.blocked};
+        double shares = 0.0;
+        for (std::size_t k = 0; k < seen.columns.size(); ++k) {
+            const std::uint32_t j = seen.columns[k];
+            const auto share = static_cast<double>(seen.shares[k]);
+            share_[tree_.position(j)] = seen.shares[k];
+            const std::uint32_t part = part_of_[tree_.position(j)];
+            ++sums_[part].known;
+            sums_[part].shares += share;
+            shares += share;
+            if (share > 0.0) {
+                add(row, part, j, share, seen.texels[k] == visibility_clear);
+            }
+        }
+        const double mean = seen.columns.empty() ? 1.0 : shares / static_cast<double>(seen.columns.size());
+        add_unknown(row, mean);
+        for (const std::uint32_t j : seen.columns) {
+            share_[tree_.position(j)] = unknown;
+        }
+        finish(row);
+        return row;
+    }
+
+private:
+    static constexpr float unknown = -1.0F;
+
+    /// Of one part of what a row sees.
+    struct Sum {
+        std::uint32_t known = 0; ///< patches that texels say something of
+        double shares = 0.0;     ///< of these, together
+        double factor = 0.0;     ///< F of a far part
+        double unoccluded = 0.0; ///< F0 of its patches that are not hidden
+        bool clear = true;       ///< whether nothing of these is hidden
+    };
+
+    void stand_at(std::uint32_t patch) {
+        patch_ = patch;
+        area_ = mesh_.areas()[patch];
+        tree_.seen_from(patch, opening_, parts_);
+        for (std::uint32_t part = 0; part < parts_.size(); ++part) {
+            const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
+            std::fill(part_of_.begin() + node.begin, part_of_.begin() + node.end, part);
+        }
+    }
+
+    void add(Row& row, std::uint32_t part, std::uint32_t j, double share, bool clear) {
+        const double unoccluded = exchange_(patch_, j) / area_;
+        if (!(unoccluded > 0.0)) {
+            return;
+        }
+        if (parts_[part].far) {
+            Sum& sum = sums_[part];
+            sum.factor += unoccluded * share;
+            sum.unoccluded += unoccluded;
+            sum.clear = sum.clear && clear;
+        } else {
+            row.near.push_back({j, static_cast<float>(unoccluded * share), code_of(share, clear)});
+        }
+    }
+
+    /// Patches that no texel covers: as visible as the others of their part, or as all that the row knows.
+    void add_unknown(Row& row, double mean) {
+        for (std::uint32_t part = 0; part < parts_.size(); ++part) {
+            const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
+            const Sum& sum = sums_[part];
+            if (sum.known == node.end - node.begin) {
+                continue;
+            }
+            const double share = sum.known > 0 ? sum.shares / sum.known : mean;
+            if (!(share > 0.0) || (sum.known == 0 && !may_face(tree_.shape(parts_[part].node)))) {
+                continue;
+            }
+            for (std::uint32_t at = node.begin; at < node.end; ++at) {
+                const std::uint32_t j = tree_.clusters()->order()[at];
+                if (share_[at] < 0.0F && j != patch_) {
+                    add(row, part, j, share, false);
+                }
+            }
+        }
+    }
+
+    /// Whether some patch of a cluster may have its front towards this one's.
+    [[nodiscard]] bool may_face(const ClusterShape& cluster) const {
+        const Vec3 here = mesh_.centres()[patch_];
+        if (glm::dot(cluster.centre - here, mesh_.normal(patch_)) <= -cluster.radius) {
+            return false;
+        }
+        const Vec3 way = here - cluster.centre;
+        const double distance = glm::length(way);
+        const double size = cluster.radius + tree_.radius_of(patch_);
+        if (distance <= size) {
+            return true;
+        }
+        const double cosine = std::clamp(glm::dot(way, cluster.axis) / distance, -1.0, 1.0);
+        return std::acos(cosine) - cluster.cone - std::asin(size / distance) < 0.5 * std::numbers::pi;
+    }
+
+    void finish(Row& row) {
+        const auto by_column = [](const Entry& a, const Entry& b) { return a.column < b.column; };
+        std::sort(row.near.begin(), row.near.end(), by_column);
+        for (std::uint32_t part = 0; part < parts_.size(); ++part) {
+            const Sum& sum = sums_[part];
+            if (sum.factor > 0.0) {
+                row.far.push_back({mesh_.size() + parts_[part].node, static_cast<float>(sum.factor),
+                                   code_of(sum.factor / sum.unoccluded, sum.clear)});
+            }
+        }
+        std::sort(row.far.begin(), row.far.end(), by_column);
+        row.near.shrink_to_fit();
+        row.far.shrink_to_fit();
+    }
+
+    const PatchMesh& mesh_;
+    const ClusterTree& tree_;
+    const ExchangeAreas& exchange_;
+    double opening_;
+    std::uint32_t patch_ = 0;              ///< of the row
+    double area_ = 0.0;                    ///< of it
+    std::vector<ClusterTree::Part> parts_; ///< what it sees
+    std::vector<std::uint32_t> part_of_;   ///< by position in the tree
+    std::vector<float> share_;             ///< V by position in the tree, or `unknown`
+    std::vector<Sum> sums_;                ///< by part
+};
+
+/// Rows of visibility in, rows of factors out, many at a time in threads.
+class RowCollector {
+public:
+    RowCollector(const PatchMesh& mesh, const ClusterTree& tree, const ClusterSettings& settings)
+        : mesh_(mesh), tree_(tree), exchange_(mesh, settings.rule), opening_(settings.opening),
+          max_memory_(settings.max_memory), rows_(mesh.size()) {}
+
+    void take(std::uint32_t patch, const VisibilityRow& row) {
+        kept_.push_back({patch,
+                         {row.columns.begin(), row.columns.end()},
+                         {row.shares.begin(), row.shares.end()},
+                         {row.texels.begin(), row.texels.end()},
+                         row.environment,
+                         row.blocked});
+        if (kept_.size() == rows_at_once) {
+            flush();
+        }
+    }
+
+    /// The rows of all patches, of which those that did not come are empty.
+    [[nodiscard]] std::vector<Row> finish() {
+        flush();
+        return std::move(rows_);
+    }
+
+private:
+    static constexpr std::size_t rows_at_once = 256;
+
+    void flush() {
+        std::atomic<std::uint64_t> bytes = 0;
+        constexpr std::size_t grain = 32;
+        parallel_for(kept_.size(), grain, [&](std::size_t begin, std::size_t end) {
+            const auto maker = take_maker();
+            for (std::size_t k = begin; k < end; ++k) {
+                Row row = maker->make(kept_[k]);
+                bytes += row.bytes();
+                rows_[kept_[k].patch] = std::move(row);
+            }
+            give_back(maker);
+        });
+        kept_.clear();
+        bytes_ += bytes;
+        if (bytes_ > max_memory_) {
+            throw OutOfMemory(fmt::format("rows of clusters need more than {}. Larger patches, a larger "
+                                          "cluster error or a higher limit would help",
+                                          memory_text(max_memory_)),
+                              {"cluster-error", "patch-size", "max-memory"});
+        }
+    }
+
+    [[nodiscard]] std::shared_ptr<RowMaker> take_maker() {
+        const std::lock_guard lock(mutex_);
+        if (makers_.empty()) {
+            return std::make_shared<RowMaker>(mesh_, tree_, exchange_, opening_);
+        }
+        auto maker = std::move(makers_.back());
+        makers_.pop_back();
+        return maker;
+    }
+    void give_back(std::shared_ptr<RowMaker> maker) {
+        const std::lock_guard lock(mutex_);
+        makers_.push_back(std::move(maker));
+    }
+
+    const PatchMesh& mesh_;
+    const ClusterTree& tree_;
+    ExchangeAreas exchange_;
+    double opening_;
+    std::uint64_t max_memory_;
+    std::uint64_t bytes_ = 0;
+    std::vector<KeptRow> kept_;
+    std::vector<Row> rows_;
+    std::mutex mutex_;
+    std::vector<std::shared_ptr<RowMaker>> makers_; ///< idle
+};
+
+void append(RowBlock& block, const Entry& entry) {
+    block.columns.push_back(entry.column);
+    block.values.push_back(entry.value);
+    block.visibility.push_back(entry.visibility);
+}
+
+/// Pairs near each other, as one matrix. Takes them out of the rows.
+FormFactorMatrix near_pairs(std::vector<Row>& rows, std::span<const std::uint32_t> patches,
+                            const PatchMesh& mesh) {
+    FormFactorMatrix matrix(mesh.size());
+    std::vector<RowBlock> blocks = matrix.take_blocks();
+    for (const std::uint32_t i : patches) {
+        blocks[i / FormFactorMatrix::block_rows].known[i % FormFactorMatrix::block_rows] = 1;
+    }
+    parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            RowBlock& block = blocks[b];
+            for (std::uint32_t local = 0; local < block.rows(); ++local) {
+                Row& row = rows[block.first_row + local];
+                for (const Entry& entry : std::exchange(row.near, {})) {
+                    append(block, entry);
+                }
+                block.begin[local + 1] = block.columns.size();
+            }
+            matrix.set_block(std::move(block));
+        }
+    });
+    return matrix;
+}
+
+/// Balances rows: what they miss of their sums, or have too much, is shared out by the variances of the
+/// factors. Far ones get their shares at once, near ones theirs as pairs.
+class RowBalancer {
+public:
+    /// @param near  reciprocal pairs of the rows
+    /// @param open  whether the scene is
+    RowBalancer(std::vector<Row>& rows, FormFactorMatrix& near, const PatchMesh& mesh, ExchangeRule rule,
+                bool open)
+        : rows_(rows), near_(near), mesh_(mesh), open_(open) {
+        settings_.unoccluded_error = rule == ExchangeRule::exact ? 3e-5 : settings_.unoccluded_error;
+    }
+
+    void run() {
+        // A row of the pairs alone lacks what is far: it counts as environment meanwhile.
+        std::vector<RowBlock> blocks(near_.blocks().begin(), near_.blocks().end());
+        for (RowBlock& block : blocks) {
+            for (std::uint32_t local = 0; local < block.rows(); ++local) {
+                if (block.known[local] != 0) {
+                    Row& row = rows_[block.first_row + local];
+                    balance_far(row, near_.row(block.first_row + local));
+                    block.environment[local] = row.environment + sum_of(row.far);
+                    block.blocked[local] = row.blocked;
+                }
+            }
+            near_.set_block(std::move(block));
+        }
+        (void)repair(near_, mesh_.areas(), Repair::closure, settings_);
+    }
+
+private:
+    static double sum_of(std::span<const Entry> entries) {
+        double sum = 0.0;
+        for (const Entry& entry : entries) {
+            sum += static_cast<double>(entry.value);
+        }
+        return sum;
+    }
+
+    /// Of a factor F0 V: that of a share of samples that are hidden or not, and of F0.
+    [[nodiscard]] double variance(double value, std::uint8_t code) const {
+        const double visibility = std::max<double>(code, 0.5) / visibility_clear;
+        const double sampling = code == visibility_clear ? 0.0 : (1.0 - visibility) / visibility;
+        return value * value * (sampling + settings_.unoccluded_error * settings_.unoccluded_error);
+    }
+
+    void balance_far(Row& row, const RowView& near) {
+        const double most = std::max(0.0, 1.0 - row.blocked);
+        const double sum = near.sum() + sum_of(row.far);
+        if (open_ && row.environment > 0.0) {
+            row.environment = std::max(0.0, most - sum);
+        }
+        const double missing = most - row.environment - sum;
+        double variances = 0.0;
+        for (std::size_t k = 0; k < near.columns.size(); ++k) {
+            variances += variance(static_cast<double>(near.values[k]), near.visibility[k]);
+        }
+        for (const Entry& entry : row.far) {
+            variances += variance(static_cast<double>(entry.value), entry.visibility);
+        }
+        for (Entry& entry : row.far) {
+            const auto value = static_cast<double>(entry.value);
+            entry.value = static_cast<float>(
+                std::max(0.0, value + missing * variance(value, entry.visibility) / variances));
+        }
+    }
+
+    std::vector<Row>& rows_;
+    FormFactorMatrix& near_;
+    const PatchMesh& mesh_;
+    RepairSettings settings_;
+    bool open_;
+};
+
+/// Areas as far as they exchange light with others: what reaches backs counts for nobody. All of a patch
+/// without a row.
+std::vector<double> seen_areas(const std::vector<Row>& rows, const PatchMesh& mesh) {
+    std::vector<double> areas(mesh.areas().begin(), mesh.areas().end());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        areas[i] *= std::max(0.0, 1.0 - rows[i].blocked);
+    }
+    return areas;
+}
+
+} // namespace
+
+double cluster_opening(double error) {
+    // Fitted to the figures of the declaration.
+    constexpr double error_of_opening_one = 0.023;
+    return std::sqrt(error / error_of_opening_one);
+}
+
+FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMesh& mesh,
+                                   std::span<const std::uint32_t> patches, const ClusterSettings& settings,
+                                   Enclosure enclosure, const Progress& progress) {
+    if (!(settings.opening > 0.0) || !std::isfinite(settings.opening)) {
+        throw InvalidArgument(
+            fmt::format("opening of clusters {}; it must be finite and above 0", settings.opening));
+    }
+    const ClusterTree tree(mesh);
+    std::vector<Row> rows;
+    {
+        RowCollector collector(mesh, tree, settings);
+        std::size_t done = 0;
+        visibility.rows(patches, [&](std::uint32_t patch, const VisibilityRow& row) {
+            collector.take(patch, row);
+            if (progress && !progress(++done, patches.size())) {
+                throw Cancelled();
+            }
+        });
+        rows = collector.finish();
+    }
+    const bool open = std::any_of(rows.begin(), rows.end(), [enclosure](const Row& row) {
+        return sees_environment(row.environment, enclosure);
+    });
+    FormFactorMatrix near = near_pairs(rows, patches, mesh);
+    (void)repair(near, mesh.areas(), Repair::reciprocity);
+    RowBalancer(rows, near, mesh, settings.rule, open).run();
+    FormFactorMatrix matrix(
+        mesh.size(), std::make_shared<SourceClusters>(tree.clusters()->with_weights(seen_areas(rows, mesh))));
+    std::vector<RowBlock> blocks = matrix.take_blocks();
+    parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            RowBlock& block = blocks[b];
+            for (std::uint32_t local = 0; local < block.rows(); ++local) {
+                const std::uint32_t i = block.first_row + local;
+                if (near.known(i)) {
+                    block.known[local] = 1;
+                    const RowView pairs = near.row(i);
+                    for (std::size_t k = 0; k < pairs.columns.size(); ++k) {
+                        append(block, {pairs.columns[k], pairs.values[k], pairs.visibility[k]});
+                    }
+                    for (const Entry& entry : rows[i].far) {
+                        append(block, entry);
+                    }
+                    block.environment[local] = rows[i].environment;
+                    block.blocked[local] = rows[i].blocked;
+                    rows[i] = {};
+                }
+                block.begin[local + 1] = block.columns.size();
+            }
+            block.columns.shrink_to_fit();
+            block.values.shrink_to_fit();
+            block.visibility.shrink_to_fit();
+            matrix.set_block(std::move(block));
+        }
+    });
+    return matrix;
+}
+
+} // namespace hemi

@@ -1,0 +1,240 @@
+#include "engine/clusters/cluster_tree.hpp"
+#include "support/device.hpp"
+#include "support/scenes.hpp"
+
+#include "hemi/core/error.hpp"
+#include "hemi/engine/clustered_rows.hpp"
+#include "hemi/engine/engine.hpp"
+#include "hemi/engine/visibility_weighted.hpp"
+#include "hemi/matrix/product.hpp"
+#include "hemi/matrix/repair.hpp"
+#include "hemi/pipeline/form_factors.hpp"
+#include "hemi/pipeline/radiosity.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace hemi;
+using namespace hemi::test;
+
+namespace {
+
+/// A closed room with a block in the air.
+Scene room_with_floating_block(std::uint32_t cells) {
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(1.2, 1.0, 0.8), cells);
+    add_block(scene, "block", Vec3(0.3, 0.2, 0.25), Vec3(0.7, 0.6, 0.5), cells / 2);
+    return scene;
+}
+
+FormFactorMatrix clustered(const PatchMesh& mesh, const ClusterSettings& settings = {},
+                           Enclosure enclosure = Enclosure::automatic) {
+    const HemicubeSettings hemicube{.resolution = 64, .eye_points = 4};
+    const auto engine = make_visibility_engine(mesh, hemicube, {test_device(), 2, find_worker_program()});
+    return compute_clustered(*engine, mesh, all_patches(mesh.size()), settings, enclosure);
+}
+
+FormFactorMatrix in_pairs(const PatchMesh& mesh, const HemicubeSettings& hemicube,
+                          std::uint32_t shadow_rays) {
+    const auto engine = make_visibility_engine(mesh, hemicube, {test_device(), 2, find_worker_program()});
+    FormFactorMatrix rows = compute_visibility_weighted(
+        *engine, mesh, all_patches(mesh.size()), {ExchangeRule::standard, shadow_rays}, Enclosure::automatic);
+    (void)repair(rows, mesh.areas(), Repair::closure);
+    return rows;
+}
+
+/// A light that changes smoothly over the scene, and with the direction of a patch.
+std::vector<double> smooth_light(const PatchMesh& mesh) {
+    std::vector<double> light;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        light.push_back(2.0 + mesh.centres()[i].x + 0.5 * mesh.centres()[i].y + 0.3 * mesh.normal(i).z);
+    }
+    return light;
+}
+
+std::vector<double> gathered(const FormFactorMatrix& factors, const std::vector<double>& light) {
+    std::vector<double> result(factors.size());
+    multiply(factors, light, 1, result);
+    return result;
+}
+
+/// Rms difference over the rms of `expected`.
+double relative_rms(const std::vector<double>& values, const std::vector<double>& expected) {
+    double errors = 0.0;
+    double all = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        errors += (values[i] - expected[i]) * (values[i] - expected[i]);
+        all += expected[i] * expected[i];
+    }
+    return std::sqrt(errors / all);
+}
+
+} // namespace
+
+TEST_CASE("every receiver sees every patch once, and what is near is so both ways") {
+    const PatchMesh mesh(room_with_blocks(12));
+    const ClusterTree tree(mesh);
+    const auto nodes = tree.clusters()->nodes();
+    std::vector<std::vector<std::uint8_t>> near(mesh.size(), std::vector<std::uint8_t>(mesh.size()));
+    std::size_t far_parts = 0;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        std::uint32_t next = 0;
+        std::vector<ClusterTree::Part> parts;
+        tree.seen_from(i, 0.5, parts);
+        for (const ClusterTree::Part& part : parts) {
+            REQUIRE(nodes[part.node].begin == next);
+            next = nodes[part.node].end;
+            far_parts += part.far ? 1 : 0;
+            for (const std::uint32_t j : tree.clusters()->patches(part.node)) {
+                near[i][j] = part.far ? 0 : 1;
+            }
+        }
+        REQUIRE(next == mesh.size());
+        REQUIRE(near[i][i] == 1);
+    }
+    CHECK(far_parts > mesh.size());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        for (std::uint32_t j = 0; j < i; ++j) {
+            REQUIRE(near[i][j] == near[j][i]);
+        }
+    }
+}
+
+TEST_CASE("clusters look one way, and their spheres hold their patches") {
+    const PatchMesh mesh(tapered_box(6));
+    const ClusterTree tree(mesh);
+    for (std::uint32_t k = 0; k < tree.clusters()->nodes().size(); ++k) {
+        const ClusterShape& shape = tree.shape(k);
+        for (const std::uint32_t i : tree.clusters()->patches(k)) {
+            for (const Vec3& corner : mesh.corners(i).polygon()) {
+                REQUIRE(glm::distance(corner, shape.centre) <= shape.radius * (1.0 + 1e-12));
+            }
+            REQUIRE(glm::dot(mesh.normal(i), shape.axis) >= std::cos(shape.cone) - 1e-12);
+        }
+    }
+}
+
+TEST_CASE("clusters change the gathered light by less than they may, and need fewer entries") {
+    const PatchMesh mesh(room_with_floating_block(16));
+    const std::vector<double> light = smooth_light(mesh);
+    const std::vector<double> truth =
+        gathered(in_pairs(mesh, {.resolution = 128, .eye_points = 9, .near_eye_points = 36}, 64), light);
+    const FormFactorMatrix pairs = in_pairs(mesh, {.resolution = 64, .eye_points = 4}, 0);
+    REQUIRE(relative_rms(gathered(pairs, light), truth) < 1e-4);
+    std::vector<std::uint64_t> entries;
+    for (const double error : {1e-2, 2e-3, 3e-4}) {
+        ClusterSettings settings;
+        settings.opening = cluster_opening(error);
+        const FormFactorMatrix rows = clustered(mesh, settings);
+        entries.push_back(rows.entries());
+        CHECK(relative_rms(gathered(rows, light), truth) < error);
+        CHECK(row_sums(rows).balance_error_max < 1e-6);
+    }
+    CHECK(entries[0] < entries[1]);
+    CHECK(entries[1] < entries[2]);
+    CHECK(entries[0] < pairs.entries() / 3);
+}
+
+TEST_CASE("pairs near each other are reciprocal, also where far ones are in clusters") {
+    const PatchMesh mesh(room_with_blocks(12));
+    ClusterSettings settings;
+    settings.opening = 0.5;
+    const FormFactorMatrix rows = clustered(mesh, settings);
+    std::size_t compared = 0;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const RowView row = rows.row(i);
+        for (std::size_t k = 0; k < row.columns.size() && row.columns[k] < mesh.size(); ++k) {
+            const std::uint32_t j = row.columns[k];
+            const RowView other = rows.row(j);
+            const auto back = std::lower_bound(other.columns.begin(), other.columns.end(), i);
+            REQUIRE(back != other.columns.end());
+            REQUIRE(*back == i);
+            const double there = mesh.areas()[i] * static_cast<double>(row.values[k]);
+            const double here =
+                mesh.areas()[j] *
+                static_cast<double>(other.values[static_cast<std::size_t>(back - other.columns.begin())]);
+            REQUIRE(there == Approx(here).epsilon(1e-6));
+            ++compared;
+        }
+    }
+    CHECK(compared > mesh.size());
+}
+
+TEST_CASE("a furnace is as hot everywhere by rows of clusters") {
+    Scene scene = room_with_floating_block(12);
+    scene.materials[0].reflectance = {0.9};
+    scene.materials[0].exitance = {0.1};
+    const PatchMesh mesh(scene);
+    FactorSettings settings;
+    settings.clusters = Clusters::on;
+    settings.cluster_error = 5e-3;
+    settings.engine.device = test_device();
+    FormFactors factors = compute_form_factors(scene, mesh, settings);
+    REQUIRE(factors.matrix.clusters() != nullptr);
+    prepare_form_factors(factors);
+    SolverSettings exact;
+    exact.tolerance = 1e-10;
+    const Solution solution = solve_radiosity(scene, mesh, factors, exact);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        REQUIRE(solution.radiosity[i] == Approx(1.0).epsilon(1e-5));
+    }
+    REQUIRE(solution.error);
+    CHECK(solution.error->rms < 0.01);
+}
+
+TEST_CASE("the printed error of radiosity counts what clusters do") {
+    Scene scene = room_with_blocks(16);
+    scene.materials[0].reflectance = {0.5};
+    scene.materials.push_back({"lamp", {0.0}, {1.0}});
+    scene.surfaces[0].material = 1;
+    const PatchMesh mesh(scene);
+    FactorSettings settings;
+    settings.engine.device = test_device();
+    FormFactors pairs = compute_form_factors(scene, mesh, settings);
+    prepare_form_factors(pairs);
+    const Solution expected = solve_radiosity(scene, mesh, pairs);
+    settings.clusters = Clusters::on;
+    double before = expected.error->rms;
+    for (const double error : {1e-3, 2e-2}) {
+        settings.cluster_error = error;
+        FormFactors rows = compute_form_factors(scene, mesh, settings);
+        prepare_form_factors(rows);
+        const Solution solution = solve_radiosity(scene, mesh, rows);
+        std::vector<double> reflected;
+        std::vector<double> reflected_expected;
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            const double weight = std::sqrt(mesh.areas()[i]);
+            reflected.push_back(weight * (solution.radiosity[i] - solution.exitance[i]));
+            reflected_expected.push_back(weight * (expected.radiosity[i] - expected.exitance[i]));
+        }
+        const double difference = relative_rms(reflected, reflected_expected);
+        CHECK(difference < 2.0 * solution.error->rms);
+        CHECK(solution.error->rms > before);
+        before = solution.error->rms;
+    }
+}
+
+TEST_CASE("rows of clusters stop where they are told to, and within the memory") {
+    const PatchMesh mesh(room_with_blocks(8));
+    const HemicubeSettings hemicube{.resolution = 32, .eye_points = 1};
+    const auto engine = make_visibility_engine(mesh, hemicube, {test_device(), 1, find_worker_program()});
+    const auto patches = all_patches(mesh.size());
+    CHECK_THROWS_AS(compute_clustered(*engine, mesh, patches, {}, Enclosure::automatic,
+                                      [](std::size_t done, std::size_t) { return done < 10; }),
+                    Cancelled);
+    ClusterSettings little;
+    little.max_memory = 1000;
+    CHECK_THROWS_AS(compute_clustered(*engine, mesh, patches, little, Enclosure::automatic), OutOfMemory);
+    ClusterSettings none;
+    none.opening = 0.0;
+    CHECK_THROWS_AS(compute_clustered(*engine, mesh, patches, none, Enclosure::automatic), InvalidArgument);
+
+    const std::vector<std::uint32_t> some{3, 5, 200};
+    const FormFactorMatrix rows = compute_clustered(*engine, mesh, some, {}, Enclosure::automatic);
+    CHECK(rows.known(5));
+    CHECK_FALSE(rows.known(6));
+    CHECK(rows.row(5).sum() == Approx(1.0 - rows.row(5).blocked).epsilon(0.02));
+}
