@@ -10,6 +10,7 @@
 #include "hemi/io/vtp_file.hpp"
 #include "hemi/scene/orientation.hpp"
 #include "hemi/scene/thermal_exitance.hpp"
+#include "hemi/scene/triangle_pairs.hpp"
 
 #include <fmt/format.h>
 
@@ -158,6 +159,10 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     }
     warn_of_no_effect(scene, options, terminal);
     PatchMesh mesh = make_mesh(scene, options);
+    join_triangle_pairs(scene, options.subdivision);
+    if (scene.surfaces.size() != mesh.surfaces().size()) {
+        mesh = make_mesh(scene, options);
+    }
     Subdivision subdivision = options.subdivision;
     std::optional<SceneAsRead> as_read;
     if (auto cut = imprint(scene, subdivision, options.imprint)) {

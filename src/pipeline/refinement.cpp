@@ -562,7 +562,11 @@ PatchParts parts_of_faces(const PatchMesh& mesh, const CoarseMesh& begin, const 
                                               plural(faces.patches_per_side(face), "patch", "patches")));
         }
     }
-    const std::vector<std::uint32_t> face_of = face_numbers(begin.as_read.surfaces());
+    std::vector<std::uint32_t> face_of; // of surfaces, into those of `faces`
+    for (const Surface& surface : begin.as_read.surfaces()) {
+        const auto next = face_of.empty() ? 0 : face_of.back() + 1;
+        face_of.push_back(surface.continues && next > 0 ? next - 1 : next);
+    }
     PatchParts result;
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         const std::uint32_t s = mesh.surface_of()[i];

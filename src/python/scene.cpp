@@ -3,6 +3,7 @@
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/scene/imprint.hpp"
 #include "hemi/scene/thermal_exitance.hpp"
+#include "hemi/scene/triangle_pairs.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/work.hpp"
@@ -191,7 +192,10 @@ ScenePointer scene_from_arrays(const Doubles& vertices, const py::object& faces,
     set_environment(scene, environment);
     scene.enclosure = argument_word<Enclosure>("enclosure", enclosure);
     return run([&] {
-        return std::make_shared<PatchedScene>(std::move(scene), Subdivision{patch_size, patches_per_face});
+        validate(scene);
+        const Subdivision subdivision{patch_size, patches_per_face};
+        join_triangle_pairs(scene, subdivision);
+        return std::make_shared<PatchedScene>(std::move(scene), subdivision);
     });
 }
 
@@ -230,6 +234,7 @@ ScenePointer read_scene(const py::object& path, std::optional<double> patch_size
     }
     return run([&] {
         const Subdivision subdivision{patch_size, patches_per_face};
+        join_triangle_pairs(scene, subdivision);
         std::optional<Imprint> cut = imprint(scene, subdivision, with_imprint);
         return cut ? std::make_shared<PatchedScene>(scene, subdivision, std::move(*cut))
                    : std::make_shared<PatchedScene>(std::move(scene), subdivision);

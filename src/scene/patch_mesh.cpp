@@ -236,18 +236,6 @@ std::uint32_t cells_along(double length, double patch_size) {
     return std::max(1u, static_cast<std::uint32_t>(cells));
 }
 
-Grid grid_for_size(const Surface& surface, double patch_size) {
-    const auto& p = surface.vertices;
-    if (surface.vertex_count == 3) {
-        const double longest =
-            std::max({glm::length(p[1] - p[0]), glm::length(p[2] - p[1]), glm::length(p[0] - p[2])});
-        const std::uint32_t n = cells_along(longest, patch_size);
-        return {n, n};
-    }
-    return {cells_along(std::max(glm::length(p[1] - p[0]), glm::length(p[2] - p[3])), patch_size),
-            cells_along(std::max(glm::length(p[2] - p[1]), glm::length(p[3] - p[0])), patch_size)};
-}
-
 Grid choose_grid(const Surface& surface, const Scene& scene, const Subdivision& subdivision) {
     if (subdivision.patch_size) {
         return grid_for_size(surface, *subdivision.patch_size);
@@ -288,6 +276,18 @@ private:
 };
 
 } // namespace
+
+Grid grid_for_size(const Surface& surface, double patch_size) {
+    const auto& p = surface.vertices;
+    if (surface.vertex_count == 3) {
+        const double longest =
+            std::max({glm::length(p[1] - p[0]), glm::length(p[2] - p[1]), glm::length(p[0] - p[2])});
+        const std::uint32_t n = cells_along(longest, patch_size);
+        return {n, n};
+    }
+    return {cells_along(std::max(glm::length(p[1] - p[0]), glm::length(p[2] - p[3])), patch_size),
+            cells_along(std::max(glm::length(p[2] - p[1]), glm::length(p[3] - p[0])), patch_size)};
+}
 
 PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
     validate(scene);

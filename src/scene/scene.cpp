@@ -62,9 +62,10 @@ double emissivity_at(std::span<const std::array<double, 2>> table, double kelvin
 std::vector<std::uint32_t> face_numbers(std::span<const Surface> surfaces) {
     std::vector<std::uint32_t> numbers;
     numbers.reserve(surfaces.size());
+    std::uint32_t next = 0;
     for (const Surface& surface : surfaces) {
-        const std::uint32_t next = numbers.empty() ? 0 : numbers.back() + 1;
         numbers.push_back(surface.continues && next > 0 ? next - 1 : next);
+        next = numbers.back() + (surface.joins ? 2 : 1);
     }
     return numbers;
 }

@@ -1,6 +1,7 @@
 #include "cli/program.hpp"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -153,4 +154,27 @@ TEST_CASE("pieces: light on a face out of plane is the mean over it, as stored a
     const Json finer = run_hemi(on_cpu({"info", scene, "--patches-per-face", "4", "--json"})).json();
     CHECK(finer["patches"] == 28);
     CHECK(finer["surfaces"] == 6);
+}
+
+TEST_CASE("pieces: two triangles of a quadrilateral are subdivided as it; faces are the file's", "[cli]") {
+    const Directory directory;
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+    const std::vector<std::array<int, 4>> quads{{1, 2, 3, 4}, {8, 7, 6, 5}, {2, 1, 5, 6},
+                                                {3, 2, 6, 7}, {4, 3, 7, 8}, {1, 4, 8, 5}};
+    std::string whole = corners;
+    std::string halves = corners;
+    for (const auto& [p, q, r, s] : quads) {
+        whole += fmt::format("f {} {} {} {}\n", p, q, r, s);
+        halves += fmt::format("f {} {} {}\nf {} {} {}\n", p, q, r, p, r, s);
+    }
+    const auto info = [](const std::string& scene) {
+        return run_hemi({"info", scene, "--patch-size", "0.4", "--json"}).json();
+    };
+    const Json of_quads = info(directory.write("quads.obj", whole));
+    const Json of_triangles = info(directory.write("triangles.obj", halves));
+    CHECK(of_quads["patches"] == 54);
+    CHECK(of_triangles["patches"] == 54);
+    CHECK(of_triangles["surfaces"] == 12);
+    CHECK(of_triangles["triangles"] == 12);
+    CHECK(of_triangles["groups"][0]["surfaces"] == 12);
 }

@@ -162,6 +162,12 @@ struct WholeFaces {
     std::vector<std::uint32_t> patch_of; ///< of every patch of the mesh in pieces, the one that it is part of
 };
 
+/// How a patch size cuts a surface.
+/// @param surface     of the scene
+/// @param patch_size  longest edge of a patch, scene units, above 0
+/// @throws InvalidArgument if an edge would be cut into more than 1e6 pieces
+[[nodiscard]] Grid grid_for_size(const Surface& surface, double patch_size);
+
 /// Makes PatchMesh(scene, subdivision) a mesh again that was split or cut otherwise than the scene wants.
 /// @param scene        that the mesh is of; gets its surfaces and their grids
 /// @param subdivision  becomes that of the mesh

@@ -70,12 +70,14 @@ struct Surface {
     /// A further piece of the face that the surface before it is of: one that is not plane, not convex, or of
     /// many corners.
     bool continues = false;
+    bool joins = false; ///< Two triangles of the file, one after the other, that are its halves.
 
     /// The vertices that are used.
     [[nodiscard]] std::span<const Vec3> polygon() const { return {vertices.data(), vertex_count}; }
 };
 
-/// Of every surface, the number of the face that it is, or is a piece of: faces as the file has them, from 0.
+/// Of every surface, the number of the face that it is, is a piece of, or begins with: faces as the file has
+/// them, from 0.
 [[nodiscard]] std::vector<std::uint32_t> face_numbers(std::span<const Surface> surfaces);
 
 /// Where a picture is taken from. An orthographic camera shows what a perspective one shows at the target's

@@ -37,6 +37,10 @@ Report surfaces_report(const Scene& scene) {
         if (surfaces[s].continues) {
             continue;
         }
+        if (surfaces[s].joins) {
+            triangles += 2;
+            continue;
+        }
         const bool in_pieces = s + 1 < surfaces.size() && surfaces[s + 1].continues;
         ++(in_pieces ? polygons : surfaces[s].vertex_count == 3 ? triangles : quads);
     }
@@ -57,8 +61,9 @@ Report groups_report(const Scene& scene, const PatchMesh& mesh, std::span<const 
     std::vector<std::uint32_t> surfaces(mesh.groups().size(), 0);
     std::size_t all = 0;
     for (const Surface& surface : scene.surfaces) {
-        surfaces[surface.group] += surface.continues ? 0 : 1;
-        all += surface.continues ? 0 : 1;
+        const std::uint32_t faces = surface.continues ? 0 : surface.joins ? 2 : 1;
+        surfaces[surface.group] += faces;
+        all += faces;
     }
     const std::vector<GroupSize> sizes = group_sizes(mesh, areas);
     double area = 0.0;

@@ -12,6 +12,7 @@ constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
 // Bits of StoredSurface::sides.
 constexpr std::uint32_t two_sides = 1;
 constexpr std::uint32_t continues_face = 2;
+constexpr std::uint32_t joins_two = 4;
 
 Surface scene_surface(const StoredSurface& stored) {
     Surface surface;
@@ -23,6 +24,7 @@ Surface scene_surface(const StoredSurface& stored) {
     surface.group = stored.group;
     surface.two_sided = (stored.sides & two_sides) != 0;
     surface.continues = (stored.sides & continues_face) != 0;
+    surface.joins = (stored.sides & joins_two) != 0;
     surface.patches = Grid{stored.grid_u, stored.grid_v};
     return surface;
 }
@@ -35,8 +37,9 @@ std::vector<StoredSurface> stored_surfaces(const PatchMesh& mesh) {
     for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
         const Surface& surface = mesh.surfaces()[s];
         const Grid grid = mesh.grid(s);
-        const std::uint32_t sides =
-            (surface.two_sided ? two_sides : 0u) | (surface.continues ? continues_face : 0u);
+        const std::uint32_t sides = (surface.two_sided ? two_sides : 0u) |
+                                    (surface.continues ? continues_face : 0u) |
+                                    (surface.joins ? joins_two : 0u);
         StoredSurface stored{{},    surface.vertex_count, surface.material, surface.group, sides, grid.u,
                              grid.v};
         for (std::size_t k = 0; k < stored.vertices.size(); ++k) {
@@ -54,7 +57,7 @@ std::vector<Surface> read_surfaces(Payload payload, std::uint64_t count, std::ui
     std::uint64_t found = 0;
     for (const StoredSurface& stored : payload.take_array<StoredSurface>(count)) {
         if (stored.vertex_count < 3 || stored.vertex_count > 4 ||
-            stored.sides > (two_sides | continues_face)) {
+            stored.sides > (two_sides | continues_face | joins_two)) {
             payload.fail(
                 fmt::format("a surface of {} vertices and sides {}", stored.vertex_count, stored.sides));
         }

@@ -16,7 +16,8 @@ struct StoredSurface {
     std::uint32_t vertex_count;
     std::uint32_t material;
     std::uint32_t group;
-    std::uint32_t sides; ///< 1: it has two; 2: it continues the face of the one before; or both, or neither
+    std::uint32_t
+        sides; ///< sum of: 1, it has two; 2, it continues the face of the one before; 4, it joins two
     std::uint32_t grid_u;
     std::uint32_t grid_v;
 };
