@@ -2,6 +2,7 @@
 
 #include "core/box_tree.hpp"
 #include "core/parallel_for.hpp"
+#include "core/splitmix.hpp"
 #include "hemi/core/error.hpp"
 #include "scene/convex_polygon.hpp"
 #include "scene/joined_faces.hpp"
@@ -196,7 +197,10 @@ private:
             const Bounds box = bounds_of(cell.corners, tolerance_);
             std::vector<std::uint32_t> here;
             cuts.overlapping(box, [&](std::uint32_t k) { here.push_back(k); });
-            std::sort(here.begin(), here.end());
+            // Scattered: cut one behind the other, what is left of a row of bodies would be cut again for
+            // each.
+            std::sort(here.begin(), here.end(),
+                      [](std::uint32_t a, std::uint32_t b) { return splitmix(a) < splitmix(b); });
             DividedPolygon divided(std::move(cell.corners), normal(f), tolerance_);
             for (const std::uint32_t k : here) {
                 divided.cut(contacts.cuts[k]);
@@ -558,30 +562,34 @@ std::optional<Imprint> imprint_contacts(const Scene& scene, const Subdivision& s
 }
 
 /// What was done to whole faces, where it was done to surfaces, ascending: a face is left out where all its
-/// pieces are, and else cut.
+/// pieces are. Else what is told of it is the first of: it is overlapped, cut, joined to another.
 std::vector<Imprint::Finding> findings_of_faces(const Scene& scene, std::vector<Imprint::Finding> findings) {
+    using What = Imprint::What;
     std::vector<std::uint32_t> first_of(scene.surfaces.size());
     std::vector<std::uint32_t> pieces(scene.surfaces.size(), 0); // of faces, at their first surface
     for (std::uint32_t s = 0; s < scene.surfaces.size(); ++s) {
         first_of[s] = s > 0 && scene.surfaces[s].continues ? first_of[s - 1] : s;
         ++pieces[first_of[s]];
     }
-    const auto in_part = [](Imprint::What what) {
-        return what == Imprint::What::duplicate || what == Imprint::What::overlapped
-                   ? Imprint::What::overlapped
-                   : Imprint::What::cut;
+    const auto of_part = [](What what) {
+        return what == What::duplicate ? What::overlapped : what == What::buried ? What::cut : what;
     };
     std::vector<Imprint::Finding> result;
     for (auto at = findings.begin(); at != findings.end();) {
-        Imprint::Finding finding = *at;
-        finding.face = first_of[at->face];
-        finding.other = at->other == no_face ? no_face : first_of[at->other];
-        const auto end = std::find_if(
-            at, findings.end(), [&](const auto& other) { return first_of[other.face] != finding.face; });
-        const bool alike = std::all_of(at, end, [&](const auto& other) { return other.what == at->what; });
-        const auto found = static_cast<std::uint32_t>(end - at);
-        finding.what = alike && found == pieces[finding.face] ? finding.what : in_part(finding.what);
-        result.push_back(finding);
+        const std::uint32_t face = first_of[at->face];
+        const auto end =
+            std::find_if(at, findings.end(), [&](const auto& other) { return first_of[other.face] != face; });
+        const bool gone =
+            static_cast<std::uint32_t>(end - at) == pieces[face] &&
+            std::all_of(at, end, [&](const auto& found) { return found.what != of_part(found.what); });
+        if (!gone) {
+            std::for_each(at, end, [&](auto& found) { found.what = of_part(found.what); });
+        }
+        Imprint::Finding told = *std::min_element( // as they are listed
+            at, end, [](const auto& one, const auto& other) { return one.what < other.what; });
+        told.face = face;
+        told.other = told.other == no_face ? no_face : first_of[told.other];
+        result.push_back(told);
         at = end;
     }
     return result;
@@ -615,6 +623,7 @@ std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivisio
     }
     for (Surface& surface : result->scene.surfaces) {
         surface.continues = false;
+        surface.joins = false;
     }
     result->findings = findings_of_faces(scene, std::move(result->findings));
     return result;
