@@ -665,8 +665,9 @@ void Application::draw_picture(SceneTarget& target, std::array<std::uint32_t, 2>
     view_.draw(navigator_.camera(), target, preview ? 1 : document_->input().picture.samples);
     glFinish();
     const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-    status_ = fmt::format("{} patches, {:.0f} ms a picture{}", document_->input().mesh->size(), time.count(),
-                          preview ? " (preview)" : "");
+    status_ =
+        fmt::format("{}, {:.0f} ms a picture{}", plural(document_->input().mesh->size(), "patch", "patches"),
+                    time.count(), preview ? " (preview)" : "");
 }
 
 /// Under the first free number; a folder that cannot be written to is no reason to close the window.

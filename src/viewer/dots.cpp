@@ -3,6 +3,7 @@
 #include "display/false_colour_scale.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/nearest_word.hpp"
+#include "hemi/core/text.hpp"
 #include "viewer/command_line.hpp"
 #include "viewer/legend_window.hpp"
 #include "viewer/widgets.hpp"
@@ -152,7 +153,7 @@ void dots_section(const ViewerInput& input, Choices& choices) {
         }
         ImGui::EndCombo();
     }
-    text(fmt::format("{} points", input.points->positions.size()));
+    text(plural(input.points->positions.size(), "point", "points"));
 }
 
 void dots_overlay(const SceneView& scene, const ViewerInput& input, const Look& look,

@@ -360,7 +360,7 @@ TEST_CASE("glTF reader: what is not used is told", "[io]") {
     Diagnostics diagnostics;
     REQUIRE(read(folder, document, &diagnostics).surfaces.size() == 2);
     for (const char* part : {"room.gltf: not used: KHR_materials_transmission, skins, animations",
-                             "1 primitives of points or lines left out", "morph targets are not used",
+                             "1 primitive of points or lines left out", "morph targets are not used",
                              "textures are not used; baseColorFactor", "transparency is not used"}) {
         INFO(part);
         REQUIRE(has_warning(diagnostics, part));

@@ -40,7 +40,7 @@ TEST_CASE("Abaqus reader: shells are surfaces in the group of their surface, els
     CHECK(area_vector(scene.surfaces[2].polygon()).z == 0.5);
     REQUIRE(diagnostics.warnings().size() == 2);
     require_parts(diagnostics.warnings()[0], {"room.inp:19: 2 elements of type \"C3D4\" left out"});
-    require_parts(diagnostics.warnings()[1], {"1 elements of second order taken as plane"});
+    require_parts(diagnostics.warnings()[1], {"1 element of second order taken as plane"});
 }
 
 TEST_CASE("Abaqus reader: parts are placed by their instances, with sets and surfaces of the assembly",

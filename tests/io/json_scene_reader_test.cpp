@@ -215,7 +215,7 @@ TEST_CASE("JSON reader: surfaces without area are left out with a warning, or re
     Diagnostics diagnostics;
     REQUIRE(read(folder, text, &diagnostics).surfaces.size() == 1);
     REQUIRE(diagnostics.warnings().size() == 1);
-    require_parts(diagnostics.warnings()[0], {"room.json: 1 surfaces without area", "surfaces[1]"});
+    require_parts(diagnostics.warnings()[0], {"room.json: 1 surface without area", "surfaces[1]"});
 }
 
 TEST_CASE("JSON reader: syntax errors carry line and column", "[io]") {

@@ -81,7 +81,7 @@ TEST_CASE(
     const Scene scene = read(folder, "quad.obj", text, &diagnostics);
     REQUIRE(scene.surfaces.size() == 2);
     REQUIRE(diagnostics.warnings().size() == 1);
-    require_parts(diagnostics.warnings()[0], {"quad.obj:5: 1 faces out of plane cut into triangles"});
+    require_parts(diagnostics.warnings()[0], {"quad.obj:5: 1 face out of plane cut into triangles"});
     CHECK(glm::distance(area(scene), area_vector(std::vector<Vec3>{
                                          {0, 0, 0}, {1, 0, 0}, {1, 1, 0.2}, {0, 1, 0}})) < 1e-15);
     require_parts(message_of<ParseError>([&] { read(folder, "quad.obj", text, nullptr, {.strict = true}); }),
@@ -105,7 +105,7 @@ TEST_CASE("mended faces: a planarity of one's own keeps quadrilaterals that are 
     REQUIRE(whole.surfaces.size() == 1);
     CHECK_FALSE(polygon_defect(whole.surfaces[0].polygon()).has_value());
     CHECK(sum_of_areas(whole) == Approx(1.0).epsilon(1e-6));
-    require_parts(diagnostics.warnings().at(1), {"quad.obj:5: 1 faces moved into their planes", "0.001"});
+    require_parts(diagnostics.warnings().at(1), {"quad.obj:5: 1 face off plane by up to", "0.001"});
     const std::string nearly = vertices_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 4e-6}, {0, 1, 0}}) + face_of(4);
     CHECK(read(folder, "quad.obj", nearly).surfaces.size() == 1);
     CHECK(read(folder, "quad.obj", nearly, nullptr, {.planarity = 1e-7}).surfaces.size() == 2);
@@ -127,7 +127,7 @@ TEST_CASE("mended faces: concave faces keep their area and their side, wherever 
             CHECK(scene.surfaces.size() <= 3); // joined
             CHECK(sum_of_areas(scene) == Approx(3.0 * scale * scale));
             CHECK(area(scene).z == Approx(3.0 * scale * scale));
-            require_parts(diagnostics.warnings().at(0), {"ell.obj:7: 1 faces that are not convex cut"});
+            require_parts(diagnostics.warnings().at(0), {"ell.obj:7: 1 face that is not convex cut"});
         }
     }
     // A star of 40 points, and one that a spiral makes of two arms.

@@ -137,18 +137,17 @@ TEST_CASE("Gmsh reader: version 4.1 as text and in both byte orders, and binary 
         Diagnostics diagnostics;
         check_scene(read(folder, version_4(Output::Kind::text), diagnostics));
         check_warnings(diagnostics,
-                       {"room.msh: 1 surfaces of the geometry are in several physical surfaces",
-                        "room.msh:19: 1 lines left out, the first one here",
-                        "1 6-node triangles taken as plane between their corners, the first one here"});
+                       {"room.msh: 1 surface of the geometry is in several physical surfaces",
+                        "room.msh:19: 1 line left out, the first one here",
+                        "1 6-node triangle taken as plane between the corners, the first one here"});
     }
     for (const auto kind : {Output::Kind::little, Output::Kind::big}) {
         Diagnostics diagnostics;
         check_scene(read(folder, version_4(kind), diagnostics));
-        check_warnings(
-            diagnostics,
-            {"are in several physical surfaces; the first one of each counts",
-             "room.msh: 1 lines left out, the first one is element 1",
-             "1 6-node triangles taken as plane between their corners, the first one is element 4"});
+        check_warnings(diagnostics,
+                       {"is in several physical surfaces; the first one of each counts",
+                        "room.msh: 1 line left out, the first one is element 1",
+                        "1 6-node triangle taken as plane between the corners, the first one is element 4"});
         Diagnostics of_old;
         check_scene(read(folder, binary_version_2(kind), of_old));
         CHECK(of_old.warnings().size() == 2);
@@ -166,7 +165,7 @@ TEST_CASE("Gmsh reader: parametric nodes of version 2.2, and second order read b
         diagnostics);
     REQUIRE(scene.surfaces.size() == 1);
     CHECK(glm::length(area_vector(scene.surfaces[0].polygon())) == Approx(2.0));
-    check_warnings(diagnostics, {"room.msh:15: 1 6-node triangles taken as plane"});
+    check_warnings(diagnostics, {"room.msh:15: 1 6-node triangle taken as plane"});
 }
 
 TEST_CASE("Gmsh reader: a physical surface below 0, of a surface turned round, is that of its number",

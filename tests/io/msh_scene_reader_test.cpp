@@ -80,9 +80,9 @@ TEST_CASE("Gmsh reader: points, lines, volumes and other sections are left out w
     REQUIRE(scene.surfaces.size() == 1);
     REQUIRE(diagnostics.warnings().size() == 4);
     require_parts(diagnostics.warnings()[0], {"room.msh:23: the section \"$NodeData\" is not used"});
-    require_parts(diagnostics.warnings()[1], {"room.msh:17: 1 points left out, the first one here"});
+    require_parts(diagnostics.warnings()[1], {"room.msh:17: 1 point left out, the first one here"});
     require_parts(diagnostics.warnings()[2], {"room.msh:18: 2 lines left out"});
-    require_parts(diagnostics.warnings()[3], {"room.msh:20: 1 volume elements left out"});
+    require_parts(diagnostics.warnings()[3], {"room.msh:20: 1 volume element left out"});
 }
 
 TEST_CASE("Gmsh reader: blank lines and line ends of CR LF do not matter, faces without area are left out",
@@ -97,7 +97,7 @@ TEST_CASE("Gmsh reader: blank lines and line ends of CR LF do not matter, faces 
                   {"room.msh:17: face: zero area"});
     Diagnostics diagnostics;
     REQUIRE(read(folder, text, &diagnostics, {.two_sided_groups = {"physical_1"}}).surfaces.size() == 1);
-    require_parts(diagnostics.warnings().at(0), {"room.msh:17: 1 faces without area left out"});
+    require_parts(diagnostics.warnings().at(0), {"room.msh:17: 1 face without area left out"});
 }
 
 TEST_CASE("Gmsh reader: in a JSON scene, materials of the physical surfaces' names are theirs", "[io]") {

@@ -262,7 +262,7 @@ TEST_CASE("OBJ reader: a concave face is cut, and one whose edges cross is refus
     const Scene cut_arrow = read(folder, arrow + "f 1 2 3 4\n", &diagnostics);
     CHECK(area(cut_arrow) == Approx(1.0));
     CHECK(cut_arrow.surfaces.size() == 2);
-    require_parts(diagnostics.warnings().at(0), {"room.obj:5: 1 faces that are not convex cut"});
+    require_parts(diagnostics.warnings().at(0), {"room.obj:5: 1 face that is not convex cut"});
     const std::string five = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\n";
     CHECK(area(read(folder, five + "f 1 2 3 4 5\n")) == Approx(2.5));
     std::string star;

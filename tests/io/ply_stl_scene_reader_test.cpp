@@ -114,7 +114,7 @@ TEST_CASE("PLY reader: text and binary of both byte orders give the same faces, 
         REQUIRE(scene.surfaces[1].vertices[2] == Vec3(0.1, 0.5, 3));
         REQUIRE(scene.surfaces[3].vertex_count == 3); // the rest of the pentagon
         REQUIRE(diagnostics.warnings().size() == 1);
-        require_parts(diagnostics.warnings()[0], {"1 faces of more than 4 vertices cut"});
+        require_parts(diagnostics.warnings()[0], {"1 face of more than 4 vertices cut"});
     }
 }
 
@@ -128,7 +128,7 @@ TEST_CASE("PLY reader: line ends of CR LF, blank lines and elements of other kin
     Diagnostics diagnostics;
     REQUIRE(read(folder, "a.ply", text, &diagnostics).surfaces.size() == 1);
     REQUIRE(diagnostics.warnings().size() == 1);
-    require_parts(diagnostics.warnings()[0], {"a.ply: the 1 elements \"edge\" are not used"});
+    require_parts(diagnostics.warnings()[0], {"a.ply: the 1 element \"edge\" is not used"});
     std::string binary = binary_head("3", "1");
     binary.replace(binary.find("ply\n"), 4, "ply\r\n");
     binary.replace(binary.find("end_header\n"), 11, "end_header\r\n");
@@ -146,14 +146,14 @@ TEST_CASE("PLY reader: faces without area are left out, named by line or by numb
                   {"a.ply:14: face: zero area"});
     Diagnostics diagnostics;
     REQUIRE(read(folder, "a.ply", two, &diagnostics).surfaces.size() == 1);
-    require_parts(diagnostics.warnings().at(0), {"a.ply:14: 1 faces without area left out"});
+    require_parts(diagnostics.warnings().at(0), {"a.ply:14: 1 face without area left out"});
     const std::string binary = binary_head("3", "2") + floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + '\3' + bytes(0) +
                                bytes(1) + bytes(2) + '\3' + bytes(0) + bytes(1) + bytes(1);
     require_parts(message_of<InputError>([&] { read(folder, "a.ply", binary, nullptr, strict); }),
                   {"a.ply: face 1: zero area"});
     REQUIRE(read(folder, "a.ply", binary, &diagnostics).surfaces.size() == 1);
     require_parts(diagnostics.warnings().at(1),
-                  {"a.ply: 1 faces without area left out, the first one is face 1"});
+                  {"a.ply: 1 face without area left out, the first one is face 1"});
 }
 
 TEST_CASE("PLY reader: what is wrong is named with its place, its value and what would be right", "[io]") {

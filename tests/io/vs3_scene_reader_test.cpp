@@ -89,7 +89,7 @@ TEST_CASE("View3D reader: what changes a meaning is told as a warning", "[io]") 
         {"room.vs3:1: the control word \"maxD\" is not known and not used"},
         {"room.vs3:6: emissivity 0 taken as 0.001"},
         {"room.vs3:6: \"wall\" after the name is not used; a name is one word"},
-        {"room.vs3:8: 1 surfaces without area left out"}};
+        {"room.vs3:8: 1 surface without area left out"}};
     for (std::size_t k = 0; k < parts.size(); ++k) {
         INFO(k);
         const auto& warnings = diagnostics.warnings();

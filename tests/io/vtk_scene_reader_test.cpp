@@ -46,7 +46,7 @@ TEST_CASE("VTK reader: files of VTK's own writers, of every encoding, say the sa
         CHECK(scene.surfaces[1].vertex_count == 3);
         CHECK(scene.surfaces[1].group == 1);
         REQUIRE(diagnostics.warnings().size() == 1);
-        require_parts(diagnostics.warnings()[0], {"1 cells that are no surfaces left out"});
+        require_parts(diagnostics.warnings()[0], {"1 cell that is no surface left out"});
     }
     CHECK(files == 10);
 }
@@ -65,7 +65,7 @@ TEST_CASE("VTK reader: strips, pixels and cells of second order", "[io]") {
     Diagnostics diagnostics;
     const Scene curved = read(folder.write("a.vtu", cells("0 1 2 3 3 3", "6", "22")), &diagnostics);
     CHECK(curved.surfaces[0].vertex_count == 3);
-    require_parts(diagnostics.warnings().at(0), {"a.vtu: 1 cells of second order or more taken as plane"});
+    require_parts(diagnostics.warnings().at(0), {"a.vtu: 1 cell of second order or more taken as plane"});
     struct Cell {
         std::string nodes;
         std::string count;
@@ -79,7 +79,7 @@ TEST_CASE("VTK reader: strips, pixels and cells of second order", "[io]") {
         Diagnostics told;
         const Scene scene = read(folder.write("a.vtu", cells(cell.nodes, cell.count, cell.type)), &told);
         CHECK(scene.surfaces.at(0).vertex_count == cell.corners);
-        require_parts(told.warnings().at(0), {"1 cells of second order or more taken as plane"});
+        require_parts(told.warnings().at(0), {"1 cell of second order or more taken as plane"});
     }
 }
 

@@ -1,4 +1,5 @@
 #include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
 #include "io/formats/text_scan.hpp"
 #include "io/meshes/face_builder.hpp"
 
@@ -389,14 +390,14 @@ private:
 
     void tell_left_out() const {
         for (const auto& [type, left] : left_out_) {
-            diagnostics_.warn(fmt::format(
-                "{}:{}: {} elements {} left out, the first one here; surfaces are CTRIA3, CTRIA6, CTRIAR, "
-                "CQUAD4, CQUAD8 and CQUADR",
-                file_, left.second, left.first, type));
+            diagnostics_.warn(
+                fmt::format("{}:{}: {} {} left out, the first one here; surfaces are CTRIA3, CTRIA6, CTRIAR, "
+                            "CQUAD4, CQUAD8 and CQUADR",
+                            file_, left.second, plural(left.first, "element", "elements"), type));
         }
         if (curved_ > 0) {
-            diagnostics_.warn(fmt::format(
-                "{}: {} elements of second order taken as plane between their corners", file_, curved_));
+            diagnostics_.warn(fmt::format("{}: {} of second order taken as plane between the corners", file_,
+                                          plural(curved_, "element", "elements")));
         }
     }
 

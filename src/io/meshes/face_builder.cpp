@@ -10,7 +10,7 @@
 namespace hemi::io {
 
 FaceBuilder::FaceBuilder(const std::filesystem::path& path, const SceneReaderOptions& options)
-    : file_(path.string()), mender_(options, "faces") {
+    : file_(path.string()), mender_(options, "face") {
     mesh_.path = path;
 }
 

@@ -1,5 +1,6 @@
 #include "io/meshes/face_mender.hpp"
 
+#include "hemi/core/text.hpp"
 #include "hemi/scene/scene.hpp"
 #include "io/meshes/tessellation.hpp"
 
@@ -326,16 +327,16 @@ void FaceMender::tell(const std::string& file, Diagnostics& diagnostics) const {
         if (of.count == 0) {
             return;
         }
-        diagnostics.warn(of.first.line > 0 ? fmt::format("{}:{}: {} {} {}, the first one here", file,
-                                                         of.first.line, of.count, noun_, what)
-                                           : fmt::format("{}: {} {} {}, the first one is {}", file, of.count,
-                                                         noun_, what, of.first.name));
+        const std::string faces = fmt::format("{} {}", plural(of.count, noun_, noun_ + "s"), what);
+        diagnostics.warn(of.first.line > 0
+                             ? fmt::format("{}:{}: {}, the first one here", file, of.first.line, faces)
+                             : fmt::format("{}: {}, the first one is {}", file, faces, of.first.name));
     };
     warn(without_area_, "without area left out");
-    warn(flattened_, fmt::format("moved into their planes, which they were off by up to {:g} of their sizes",
-                                 planarity_));
+    warn(flattened_, fmt::format("off plane by up to {:g} of the size moved into the plane", planarity_));
     warn(not_plane_, "out of plane cut into triangles");
-    warn(not_convex_, "that are not convex cut into triangles and quadrilaterals");
+    warn(not_convex_, fmt::format("that {} not convex cut into triangles and quadrilaterals",
+                                  not_convex_.count == 1 ? "is" : "are"));
     warn(many_corners_, "of more than 4 vertices cut into quadrilaterals and triangles");
 }
 

@@ -26,7 +26,7 @@ class FaceMender {
 public:
     using Where = std::function<FaceSpot()>; ///< asked only for messages
 
-    /// @param noun  what the format calls a face, in the plural
+    /// @param noun  what the format calls a face
     FaceMender(const SceneReaderOptions& options, std::string noun);
 
     /// Makes pieces() of a face. Corners that are repeated in a row count once.

@@ -1,4 +1,5 @@
 #include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
 #include "io/formats/text_scan.hpp"
 #include "io/meshes/face_builder.hpp"
 
@@ -115,18 +116,18 @@ public:
             more = read_keyword();
         }
         for (const auto& [type, left] : left_out_) {
-            diagnostics_.warn(
-                fmt::format("{}:{}: {} elements of type {} left out, the first one here; surfaces are "
-                            "shells, membranes and rigid elements of 3 or 4 corners",
-                            file_, left.second, left.first, in_quotes(type)));
+            diagnostics_.warn(fmt::format("{}:{}: {} of type {} left out, the first one here; surfaces are "
+                                          "shells, membranes and rigid elements of 3 or 4 corners",
+                                          file_, left.second, plural(left.first, "element", "elements"),
+                                          in_quotes(type)));
         }
         if (both_sides_ > 0) {
-            diagnostics_.warn(fmt::format(
-                "{}: {} elements are in several surfaces; the first one of each counts", file_, both_sides_));
+            diagnostics_.warn(fmt::format("{}: {} in several surfaces; the first one of each counts", file_,
+                                          plural(both_sides_, "element is", "elements are")));
         }
         if (curved_ > 0) {
-            diagnostics_.warn(fmt::format(
-                "{}: {} elements of second order taken as plane between their corners", file_, curved_));
+            diagnostics_.warn(fmt::format("{}: {} of second order taken as plane between the corners", file_,
+                                          plural(curved_, "element", "elements")));
         }
         if (instances_.empty()) {
             for (const auto& [name, part] : parts_) {

@@ -1,6 +1,7 @@
 #include "io/meshes/msh_blocks.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
 #include "io/formats/binary_scan.hpp"
 #include "io/formats/text_scan.hpp"
 #include "io/meshes/msh_faces.hpp"
@@ -230,9 +231,8 @@ public:
         }
         if (several_ > 0) {
             diagnostics_.warn(
-                fmt::format("{}: {} surfaces of the geometry are in several physical surfaces; the "
-                            "first one of each counts",
-                            file_, several_));
+                fmt::format("{}: {} in several physical surfaces; the first one of each counts", file_,
+                            plural(several_, "surface of the geometry is", "surfaces of the geometry are")));
         }
         return faces_.finish(diagnostics_);
     }

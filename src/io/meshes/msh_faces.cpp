@@ -1,6 +1,7 @@
 #include "io/meshes/msh_faces.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
 #include "io/formats/text_scan.hpp"
 
 #include <fmt/format.h>
@@ -27,31 +28,31 @@ constexpr std::array element_types{
     MshElementType{6, Kind::volume, 6, ""},
     MshElementType{7, Kind::volume, 5, ""},
     MshElementType{8, Kind::line, 3, ""},
-    MshElementType{9, Kind::triangle, 6, "6-node triangles"},
-    MshElementType{10, Kind::quadrilateral, 9, "9-node quadrilaterals"},
+    MshElementType{9, Kind::triangle, 6, "6-node triangle"},
+    MshElementType{10, Kind::quadrilateral, 9, "9-node quadrilateral"},
     MshElementType{11, Kind::volume, 10, ""},
     MshElementType{12, Kind::volume, 27, ""},
     MshElementType{13, Kind::volume, 18, ""},
     MshElementType{14, Kind::volume, 14, ""},
     MshElementType{15, Kind::point, 1, ""},
-    MshElementType{16, Kind::quadrilateral, 8, "8-node quadrilaterals"},
+    MshElementType{16, Kind::quadrilateral, 8, "8-node quadrilateral"},
     MshElementType{17, Kind::volume, 20, ""},
     MshElementType{18, Kind::volume, 15, ""},
     MshElementType{19, Kind::volume, 13, ""},
-    MshElementType{20, Kind::triangle, 9, "9-node triangles"},
-    MshElementType{21, Kind::triangle, 10, "10-node triangles"},
-    MshElementType{22, Kind::triangle, 12, "12-node triangles"},
-    MshElementType{23, Kind::triangle, 15, "15-node triangles"},
-    MshElementType{24, Kind::triangle, 15, "15-node triangles of incomplete order"},
-    MshElementType{25, Kind::triangle, 21, "21-node triangles"},
+    MshElementType{20, Kind::triangle, 9, "9-node triangle"},
+    MshElementType{21, Kind::triangle, 10, "10-node triangle"},
+    MshElementType{22, Kind::triangle, 12, "12-node triangle"},
+    MshElementType{23, Kind::triangle, 15, "15-node triangle"},
+    MshElementType{24, Kind::triangle, 15, "incomplete 15-node triangle"},
+    MshElementType{25, Kind::triangle, 21, "21-node triangle"},
     MshElementType{26, Kind::line, 4, ""},
     MshElementType{27, Kind::line, 5, ""},
     MshElementType{28, Kind::line, 6, ""},
     MshElementType{29, Kind::volume, 20, ""},
     MshElementType{30, Kind::volume, 35, ""},
     MshElementType{31, Kind::volume, 56, ""},
-    MshElementType{36, Kind::quadrilateral, 16, "16-node quadrilaterals"},
-    MshElementType{37, Kind::quadrilateral, 25, "25-node quadrilaterals"},
+    MshElementType{36, Kind::quadrilateral, 16, "16-node quadrilateral"},
+    MshElementType{37, Kind::quadrilateral, 25, "25-node quadrilateral"},
     MshElementType{92, Kind::volume, 64, ""},
     MshElementType{93, Kind::volume, 125, ""},
 };
@@ -146,13 +147,11 @@ void MshFaces::leave_out(const MshElementType& type, FacePlace place) {
 FaceMesh MshFaces::finish(Diagnostics& diagnostics) {
     refuse_twins();
     const char* const faces = "left out, {}; surfaces are triangles and quadrilaterals";
-    warn_of(points_, fmt::format("points {}", faces), diagnostics);
-    warn_of(edges_, fmt::format("lines {}", faces), diagnostics);
-    warn_of(volumes_, fmt::format("volume elements {}", faces), diagnostics);
+    warn_of(points_, "point", faces, diagnostics);
+    warn_of(edges_, "line", faces, diagnostics);
+    warn_of(volumes_, "volume element", faces, diagnostics);
     for (const auto& [number, met] : curved_) {
-        warn_of(met,
-                fmt::format("{} taken as plane between their corners, {{}}",
-                            find_msh_element_type(number)->curved),
+        warn_of(met, find_msh_element_type(number)->curved, "taken as plane between the corners, {}",
                 diagnostics);
     }
     return faces_.finish("triangles or quadrilaterals in $Elements", diagnostics);
@@ -194,13 +193,15 @@ void MshFaces::refuse_twins() {
                                  same->number, rule));
 }
 
-void MshFaces::warn_of(const Met& met, const std::string& what, Diagnostics& diagnostics) const {
+void MshFaces::warn_of(const Met& met, const std::string& noun, const char* what,
+                       Diagnostics& diagnostics) const {
     if (met.count > 0) {
         const bool by_line = met.first.line > 0;
         const std::string first =
             by_line ? "the first one here" : fmt::format("the first one is element {}", met.first.number);
         diagnostics.warn(fmt::format("{}{}: {} {}", file_, by_line ? fmt::format(":{}", met.first.line) : "",
-                                     met.count, fmt::format(fmt::runtime(what), first)));
+                                     plural(met.count, noun, noun + "s"),
+                                     fmt::format(fmt::runtime(what), first)));
     }
 }
 

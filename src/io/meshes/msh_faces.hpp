@@ -86,7 +86,7 @@ private:
 
     const Group& group_of(Tags tags);
     void refuse_twins();
-    void warn_of(const Met& met, const std::string& what, Diagnostics& diagnostics) const;
+    void warn_of(const Met& met, const std::string& noun, const char* what, Diagnostics& diagnostics) const;
 
     std::string file_;
     FaceBuilder faces_;

@@ -1,4 +1,5 @@
 #include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
 #include "hemi/io/output_file.hpp"
 #include "io/formats/binary_scan.hpp"
 #include "io/formats/text_scan.hpp"
@@ -233,8 +234,9 @@ private:
                     refuse("element face before element vertex; vertices must come first");
                 }
             } else if (element.count > 0) {
-                diagnostics_.warn(fmt::format("{}: the {} elements {} are not used", file_, element.count,
-                                              in_quotes(element.name)));
+                diagnostics_.warn(fmt::format("{}: the {} {} {} not used", file_,
+                                              plural(element.count, "element", "elements"),
+                                              in_quotes(element.name), element.count == 1 ? "is" : "are"));
             }
         }
         if (faces == nullptr) {

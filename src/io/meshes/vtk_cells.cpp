@@ -1,6 +1,7 @@
 #include "io/meshes/vtk_cells.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
 #include "hemi/io/output_file.hpp"
 #include "io/formats/text_scan.hpp"
 
@@ -120,12 +121,13 @@ void VtkFaces::add(const VtkCells& cells) {
 
 FaceMesh VtkFaces::finish(Diagnostics& diagnostics) {
     if (left_out_ > 0) {
-        diagnostics.warn(fmt::format("{}: {} cells that are no surfaces left out (points, lines, volumes)",
-                                     file_, left_out_));
+        diagnostics.warn(
+            fmt::format("{}: {} left out (points, lines, volumes)", file_,
+                        plural(left_out_, "cell that is no surface", "cells that are no surfaces")));
     }
     if (curved_ > 0) {
-        diagnostics.warn(fmt::format(
-            "{}: {} cells of second order or more taken as plane between their corners", file_, curved_));
+        diagnostics.warn(fmt::format("{}: {} of second order or more taken as plane between the corners",
+                                     file_, plural(curved_, "cell", "cells")));
     }
     return faces_.finish("polygons, or cells that are triangles or quadrilaterals", diagnostics);
 }

@@ -46,7 +46,7 @@ public:
     EpjsonReader(const std::filesystem::path& path, const SceneReaderOptions& options,
                  Diagnostics& diagnostics)
         : file_(path.string()), document_(parse_json(read_file(path), file_)), root_(document_, file_),
-          options_(options), diagnostics_(diagnostics), mender_(options, "surfaces") {}
+          options_(options), diagnostics_(diagnostics), mender_(options, "surface") {}
 
     Scene read() {
         root_.check_object();

@@ -1,4 +1,5 @@
 #include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "io/formats/text_scan.hpp"
 #include "io/meshes/face_mender.hpp"
@@ -121,7 +122,7 @@ public:
         : file_(path.string()), gltf_(path, options.allow_outside), options_(options),
           diagnostics_(diagnostics), nodes_(gltf_.root(), "nodes"), meshes_(gltf_.root(), "meshes"),
           materials_(gltf_.root(), "materials"), cameras_(gltf_.root(), "cameras"),
-          mender_(options, "triangles"), material_indices_(materials_.size() + 1, none),
+          mender_(options, "triangle"), material_indices_(materials_.size() + 1, none),
           quantized_(gltf_.uses("KHR_mesh_quantization")) {
         scene_.name = to_utf8(path.stem().string());
         scene_.up = UpAxis::y;
@@ -484,7 +485,8 @@ private:
 
     void tell_left_out() {
         if (without_faces_ > 0) {
-            warn(fmt::format("{} primitives of points or lines left out", without_faces_));
+            warn(fmt::format("{} of points or lines left out",
+                             plural(without_faces_, "primitive", "primitives")));
         }
         mender_.tell(file_, diagnostics_);
         if (has_morph_targets_) {

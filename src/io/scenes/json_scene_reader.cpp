@@ -127,7 +127,7 @@ public:
                     Diagnostics& diagnostics)
         : path_(path), file_(path.string()), options_(options), diagnostics_(diagnostics),
           document_(parse_json(read_text(path), file_)), root_(document_, file_),
-          folder_(path, options.allow_outside), mender_(options, "surfaces") {}
+          folder_(path, options.allow_outside), mender_(options, "surface") {}
 
     Scene read() {
         check_version();

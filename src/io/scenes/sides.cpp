@@ -2,6 +2,7 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/core/nearest_word.hpp"
+#include "hemi/core/text.hpp"
 #include "io/formats/text_scan.hpp"
 
 #include <fmt/format.h>
@@ -53,10 +54,10 @@ void set_sides(Scene& scene, const SceneReaderOptions& options, const std::strin
         const OneSidedBodies closed = make_bodies_one_sided(scene, exported);
         if (closed.faces > 0) {
             diagnostics.warn(fmt::format(
-                "{}: {} double-sided faces taken as one-sided: they close in {} bodies, of which one side "
-                "meets "
-                "nothing (the inside is left of {}, the outside of {}); --two-sided GROUP keeps both",
-                file, closed.faces, closed.inwards + closed.outwards, closed.inwards, closed.outwards));
+                "{}: {} taken as one-sided: they close in {}, of which one side meets nothing (the inside is "
+                "left of {}, the outside of {}); --two-sided GROUP keeps both",
+                file, plural(closed.faces, "double-sided face", "double-sided faces"),
+                plural(closed.inwards + closed.outwards, "body", "bodies"), closed.inwards, closed.outwards));
         }
     }
     const OrientedFaces oriented = orient(scene, options.orientation);
@@ -65,8 +66,9 @@ void set_sides(Scene& scene, const SceneReaderOptions& options, const std::strin
             fmt::format("{}: {} of {} faces turned round", file, oriented.turned, scene.surfaces.size()));
     }
     if (oriented.undecided > 0) {
-        diagnostics.warn(
-            fmt::format("{}: {} faces enclose no volume and are not turned", file, oriented.undecided));
+        diagnostics.warn(fmt::format("{}: {} no volume and {} not turned", file,
+                                     plural(oriented.undecided, "face encloses", "faces enclose"),
+                                     oriented.undecided == 1 ? "is" : "are"));
     }
     for (Surface& surface : scene.surfaces) {
         if (flipped[surface.group]) {

@@ -44,7 +44,7 @@ class Vs3Reader {
 public:
     Vs3Reader(const std::filesystem::path& path, const SceneReaderOptions& options, Diagnostics& diagnostics)
         : file_(path.string()), text_(read_text(path)), lines_(text_), options_(options),
-          diagnostics_(diagnostics), mender_(options, "surfaces") {
+          diagnostics_(diagnostics), mender_(options, "surface") {
         scene_.name = to_utf8(path.stem().string());
         scene_.environment = {0.0};
     }
