@@ -86,6 +86,12 @@ void bake_result(const BakeArguments& arguments, const Outputs& outputs, const T
     refuse_all_but(arguments.common, std::vector<std::string>{"--output", "--show", "--flat", "--exposure"},
                    path);
     io::ResultFile result = io::read_hres(path);
+    if (!result.solution.temperature.empty()) {
+        throw InvalidArgument(
+            fmt::format("{}: has heat, which is no light to bake; `hemi render` draws it, and "
+                        "`hemi convert` makes a .vtp of it",
+                        path.string()));
+    }
     const PatchMesh mesh(result.scene, result.subdivision);
     io::complete_solution(result, mesh);
     write_baked(arguments, outputs, result.scene, mesh, result.solution, terminal);

@@ -34,6 +34,17 @@ Vec3 vector_in(const std::filesystem::path& path, const io::TextTable& table, st
             number_in(path, table, row, columns[2])};
 }
 
+/// Those that are not there are not numbers.
+std::vector<double> values_in(const std::filesystem::path& path, const io::TextTable& table,
+                              std::size_t column) {
+    std::vector<double> values;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        values.push_back(table.rows[row][column].empty() ? std::numeric_limits<double>::quiet_NaN()
+                                                         : number_in(path, table, row, column));
+    }
+    return values;
+}
+
 /// @return nothing if none of them is there
 std::optional<std::array<std::size_t, 3>> find_columns(const std::filesystem::path& path,
                                                        const io::TextTable& table,
@@ -106,7 +117,7 @@ std::vector<Receiver> read_points(const std::filesystem::path& path) {
     return points;
 }
 
-PointTable read_point_table(const std::filesystem::path& path) {
+PointTable read_point_table(const std::filesystem::path& path, std::string_view column) {
     const io::TextTable table = io::read_table(path);
     refuse_repeated(path, table);
     const auto positions = find_columns(path, table, position_columns);
@@ -117,23 +128,23 @@ PointTable read_point_table(const std::filesystem::path& path) {
         throw InputError(fmt::format("{}: no points", path.string()));
     }
     PointTable points;
-    std::vector<std::size_t> value_columns;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        points.positions.push_back(vector_in(path, table, row, *positions));
+    }
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
         const std::string& name = table.columns[c];
         const auto is = [&name](const std::vector<std::string>& names) {
             return std::find(names.begin(), names.end(), name) != names.end();
         };
-        if (!is(position_columns) && !is(normal_columns)) {
-            value_columns.push_back(c);
-            points.columns.push_back({name, unit_of_column(name), {}});
+        if (is(position_columns) || is(normal_columns)) {
+            continue;
         }
-    }
-    for (std::size_t row = 0; row < table.rows.size(); ++row) {
-        points.positions.push_back(vector_in(path, table, row, *positions));
-        for (std::size_t k = 0; k < value_columns.size(); ++k) {
-            points.columns[k].values.push_back(table.rows[row][value_columns[k]].empty()
-                                                   ? std::numeric_limits<double>::quiet_NaN()
-                                                   : number_in(path, table, row, value_columns[k]));
+        try {
+            points.columns.push_back({name, unit_of_column(name), values_in(path, table, c)});
+        } catch (const ParseError&) { // words, such as names of rooms
+            if (name == column) {
+                throw;
+            }
         }
     }
     return points;
@@ -160,7 +171,7 @@ std::optional<std::size_t> dots_column(const DotOptions& options, const PointTab
 }
 
 Dots read_dots(const DotOptions& options, const Bounds& scene) {
-    const PointTable table = read_point_table(*options.points);
+    const PointTable table = read_point_table(*options.points, options.column);
     return make_dots(table, dots_column(options, table), scene);
 }
 

@@ -20,10 +20,11 @@ namespace hemi::cli {
 /// @throws InputError, ParseError with the place
 [[nodiscard]] std::vector<Receiver> read_points(const std::filesystem::path& path);
 
-/// Points of a table with columns x, y, z, and all its other columns but nx, ny, nz as values: what `points`
-/// reads and what it writes. Cells of values may be empty.
+/// Points of a table with columns x, y, z, and its other columns of numbers but nx, ny, nz as values: what
+/// `points` reads and what it writes. Cells of values may be empty.
+/// @param column  one that is asked for, which must be of numbers
 /// @throws InputError, ParseError with the place
-[[nodiscard]] PointTable read_point_table(const std::filesystem::path& path);
+[[nodiscard]] PointTable read_point_table(const std::filesystem::path& path, std::string_view column);
 
 /// Dots in the colours of the column that is asked for.
 /// @throws InvalidArgument for a column that is not there, with the nearest; as read_point_table()

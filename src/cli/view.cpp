@@ -137,7 +137,8 @@ private:
         input.scene = std::move(scene);
         input.mesh = std::move(mesh);
         if (arguments_.dots.points) {
-            auto points = std::make_shared<const PointTable>(read_point_table(*arguments_.dots.points));
+            auto points = std::make_shared<const PointTable>(
+                read_point_table(*arguments_.dots.points, arguments_.dots.column));
             input.dots_column = dots_column(arguments_.dots, *points);
             input.points = std::move(points);
             input.points_file = *arguments_.dots.points;

@@ -52,7 +52,9 @@ TEST_CASE("Viewer: points are dots with the values of a column, told under the c
     CHECK(refused("--column irradiance").first == 2);
     CHECK(refused("--points points.csv -o a.hdr").first == 2);
     place.write("points.csv", "x,y,z,irradiance\n0,0,0,bright\n");
-    const auto [unsound, place_of_it] = refused("--points points.csv");
+    const auto [unsound, place_of_it] = refused("--points points.csv --column irradiance");
     CHECK(unsound == 3);
     CHECK(place_of_it.find("points.csv:2") != std::string::npos);
+    place.write("points.csv", "x,y,z,room,irradiance\n0.5,0.5,0.5,hall,7\n"); // words are no values
+    CHECK(refused("--points points.csv --device osmesa --size 30x20 -o words.png").first == 0);
 }
