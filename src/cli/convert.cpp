@@ -52,10 +52,6 @@ void write_cells(const ConvertArguments& arguments, const io::ResultFile& result
             arrays.push_back(io::row_array(factors, row));
         }
     }
-    for (io::CellArray& array : arrays) { // the format has numbers only
-        std::replace_if(
-            array.values.begin(), array.values.end(), [](double value) { return std::isnan(value); }, 0.0);
-    }
     io::write_vtp(arguments.output, mesh, arrays);
     std::vector<std::string> names;
     for (const io::CellArray& array : arrays) {

@@ -10,6 +10,7 @@
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
+#include "hemi/core/text.hpp"
 #include "hemi/io/table_file.hpp"
 #include "hemi/io/vtp_file.hpp"
 #include "hemi/pipeline/daylight.hpp"
@@ -145,11 +146,6 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
                               loaded.as_read ? loaded.as_read->left : io::PatchPlaces());
     }
     if (arguments.output && !is_picture(*arguments.output)) {
-        for (io::CellArray& array : arrays) {
-            for (double& value : array.values) {
-                value = std::isfinite(value) ? value : 0.0; // the format has numbers only
-            }
-        }
         io::write_vtp(*arguments.output, loaded.mesh, arrays);
     }
 }
@@ -224,7 +220,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
         const Stopwatch series_watch;
         series = solve_heat_series(factors, problem, schedule, {}, observer);
         seconds["series"] = series_watch.seconds();
-        terminal.detail(fmt::format("{} lines {}", lines->rows.size(),
+        terminal.detail(fmt::format("{} {}", plural(lines->rows.size(), "line", "lines"),
                                     series.superposed ? "by superposition of one solve a column"
                                                       : "solved one by one: the problem is not linear"));
     }

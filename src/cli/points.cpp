@@ -311,14 +311,10 @@ Lit light_of_result(const PointsArguments& arguments, Seconds& seconds,
     return lit;
 }
 
-/// Values without those that are not numbers, which the format does not have.
 std::vector<io::CellArray> arrays_of(const PointColumns& columns) {
     std::vector<io::CellArray> arrays;
     for (std::size_t c = 0; c < columns.names.size(); ++c) {
-        std::vector<double> values = columns.values[c];
-        std::replace_if(
-            values.begin(), values.end(), [](double value) { return !std::isfinite(value); }, 0.0);
-        arrays.push_back({columns.names[c], std::move(values), {}});
+        arrays.push_back({columns.names[c], columns.values[c], {}});
     }
     return arrays;
 }

@@ -5,13 +5,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 namespace hemi {
 
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 double emissivity_of(const HeatProblem& problem, const HeatSolution& solution, std::uint32_t i,
                      std::uint32_t band) {
@@ -38,23 +35,17 @@ Solution heat_as_solution(const FormFactors& factors, const HeatProblem& problem
     result.temperature = solution.temperature;
     result.net_flux = solution.net_flux;
     for (std::uint32_t i = 0; i < size; ++i) {
-        const bool buried = solution.buried[i] != 0;
         for (std::uint32_t c = 0; c < channels; ++c) {
             const std::uint32_t band = bands == 1 ? 0 : c;
             const std::size_t k = std::size_t{i} * bands + band;
-            const double radiosity = buried ? none : solution.radiosity[k];
-            const double irradiation = buried ? none : solution.irradiation[k];
-            result.radiosity.push_back(radiosity);
-            result.irradiance.push_back(irradiation);
-            result.exitance.push_back(radiosity -
-                                      (1.0 - emissivity_of(problem, solution, i, band)) * irradiation);
+            result.radiosity.push_back(solution.radiosity[k]);
+            result.irradiance.push_back(solution.irradiation[k]);
+            result.exitance.push_back(solution.radiosity[k] -
+                                      (1.0 - emissivity_of(problem, solution, i, band)) *
+                                          solution.irradiation[k]);
             if (!problem.direct.empty()) {
                 result.direct.push_back(problem.direct[k]);
             }
-        }
-        if (buried) {
-            result.temperature[i] = none;
-            result.net_flux[i] = none;
         }
         const RowView row = factors.matrix.row(i);
         result.row_sum.push_back(row.sum());

@@ -334,9 +334,7 @@ Radiation radiation_of(const Scene& scene, const Solution& solution) {
     radiation.environment.resize(bands, 0.0);
     for (std::size_t i = 0; i < patches; ++i) {
         for (std::uint32_t band = 0; band < bands; ++band) {
-            radiation.radiosity.push_back(std::isnan(solution.net_flux[i]) // buried
-                                              ? std::numeric_limits<double>::quiet_NaN()
-                                              : solution.radiosity[i * solution.channels + band]);
+            radiation.radiosity.push_back(solution.radiosity[i * solution.channels + band]);
         }
     }
     radiation.short_wave = short_waves(limits);

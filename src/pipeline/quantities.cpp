@@ -4,6 +4,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/nearest_word.hpp"
 #include "hemi/scene/light_unit.hpp"
+#include "hemi/scene/thermal_exitance.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -215,7 +216,7 @@ FalseColours patch_quantity(Quantity quantity, const Scene& scene, const PatchMe
         break;
     case Quantity::reflectance:
     case Quantity::emissivity:
-        shown = {one_value(patch_values(mesh, scene.materials, &Material::reflectance), weights), title + of,
+        shown = {one_value(reflectances_at(mesh, scene.materials, solution.temperature), weights), title + of,
                  ""};
         for (double& value : shown.values) {
             value = quantity == Quantity::emissivity ? 1.0 - value : value;

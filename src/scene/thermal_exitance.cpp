@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -77,6 +79,20 @@ void radiate_by_temperature(Scene& scene, Diagnostics& diagnostics) {
                         plural(unsolved.size(), "group", "groups"), scene.groups[*unsolved.begin()],
                         unsolved.size() == 1 ? "s" : "", unsolved.size() == 1 ? "s" : ""));
     }
+}
+
+std::vector<double> reflectances_at(const PatchMesh& mesh, std::span<const Material> materials,
+                                    std::span<const double> temperature) {
+    std::vector<double> values = patch_values(mesh, materials, &Material::reflectance);
+    for (std::uint32_t i = 0; i < mesh.size() && i < temperature.size(); ++i) {
+        const Material& material = materials[mesh.material(i)];
+        if (!material.emissivity_table.empty() && std::isfinite(temperature[i])) {
+            const std::size_t channels = material.reflectance.size();
+            std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(i * channels), channels,
+                        1.0 - emissivity_at(material.emissivity_table, temperature[i]));
+        }
+    }
+    return values;
 }
 
 } // namespace hemi

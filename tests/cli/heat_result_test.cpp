@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <map>
+
 using namespace hemi::cli_test;
 
 namespace {
@@ -17,6 +19,9 @@ Words column(const std::string& text, const std::string& wanted) {
         Words cells;
         for (std::string cell; std::getline(fields, cell, ',');) {
             cells.push_back(cell);
+        }
+        if (line.ends_with(',')) {
+            cells.emplace_back();
         }
         if (first) {
             at = static_cast<std::size_t>(std::find(cells.begin(), cells.end(), wanted) - cells.begin());
@@ -110,4 +115,60 @@ TEST_CASE("hemi heat: mean radiant temperatures of a stored result are those of 
     const Outcome none = run_hemi({"points", light, "--points", points, "--person", "seated"});
     CHECK(none.status == 2);
     CHECK(none.err_has("--person needs temperatures, which"));
+}
+
+TEST_CASE("hemi heat: of buried patches and of emissivities by temperature, a stored result says what the "
+          "scene does",
+          "[cli][heat]") {
+    const Directory directory;
+    Json room = box(1, 1, 1, 4);
+    room["materials"]["steel"] = {{"emissivity", {{300, 0.2}, {500, 0.8}}}};
+    const auto side = [](std::vector<std::array<double, 3>> corners) {
+        return face("load", "steel", Json(std::move(corners)), 2);
+    };
+    for (const Json& surface : {side({{0.2, 0.2, 0.4}, {0.8, 0.2, 0.4}, {0.8, 0.8, 0.4}, {0.2, 0.8, 0.4}}),
+                                side({{0.2, 0.2, 0.0}, {0.2, 0.8, 0.0}, {0.8, 0.8, 0.0}, {0.8, 0.2, 0.0}}),
+                                side({{0.2, 0.2, 0.0}, {0.8, 0.2, 0.0}, {0.8, 0.2, 0.4}, {0.2, 0.2, 0.4}}),
+                                side({{0.8, 0.2, 0.0}, {0.8, 0.8, 0.0}, {0.8, 0.8, 0.4}, {0.8, 0.2, 0.4}}),
+                                side({{0.8, 0.8, 0.0}, {0.2, 0.8, 0.0}, {0.2, 0.8, 0.4}, {0.8, 0.8, 0.4}}),
+                                side({{0.2, 0.8, 0.0}, {0.2, 0.2, 0.0}, {0.2, 0.2, 0.4}, {0.2, 0.8, 0.4}})}) {
+        room["surfaces"].push_back(surface);
+    }
+    room["groups"]["load"] = {{"temperature", 400}};
+    room["groups"]["bottom"] = {{"heat_flux", 0}}; // what is under the load has no temperature
+    room["groups"]["left"] = {{"temperature", 550}};
+    const std::string scene = directory.write("furnace.json", room);
+    const std::string result = directory.path("a.hres");
+    const Outcome heat = run_hemi(on_cpu(
+        {"heat", scene, "--no-imprint", "--result", result, "--fluxes", directory.path("a.csv"), "--json"}));
+    INFO(heat.err);
+    REQUIRE(heat.status == 0);
+    CHECK(heat.json()["buried"].get<int>() >= 8); // of the floor and of the load
+    REQUIRE(run_hemi({"convert", result, directory.path("b.csv")}).status == 0);
+    for (const auto& [name, stored] :
+         std::map<std::string, std::string>{{"temperature", "temperature"},
+                                            {"net_flux", "net_flux"},
+                                            {"radiosity", "radiosity_grey"},
+                                            {"irradiation", "irradiance_grey"}}) {
+        INFO(name);
+        const Words direct = column(directory.read("a.csv"), name);
+        CHECK(direct.size() == 6 * 16 + 6 * 4 + 1);
+        const Words again = column(directory.read("b.csv"), stored);
+        CHECK(Words(direct.begin() + 1, direct.end()) == Words(again.begin() + 1, again.end()));
+    }
+    const Words emissivity = column(directory.read("b.csv"), "emissivity_grey");
+    CHECK(std::stod(emissivity.back()) == Approx(0.5)); // of the load at 400 K
+
+    const std::string points =
+        directory.write("p.csv", "x,y,z,nx,ny,nz\n0.5,0.5,0.7,,,\n0.1,0.1,0.05,0,0,1\n");
+    Words words{"points",   scene,      "--no-imprint", "--points", points, "--person",
+                "standing", "--device", "cpu",          "--jobs",   "1",    "--json"};
+    const Json of_scene = run_hemi(words).json();
+    words[1] = result;
+    words.erase(words.begin() + 2);
+    const Json of_result = run_hemi(words).json();
+    for (const char* key : {"irradiance", "mean_radiant_temperature"}) {
+        CHECK(of_result[key] == of_scene[key]);
+    }
+    CHECK(run_hemi({"bake", result, "-o", directory.path("a.ply")}).err_has("has heat, which is no light"));
 }

@@ -162,6 +162,7 @@ TEST_CASE("HRES: heat has temperatures, net fluxes and its own exitance, unknown
     heat.temperature[1] = heat.net_flux[1] = heat.radiosity[2] = heat.irradiance[3] = NAN;
     a.scene.thermal = Thermal{{4.0}, {}, 280.0};
     a.scene.materials[0].reflectance[1] = 1.0; // adiabatic
+    a.scene.materials[0].emissivity_table = {{250.0, 0.1}, {350.0, 0.3}};
     io::write_hres(folder / "a.hres", a);
     io::ResultFile b = io::read_hres(folder / "a.hres");
     REQUIRE(b.solution.temperature.size() == heat.temperature.size());
@@ -169,9 +170,11 @@ TEST_CASE("HRES: heat has temperatures, net fluxes and its own exitance, unknown
     CHECK(std::isnan(b.solution.temperature[1]));
     CHECK(b.solution.net_flux[0] == heat.net_flux[0]);
     CHECK(std::isnan(b.solution.net_flux[1]));
-    CHECK(b.solution.radiosity[2] == 0.0);
-    CHECK(b.solution.irradiance[3] == 0.0);
+    CHECK(std::isnan(b.solution.radiosity[2]));
+    CHECK(b.solution.radiosity[3] == heat.radiosity[3]);
+    CHECK(std::isnan(b.solution.irradiance[3]));
     CHECK(b.scene.thermal == Thermal{{4.0}, {}, std::nullopt});
+    CHECK(b.scene.materials == a.scene.materials);
     const std::vector<double> exitance = heat.exitance;
     io::complete_solution(b, PatchMesh(b.scene, b.subdivision));
     CHECK(b.solution.exitance == exitance);
@@ -258,7 +261,7 @@ TEST_CASE("HRES: lies with a right checksum are noticed, and cost no memory", "[
         {1, counts, raw(5u), "chunk SURF: a surface of 5 vertices"},
         {1, counts + 4, raw(2u), "material"},
         {1, counts + 8, raw(2u), "group"},
-        {1, counts + 12, raw(4u), "sides 4"},
+        {1, counts + 12, raw(8u), "sides 8"},
         {1, counts + 16, raw(4u), "chunk SURF: the surfaces have not the"},
         {1, counts + 16, raw(0xFFFFFFFFFFFFFFFFu), "chunk SURF: the surfaces have not the"},
         {1, counts + 16, raw(0u), "chunk SURF: the surfaces have not the"},
@@ -269,6 +272,38 @@ TEST_CASE("HRES: lies with a right checksum are noticed, and cost no memory", "[
         const auto path = folder.write("a.hres", with_payload(bytes, bad.chunk, bad.offset, bad.change));
         require_parts(message_of<InputError>([&] { (void)io::read_hres(path); }), {"a.hres:", bad.part});
     }
+
+    // A few surfaces that say they have many patches, of which hardly any are in the file.
+    io::ResultFile cut = sample();
+    cut.surfaces_as_read = cut.scene.surfaces;
+    const PatchMesh mesh(cut.scene);
+    cut.parts.patch_of.assign(mesh.size(), 0);
+    cut.surfaces_as_read[0].patches = Grid{2000, 1000};
+    require_parts(message_of<InvalidArgument>([&] { io::write_hres(folder / "b.hres", cut); }),
+                  {"parts are left; at most"});
+    cut.surfaces_as_read[0].patches = Grid{1000, 1000};
+    io::write_hres(folder / "b.hres", cut);
+    std::string lie = io::read_file(folder / "b.hres");
+    const std::string truth = "\"as_read\":{\"patches\":";
+    const std::size_t at = lie.find(truth) + truth.size() - chunk_start(lie, 0) - 16;
+    lie = with_payload(lie, 0, at, "9");
+    require_parts(message_of<InputError>([&] { (void)io::read_hres(folder.write("b.hres", lie)); }),
+                  {"b.hres:", "that cannot be"});
+}
+
+TEST_CASE("HRES: a file that claims more patches than it has bytes for costs no memory", "[io]") {
+    const Folder folder;
+    io::write_hres(folder / "a.hres", sample());
+    const std::string bytes = io::read_file(folder / "a.hres");
+    const std::string count = "\"patches\":";
+    const std::string renderer = ",\"renderer\":\"";
+    const std::size_t at = bytes.find(renderer);
+    const std::string digits = bytes.substr(bytes.rfind(count, at) + count.size(), 2);
+    REQUIRE(at == bytes.rfind(count, at) + count.size() + digits.size());
+    std::string lie = count + digits + "999999" + renderer + "Some Re\"";
+    lie = with_payload(bytes, 0, at - digits.size() - count.size() - chunk_start(bytes, 0) - 16, lie);
+    require_parts(message_of<InputError>([&] { (void)io::read_hres(folder.write("a.hres", lie)); }),
+                  {"a.hres:", "patches, 0 as they were read", "that cannot be"});
 }
 
 TEST_CASE("HRES: arrays that do not fit and values that are not finite are refused, and nothing is written",

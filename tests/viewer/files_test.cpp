@@ -264,7 +264,8 @@ TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat dr
         options);
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
-    REQUIRE(place.run(fmt::format("'{}' heat room.json --device osmesa --preset fast --resolution 32 --json",
+    REQUIRE(place.run(fmt::format("'{}' heat room.json --device osmesa --preset fast --resolution 32 --json "
+                                  "--result heat.hres",
                                   HEMI_PROGRAM)) == 0);
     const auto table = place.json("out.txt");
     // Every wall has 36 patches of one area; of temperatures the mean is that of the fourth power.
@@ -311,4 +312,21 @@ TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat dr
         CHECK(place.read("room.png") == place.read(name + ".png"));
     }
     CHECK(place.view("set reflectance 0.1 red\nshow flux\ncommand a.txt\n", options) == 2);
+
+    // The stored result shows the same.
+    place.write("script.txt", "show temperature\nreport stored.json\nscreenshot stored.png\nshow flux\n"
+                              "report stored_flux.json\nclick 150 100\nreport picked.json\n");
+    REQUIRE(place.run(Workplace::view_command("heat.hres", "--device osmesa --size 300x200")) == 0);
+    const auto same = [&](const std::string& stored, const std::string& solved) {
+        const auto is = place.json(stored)["values"];
+        const auto was = place.json(solved)["values"];
+        REQUIRE(is.size() == was.size());
+        for (std::size_t i = 0; i < is.size(); ++i) {
+            CHECK(is[i].get<double>() == Approx(was[i].get<double>()).margin(1e-6));
+        }
+    };
+    same("stored.json", "kelvin.json");
+    same("stored_flux.json", "flux.json");
+    CHECK(place.read("stored.png") == place.read("temperature.png"));
+    CHECK(place.json("picked.json")["picked"].is_number());
 }

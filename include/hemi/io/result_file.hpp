@@ -40,8 +40,8 @@ struct ResultFile {
 /// @param mesh    of the result
 void complete_solution(ResultFile& result, const PatchMesh& mesh);
 
-/// Writes `.hres`. Of patches that are buried, heat has no net flux, which is not a number; radiosity and
-/// irradiance that are not are written as 0.
+/// Writes `.hres`. What is not known of heat is not a number: temperatures, net fluxes, radiosity,
+/// irradiance, exitance.
 /// @throws InvalidArgument for arrays of other lengths and values that are not finite; IoError
 void write_hres(const std::filesystem::path& path, const ResultFile& result);
 /// Reads `.hres`.

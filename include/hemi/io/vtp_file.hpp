@@ -21,7 +21,7 @@ struct CellArray {
 /// ParaView's XML PolyData (.vtp): every patch a polygon with corners of its own, in the patches' order,
 /// front counter-clockwise. Cell data are `patch` (index), `group` (index into the field data `groups`, the
 /// names), `area` and `arrays`. 64-bit numbers, raw behind the XML.
-/// @throws InvalidArgument for arrays of another length, values that are not finite; IoError
+/// @throws InvalidArgument for arrays of another length, values that are infinite; IoError
 void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::span<const CellArray> arrays);
 
 /// Points as PolyData (.vtp), each a vertex; point data are `normals`, where there are any, and `arrays`.
@@ -29,7 +29,7 @@ void write_vtp(const std::filesystem::path& path, const PatchMesh& mesh, std::sp
 /// @param positions  P
 /// @param normals    P, or none
 /// @param arrays     values of points in place of patches
-/// @throws InvalidArgument for arrays of another length, values that are not finite; IoError
+/// @throws InvalidArgument for arrays of another length, values that are infinite; IoError
 void write_points_vtp(const std::filesystem::path& path, std::span<const Vec3> positions,
                       std::span<const Vec3> normals, std::span<const CellArray> arrays);
 

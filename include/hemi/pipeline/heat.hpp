@@ -92,7 +92,7 @@ struct HeatSolution {
                                       const HeatSettings& settings = {}, Observer& observer = no_observer());
 
 /// What solve_heat() found, as patch_quantity() takes it: radiosity J, irradiance G, exitance J - (1 - eps)
-/// G, temperature, net flux and the rows' balance. What buried patches have is not a number.
+/// G, temperature, net flux and the rows' balance.
 /// @param factors   as in solve_heat()
 /// @param problem   as in solve_heat()
 /// @param solution  of the problem

@@ -1,5 +1,6 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/vtp_file.hpp"
+#include "hemi/scene/thermal_exitance.hpp"
 
 #include <fmt/format.h>
 
@@ -42,7 +43,7 @@ std::vector<CellArray> solution_arrays(const ResultFile& result, const PatchMesh
                           ? patch_values(mesh, result.scene.materials, &Material::exitance)
                           : solution.exitance,
                       names});
-    std::vector<double> reflectance = patch_values(mesh, result.scene.materials, &Material::reflectance);
+    std::vector<double> reflectance = reflectances_at(mesh, result.scene.materials, solution.temperature);
     arrays.push_back({"reflectance", reflectance, names});
     for (double& value : reflectance) {
         value = 1.0 - value;

@@ -39,11 +39,15 @@ Json patch_size_json(const PatchSizeError& error) {
 
 Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional<PatchMesh>& as_read) {
     const Scene& scene = result.scene;
+    const bool heat = !result.solution.temperature.empty();
     Json materials = Json::array();
     for (const Material& material : scene.materials) {
         materials.push_back({{"name", material.name},
                              {"reflectance", material.reflectance},
                              {"exitance", material.exitance}});
+        if (heat && !material.emissivity_table.empty()) { // of the reflectance that is at 300 K
+            materials.back()["emissivity_by_kelvin"] = material.emissivity_table;
+        }
     }
     Json head{{"name", scene.name},
               {"channels", scene.channels},
@@ -73,7 +77,7 @@ Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional
     if (as_read) {
         head["as_read"] = {{"surfaces", as_read->surfaces().size()}, {"patches", as_read->size()}};
     }
-    if (!result.solution.temperature.empty()) {
+    if (heat) {
         head["heat"] = {{"band_limits", scene.thermal ? scene.thermal->band_limits : std::vector<double>()}};
     }
     if (scene.photometric) {
@@ -120,12 +124,29 @@ void check_array(const std::vector<Number>& values, std::size_t size, const char
     }
 }
 
+std::vector<std::array<double, 2>> read_emissivity_table(const JsonNode& node) {
+    std::vector<std::array<double, 2>> table;
+    for (std::size_t k = 0; k < node.size(); ++k) {
+        const std::vector<double> pair = node.element(k).numbers();
+        const bool sound = pair.size() == 2 && pair[0] >= 0.0 && pair[1] >= 0.0 && pair[1] <= 1.0 &&
+                           (table.empty() || pair[0] > table.back()[0]);
+        if (!sound) {
+            node.element(k).expect("a temperature, K, above those before, and an emissivity in [0, 1]");
+        }
+        table.push_back({pair[0], pair[1]});
+    }
+    return table;
+}
+
 std::vector<Material> read_materials(const JsonNode& all) {
     std::vector<Material> materials;
     for (std::size_t k = 0; k < all.size(); ++k) {
         const JsonNode node = all.element(k);
         materials.push_back({node.member("name").any_text(), node.member("reflectance").numbers(),
                              node.member("exitance").numbers()});
+        if (node.has("emissivity_by_kelvin")) {
+            materials.back().emissivity_table = read_emissivity_table(node.member("emissivity_by_kelvin"));
+        }
     }
     return materials;
 }
@@ -283,6 +304,12 @@ std::vector<std::uint32_t> groups_of_patches(const PatchMesh& mesh) {
     return result;
 }
 
+/// Patches that a scene as it was read may have: memory goes with them, and what is left of them is in the
+/// file.
+std::uint64_t most_patches_as_read(std::uint64_t parts) {
+    return (std::uint64_t{1} << 20) + 64 * parts;
+}
+
 /// @throws InvalidArgument where a part is of no patch
 void check_patches_as_read(const PatchParts& parts) {
     for (const std::uint32_t patch : parts.patch_of) {
@@ -308,12 +335,14 @@ std::vector<Number> read_array(ChunkReader& reader, std::string_view tag, std::u
     return values;
 }
 
-/// Temperatures and net fluxes of patches, where they are known.
-void check_heat(const Solution& solution, std::size_t patches) {
-    const auto check = [patches](const std::vector<double>& values, const char* name, double least) {
-        if (values.size() != patches) {
+/// What heat is, where it is known: not a number elsewhere.
+void check_heat(const Solution& solution, std::size_t patches, std::size_t channels) {
+    constexpr double any = -std::numeric_limits<double>::infinity();
+    const auto check = [](const std::vector<double>& values, const char* name, std::size_t size,
+                          double least) {
+        if (values.size() != size) {
             throw InvalidArgument(
-                fmt::format("{} values of {}; the solution needs {}", values.size(), name, patches));
+                fmt::format("{} values of {}; the solution needs {}", values.size(), name, size));
         }
         for (const double value : values) {
             if (std::isinf(value) || value < least) {
@@ -321,16 +350,11 @@ void check_heat(const Solution& solution, std::size_t patches) {
             }
         }
     };
-    check(solution.temperature, "temperature", 0.0);
-    check(solution.net_flux, "net flux", -std::numeric_limits<double>::infinity());
-}
-
-/// With 0 where a number is unknown.
-std::vector<double> known(std::vector<double> values) {
-    for (double& value : values) {
-        value = std::isnan(value) ? 0.0 : value;
-    }
-    return values;
+    check(solution.temperature, "temperature", patches, 0.0);
+    check(solution.net_flux, "net flux", patches, any);
+    check(solution.radiosity, "radiosity", patches * channels, any);
+    check(solution.irradiance, "irradiance", patches * channels, any);
+    check(solution.exitance, "exitance", patches * channels, any);
 }
 
 } // namespace
@@ -355,22 +379,24 @@ void complete_solution(ResultFile& result, const PatchMesh& mesh) {
 void write_hres(const std::filesystem::path& path, const ResultFile& result) {
     const PatchMesh mesh(result.scene, result.subdivision);
     const bool heat = !result.solution.temperature.empty();
-    const std::vector<double> radiosity = heat ? known(result.solution.radiosity) : std::vector<double>();
-    const std::vector<double> irradiance = heat ? known(result.solution.irradiance) : std::vector<double>();
-    const std::vector<double> exitance = heat ? known(result.solution.exitance) : std::vector<double>();
     std::optional<PatchMesh> as_read;
     if (!result.surfaces_as_read.empty()) {
         as_read.emplace(result.scene_as_read());
         check_array(result.parts.patch_of, mesh.size(), "the patches that parts are of");
         check_patches_as_read({result.parts.patch_of, groups_of_patches(as_read->whole_faces().mesh)});
+        if (as_read->size() > most_patches_as_read(mesh.size())) {
+            throw InvalidArgument(
+                fmt::format("{} patches, of which {} parts are left; at most {} can be stored",
+                            as_read->size(), mesh.size(), most_patches_as_read(mesh.size())));
+        }
     }
     const std::size_t patches = mesh.size();
     const std::size_t values = patches * result.scene.channels.size();
-    check_array(heat ? radiosity : result.solution.radiosity, values, "radiosity");
-    check_array(heat ? irradiance : result.solution.irradiance, values, "irradiance");
     if (heat) {
-        check_heat(result.solution, patches);
-        check_array(exitance, values, "exitance");
+        check_heat(result.solution, patches, result.scene.channels.size());
+    } else {
+        check_array(result.solution.radiosity, values, "radiosity");
+        check_array(result.solution.irradiance, values, "irradiance");
     }
     check_array(result.solution.row_sum, patches, "row sum");
     check_array(result.solution.environment_share, patches, "environment share");
@@ -403,8 +429,8 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
         writer.chunk("READ", {bytes_of(stored_surfaces(*as_read))});
         writer.chunk("OFPA", {bytes_of(result.parts.patch_of)});
     }
-    writer.chunk("RADI", {bytes_of(heat ? radiosity : result.solution.radiosity)});
-    writer.chunk("IRRA", {bytes_of(heat ? irradiance : result.solution.irradiance)});
+    writer.chunk("RADI", {bytes_of(result.solution.radiosity)});
+    writer.chunk("IRRA", {bytes_of(result.solution.irradiance)});
     writer.chunk("RSUM", {bytes_of(result.solution.row_sum)});
     writer.chunk("ENVI", {bytes_of(result.solution.environment_share)});
     writer.chunk("BLOC", {bytes_of(result.solution.back_face_share)});
@@ -422,7 +448,7 @@ void write_hres(const std::filesystem::path& path, const ResultFile& result) {
         writer.chunk("DIRE", {bytes_of(result.solution.direct)});
     }
     if (heat) {
-        writer.chunk("EXIT", {bytes_of(exitance)});
+        writer.chunk("EXIT", {bytes_of(result.solution.exitance)});
         writer.chunk("TEMP", {bytes_of(result.solution.temperature)});
         writer.chunk("FLUX", {bytes_of(result.solution.net_flux)});
     }
@@ -435,6 +461,13 @@ ResultFile read_hres(const std::filesystem::path& path) {
     const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
     const Sizes sizes = read_header(JsonNode(document, reader.file()), result);
     check_patch_size(result, [&reader](const std::string& what) { reader.fail(what); });
+    // Before meshes are made, for which a few surfaces can ask for much memory.
+    constexpr std::uint64_t least_bytes = 5 * sizeof(double); // of a patch, in chunks that are always there
+    if (sizes.patches > reader.file_size() / least_bytes ||
+        sizes.patches_as_read > most_patches_as_read(sizes.patches)) {
+        reader.fail(fmt::format("{} patches, {} as they were read, in a file of {} bytes; that cannot be",
+                                sizes.patches, sizes.patches_as_read, reader.file_size()));
+    }
     if (sizes.parts) {
         result.subdivision.parts = read_parts(reader.chunk("PART"), sizes.surfaces, sizes.patches);
     }
@@ -462,8 +495,8 @@ ResultFile read_hres(const std::filesystem::path& path) {
         reader.fail(error.what());
     }
     const std::uint64_t values = sizes.patches * result.scene.channels.size();
-    result.solution.radiosity = read_array(reader, "RADI", values);
-    result.solution.irradiance = read_array(reader, "IRRA", values);
+    result.solution.radiosity = read_array(reader, "RADI", values, sizes.heat);
+    result.solution.irradiance = read_array(reader, "IRRA", values, sizes.heat);
     result.solution.row_sum = read_array(reader, "RSUM", sizes.patches);
     result.solution.environment_share = read_array(reader, "ENVI", sizes.patches);
     result.solution.back_face_share = read_array(reader, "BLOC", sizes.patches);
@@ -481,11 +514,11 @@ ResultFile read_hres(const std::filesystem::path& path) {
         result.solution.direct = read_array(reader, "DIRE", values);
     }
     if (sizes.heat) {
-        result.solution.exitance = read_array(reader, "EXIT", values);
+        result.solution.exitance = read_array(reader, "EXIT", values, true);
         result.solution.temperature = read_array(reader, "TEMP", sizes.patches, true);
         result.solution.net_flux = read_array(reader, "FLUX", sizes.patches, true);
         try {
-            check_heat(result.solution, sizes.patches);
+            check_heat(result.solution, sizes.patches, result.scene.channels.size());
         } catch (const InvalidArgument& error) {
             reader.fail(error.what());
         }

@@ -151,18 +151,9 @@ void write_radiosity_csv(const std::filesystem::path& path, const ResultFile& re
         if (array.name == "exitance" && !result.solution.exitance.empty()) {
             array.values = result.solution.exitance;
         }
-        const bool unknown_if_buried =
-            array.name == "radiosity" || array.name == "irradiance" || array.name == "exitance";
-        if (!result.solution.net_flux.empty() &&
-            unknown_if_buried) { // stored as 0, which would count in means
-            const std::size_t components = std::max<std::size_t>(array.components.size(), 1);
-            for (std::size_t k = 0; k < array.values.size(); ++k) {
-                if (std::isnan(result.solution.net_flux[k / components])) {
-                    array.values[k] = std::numeric_limits<double>::quiet_NaN();
-                }
-            }
-        }
-        if (result.parts.any() && (of_heat || (unknown_if_buried && !result.solution.net_flux.empty()))) {
+        const bool may_be_unknown =
+            of_heat || array.name == "radiosity" || array.name == "irradiance" || array.name == "exitance";
+        if (result.parts.any() && may_be_unknown && !result.solution.net_flux.empty()) {
             array = means_of_cells({std::move(array)}, result.parts, mesh.areas()).front();
         } else if (result.parts.any()) {
             array.values = means_of_patches(result.parts, mesh.areas(), array.values,

@@ -86,8 +86,8 @@ void check(const CellArray& array, std::size_t count, const char* what) {
         throw InvalidArgument(fmt::format("{}: {} values for {} {} of {} components", array.name,
                                           array.values.size(), count, what, components));
     }
-    if (!std::all_of(array.values.begin(), array.values.end(), [](double v) { return std::isfinite(v); })) {
-        throw InvalidArgument(fmt::format("{}: a value that is not finite", array.name));
+    if (std::any_of(array.values.begin(), array.values.end(), [](double v) { return std::isinf(v); })) {
+        throw InvalidArgument(fmt::format("{}: a value that is infinite", array.name));
     }
 }
 
