@@ -316,7 +316,7 @@ TEST_CASE("Viewer: temperatures and net fluxes have the pixels that hemi heat dr
     // The stored result shows the same.
     place.write("script.txt", "show temperature\nreport stored.json\nscreenshot stored.png\nshow flux\n"
                               "report stored_flux.json\nclick 150 100\nreport picked.json\n");
-    REQUIRE(place.run(Workplace::view_command("heat.hres", "--device osmesa --size 300x200")) == 0);
+    REQUIRE(place.run(Workplace::view_command("heat.hres", "--size 300x200")) == 0);
     const auto same = [&](const std::string& stored, const std::string& solved) {
         const auto is = place.json(stored)["values"];
         const auto was = place.json(solved)["values"];
