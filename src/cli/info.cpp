@@ -26,8 +26,8 @@ Report scene_info(const InfoArguments& arguments, const Terminal& terminal) {
         loaded.as_read ? std::span<const double>(loaded.as_read->left.areas) : loaded.mesh.areas(), more);
     report.json["kind"] = "scene";
     report.select("hemi/info/1", {"kind", "name", "surfaces", "triangles", "quadrilaterals", "polygons",
-                                  "patches", "channels", "bounds", "enclosure", "environment", "camera",
-                                  "imprint", "groups", "materials", "estimate"});
+                                  "patches", "channels", "bounds", "enclosure", "environment", "symmetry",
+                                  "camera", "imprint", "groups", "materials", "estimate"});
     return report;
 }
 
@@ -51,11 +51,11 @@ Report file_info(const std::filesystem::path& path) {
         report.json["kind"] = "result";
         report.json["parts"] = mesh.size();
         report.select("hemi/info/1",
-                      {"kind",        "name",        "surfaces",   "triangles", "quadrilaterals",
-                       "polygons",    "patches",     "parts",      "channels",  "bounds",
-                       "enclosure",   "environment", "camera",     "groups",    "materials",
-                       "renderer",    "solver",      "chosen_for", "error",     "error_estimate",
-                       "temperature", "net_flux"});
+                      {"kind",           "name",        "surfaces", "triangles",  "quadrilaterals",
+                       "polygons",       "patches",     "parts",    "channels",   "bounds",
+                       "enclosure",      "environment", "symmetry", "camera",     "groups",
+                       "materials",      "renderer",    "solver",   "chosen_for", "error",
+                       "error_estimate", "temperature", "net_flux"});
         return report;
     }
     if (extension == ".hff") {

@@ -5,6 +5,7 @@
 #include "hemi/display/picture.hpp"
 #include "hemi/pipeline/picture.hpp"
 #include "hemi/pipeline/quantities.hpp"
+#include "hemi/scene/image_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -99,9 +100,10 @@ Camera choose_camera(const Scene& scene, const PatchMesh& mesh, const PictureOpt
         throw InvalidArgument("--up: --camera names an up direction, too; leave one out");
     }
     const UpAxis up = options.up.value_or(scene.up);
+    const Bounds bounds = ImageMesh(mesh).mesh().bounds();
     Camera camera = scene.camera ? *scene.camera
-                    : option     ? default_camera(mesh.bounds(), up)
-                                 : interior_camera(mesh, up).value_or(default_camera(mesh.bounds(), up));
+                    : option     ? default_camera(bounds, up)
+                                 : interior_camera(mesh, up).value_or(default_camera(bounds, up));
     camera.orthographic = options.orthographic || (camera.orthographic && !option);
     if (option) {
         camera.eye = option->eye;

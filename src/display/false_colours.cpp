@@ -133,6 +133,7 @@ Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, con
     if (scale.lines) {
         put_iso_values(drawn, mesh, surfaces, shown.values, scale);
     }
+    drawn = with_images(std::move(drawn), mesh);
     if (dots != nullptr) {
         drawn = with_dots(std::move(drawn), *dots, plain);
     }

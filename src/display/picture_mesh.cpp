@@ -5,6 +5,7 @@
 #include "hemi/core/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -117,6 +118,42 @@ PictureMesh make_picture_mesh(const PatchMesh& mesh, const SmoothSurfaces& surfa
                 value /= static_cast<float>(ring.size());
             }
             picture.patches.push_back(value);
+        }
+    }
+    return picture;
+}
+
+PictureMesh with_images(PictureMesh picture, const PatchMesh& mesh) {
+    if (!mesh.symmetry()) {
+        return picture;
+    }
+    const std::size_t patches = mesh.size();
+    const SceneImages images = images_of(*mesh.symmetry());
+    picture.positions.reserve(patches * 12 * images.all.size());
+    picture.corners.reserve(patches * 12 * images.all.size());
+    for (std::size_t image = 1; image < images.all.size(); ++image) {
+        const Isometry& place = images.all[image];
+        const bool mirrors = place.mirrors();
+        for (std::size_t patch = 0; patch < patches; ++patch) {
+            const float* const last = picture.positions.data() + patch * 12 + 9;
+            const bool triangle = std::equal(last, last + 3, last - 3);
+            for (std::size_t k = 0; k < 4; ++k) {
+                const std::size_t turned =
+                    triangle ? (std::array<std::size_t, 4>{0, 2, 1, 1})[k] : (4 - k) % 4;
+                const std::size_t from = (patch * 4 + (mirrors ? turned : k)) * 3;
+                const Vec3 here(picture.positions[from], picture.positions[from + 1],
+                                picture.positions[from + 2]);
+                const Vec3 there = place(here + picture.origin) - picture.origin;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    picture.positions.push_back(static_cast<float>(there[static_cast<int>(c)]));
+                    picture.corners.push_back(picture.corners[from + c]);
+                }
+                picture.bounds.add(there + picture.origin);
+            }
+            for (std::size_t c = 0; c < 3; ++c) {
+                picture.patches.push_back(picture.patches[patch * 3 + c]);
+            }
+            picture.groups.push_back(picture.groups[patch]);
         }
     }
     return picture;

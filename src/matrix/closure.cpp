@@ -36,6 +36,13 @@ Closure::Closure(std::vector<RowBlock>& blocks, std::span<const double> areas, b
       progress_(progress), cuts_(slice_rows(blocks)),
       pairs_(blocks, static_cast<std::uint32_t>(areas.size()), 1), gap_(areas.size(), 0.0),
       diagonal_(areas.size(), 0.0), multiplier_(areas.size(), 0.0) {
+    for (std::uint32_t i = 0; i < gap_.size(); ++i) {
+        const RowBlock& block = block_of(blocks, i);
+        const std::uint64_t k = first_from(block, i % block_rows, i);
+        if (k < block.begin[i % block_rows + 1] && block.columns[k] == i) {
+            own_.push_back({i, k});
+        }
+    }
     for (const RowBlock& block : blocks) {
         all_known_ = all_known_ && std::find(block.known.begin(), block.known.end(), 0) == block.known.end();
     }
@@ -72,6 +79,11 @@ void Closure::multiply(const std::vector<double>& z, std::vector<double>& y) {
             },
             z.data(), y.data());
     }
+    for (const auto& [i, k] : own_) { // a pair with itself, whose sum moves by twice its multiplier
+        const RowBlock& block = block_of(blocks_, i);
+        const double x = areas_[i] * movable(block.values[k]);
+        y[i] += x * x * variance_[with_visibility_ ? block.visibility[k] : 0] * z[i];
+    }
 }
 
 void Closure::find_gaps() {
@@ -82,16 +94,15 @@ void Closure::find_gaps() {
                      return [values = block.values.data()](std::uint64_t k) { return magnitude(values[k]); };
                  },
                  ones.data(), sums.data());
+    for (const auto& [i, k] : own_) {
+        sums[i] += areas_[i] * magnitude(block_of(blocks_, i).values[k]);
+    }
     for (std::uint32_t i = 0; i < gap_.size(); ++i) {
         const RowBlock& block = block_of(blocks_, i);
         const std::uint32_t local = i % block_rows;
         if (!all_known_) {
             visit_unknown_left(blocks_, i,
                                [&](std::uint64_t k) { sums[i] += areas_[i] * magnitude(block.values[k]); });
-        }
-        const std::uint64_t self = first_from(block, local, i);
-        if (self < block.begin[local + 1] && block.columns[self] == i) {
-            sums[i] += areas_[i] * magnitude(block.values[self]);
         }
         const double target = std::max(0.0, 1.0 - block.environment[local] - block.blocked[local]);
         gap_[i] = areas_[i] * target - sums[i];
@@ -264,8 +275,8 @@ Closure::Tally Closure::hold_at_bounds() {
                     ++tally.at_unoccluded;
                 }
             };
-            for (std::uint64_t k = first_from(block, i % block_rows, i + 1);
-                 k < block.begin[i % block_rows + 1]; ++k) {
+            for (std::uint64_t k = first_from(block, i % block_rows, i); k < block.begin[i % block_rows + 1];
+                 ++k) {
                 hold(k);
             }
             if (!all_known_) {
@@ -304,6 +315,11 @@ Closure::Tally Closure::write() {
                         blocks_[j / block_rows].values[k_ji] = static_cast<float>(
                             areas_[i] * static_cast<double>(block.values[k_ij]) / areas_[j]);
                     });
+        for (auto own = std::lower_bound(own_.begin(), own_.end(), first,
+                                         [](const Own&one, std::uint32_t row) { return one.row < row; });
+             own != own_.end() && own->row < last; ++own) {
+            write_entry(own->row, blocks_[own->row / block_rows], own->entry);
+        }
         for (std::uint32_t i = first; i < last && !all_known_; ++i) {
             RowBlock& block = blocks_[i / block_rows];
             for (std::uint64_t k = block.begin[i % block_rows]; k < block.begin[i % block_rows + 1]; ++k) {

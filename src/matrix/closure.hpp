@@ -21,6 +21,11 @@ public:
     void run(RepairReport& report);
 
 private:
+    /// An entry on the diagonal: what a patch exchanges with its own images.
+    struct Own {
+        std::uint32_t row;
+        std::uint64_t entry; ///< in its block
+    };
     /// What one thread did.
     struct Tally {
         std::uint64_t at_zero = 0;
@@ -55,6 +60,7 @@ private:
     bool all_known_ = true;
     std::vector<std::uint32_t> cuts_;
     PairProduct pairs_;
+    std::vector<Own> own_;               // ascending
     std::array<double, 256> variance_{}; // of a pair over its x², by the code of its visibility
     std::vector<double> gap_;            // target less sum of x, per row
     std::vector<double> diagonal_;       // sum of w; 0 where a row sets no target

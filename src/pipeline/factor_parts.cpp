@@ -321,6 +321,11 @@ io::FactorPart compute_factor_part(const Scene& scene, const PatchMesh& mesh, Ro
     if (!mesh.parts().empty()) {
         throw InvalidArgument("rows of patches that were cut further cannot be computed in parts");
     }
+    if (mesh.symmetry()) {
+        throw InvalidArgument(
+            "rows of a scene with symmetry cannot be computed in parts; it has fewer rows as it "
+            "is");
+    }
     FormFactors factors = describe_form_factors(scene, mesh, settings);
     note_unoccluded(settings.method, observer);
     io::FactorPart part;

@@ -1,6 +1,7 @@
 #include "hemi/pipeline/picture.hpp"
 
 #include "engine/rays/ray_tracer.hpp"
+#include "hemi/scene/image_mesh.hpp"
 
 #include <algorithm>
 #include <array>
@@ -74,8 +75,9 @@ private:
 } // namespace
 
 std::optional<Camera> interior_camera(const PatchMesh& mesh, UpAxis up) {
-    const Room room(mesh, up);
-    const Bounds& bounds = mesh.bounds();
+    const ImageMesh images(mesh);
+    const Room room(images.mesh(), up);
+    const Bounds& bounds = images.mesh().bounds();
     const Vec3 size = bounds.upper - bounds.lower;
     std::optional<Camera> best;
     double farthest = 0.0;

@@ -6,6 +6,7 @@
 #include "hemi/engine/engine.hpp"
 #include "hemi/io/image_file.hpp"
 #include "hemi/io/paths.hpp"
+#include "hemi/scene/image_mesh.hpp"
 #include "hemi/scene/light_unit.hpp"
 
 #include <fmt/format.h>
@@ -65,7 +66,8 @@ std::vector<double> reflectance_of(const Scene& scene, const PatchMesh& mesh, st
 
 Camera scene_camera(const Scene& scene, const PatchMesh& mesh) {
     return scene.camera ? *scene.camera
-                        : interior_camera(mesh, scene.up).value_or(default_camera(mesh.bounds(), scene.up));
+                        : interior_camera(mesh, scene.up)
+                              .value_or(default_camera(ImageMesh(mesh).mesh().bounds(), scene.up));
 }
 
 std::array<float, 3> shown_environment(const Scene& scene, const std::array<std::uint32_t, 3>& show) {
@@ -117,6 +119,7 @@ DrawnPicture draw_solution(const Scene& scene, const PatchMesh& mesh, const Solu
         picture.exposure =
             automatic_exposure(mesh, drawn, solution.back_face_share, solution.exitance, solution.channels);
     }
+    drawn = with_images(std::move(drawn), mesh);
     if (settings.dots != nullptr) {
         drawn = with_dots(std::move(drawn), *settings.dots, picture);
     }

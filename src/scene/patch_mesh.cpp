@@ -298,6 +298,7 @@ PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
     }
     surfaces_ = scene.surfaces;
     groups_ = scene.groups;
+    symmetry_ = scene.symmetry;
     bounds_ = scene.bounds();
 
     grids_.reserve(surfaces_.size());
@@ -341,6 +342,7 @@ PatchMesh PatchMesh::cut(const PatchCuts& cuts) const {
     PatchMesh mesh;
     mesh.surfaces_ = surfaces_;
     mesh.groups_ = groups_;
+    mesh.symmetry_ = symmetry_;
     mesh.bounds_ = bounds_;
     mesh.grids_ = cuts.grids;
     mesh.parts_ = cuts.parts;
@@ -411,6 +413,7 @@ SplitMesh PatchMesh::split(std::span<const std::uint32_t> patches, Cut how) cons
     PatchMesh mesh;
     mesh.surfaces_ = surfaces_;
     mesh.groups_ = groups_;
+    mesh.symmetry_ = symmetry_;
     mesh.bounds_ = bounds_;
     mesh.grids_ = grids_;
     mesh.parts_.resize(surfaces_.size());
@@ -484,6 +487,7 @@ WholeFaces PatchMesh::whole_faces() const {
     };
     PatchMesh mesh;
     mesh.groups_ = groups_;
+    mesh.symmetry_ = symmetry_;
     mesh.bounds_ = bounds_;
     std::vector<std::uint32_t> first_of; // of the faces' surfaces
     for (std::uint32_t s = 0; s < surfaces_.size(); s = end_of_face(s)) {
@@ -594,6 +598,19 @@ std::uint64_t PatchMesh::geometry_hash() const {
         for (const GridPart& part : parts(static_cast<std::uint32_t>(s))) {
             hash.add((std::uint64_t{part.level_u} << 40) | (std::uint64_t{part.level_v} << 32) | part.cell);
         }
+    }
+    if (symmetry_) {
+        hash.add(symmetry_->mirrors.size());
+        for (const MirrorPlane& plane : symmetry_->mirrors) {
+            hash.add(static_cast<std::uint64_t>(plane.axis));
+            hash.add(Vec3(plane.offset, 0.0, 0.0));
+        }
+        hash.add(symmetry_->rotation ? symmetry_->rotation->folds : 0u);
+        hash.add(symmetry_->rotation ? static_cast<std::uint64_t>(symmetry_->rotation->axis) : 0u);
+        for (const Vec3& period : symmetry_->periods) {
+            hash.add(period);
+        }
+        hash.add(symmetry_->periods.empty() ? 0u : symmetry_->images);
     }
     return hash.value();
 }

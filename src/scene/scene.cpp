@@ -173,6 +173,7 @@ void validate(const Scene& scene) {
                         "precision holds too few digits of it; move it towards the origin",
                         bounds.diagonal(), magnitude));
     }
+    check_symmetry(scene);
 }
 
 std::optional<std::string> polygon_defect(std::span<const Vec3> polygon) {

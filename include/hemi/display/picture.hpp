@@ -81,6 +81,12 @@ struct PictureMesh {
                                             std::array<std::uint32_t, 3> show,
                                             std::span<const float> vertices = {});
 
+/// The same with all images of the scene, coloured as what they are images of; behind the scene's own
+/// patches.
+/// @param picture  of the patches of `mesh`, nothing else
+/// @param mesh     without symmetry nothing is added
+[[nodiscard]] PictureMesh with_images(PictureMesh picture, const PatchMesh& mesh);
+
 /// A radiosity for pictures of scenes that nothing lights: as if light came from everywhere, a little more of
 /// it from one side, so that shapes can be told; black surfaces are dark grey. It is no result, and of the
 /// order of 1.

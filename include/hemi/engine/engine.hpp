@@ -58,7 +58,8 @@ struct EngineSettings {
 make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const EngineSettings& engine);
 
 /// Visibility by the same hemicubes: for every patch j in view from i, the share of the delta form factors of
-/// its texels that nothing hides. Parameters and errors as for make_hemicube_engine().
+/// its texels that nothing hides. Parameters and errors as for make_hemicube_engine(). Of a mesh with
+/// symmetry patches are those of ImageMesh::mesh(), whose images are not added up.
 /// @see compute_visibility_weighted
 [[nodiscard]] std::unique_ptr<VisibilityProvider>
 make_visibility_engine(const PatchMesh& mesh, const HemicubeSettings& settings, const EngineSettings& engine);

@@ -12,6 +12,14 @@
 
 namespace hemi::io {
 
+/// Symmetry of a scene: what is given stands in the place of what the file says of it.
+struct SymmetryOptions {
+    std::vector<MirrorPlane> mirrors{};     ///< empty: the file's
+    std::optional<RotationAxis> rotation{}; ///< none: the file's
+    std::vector<Vec3> periods{};            ///< empty: the file's
+    std::optional<std::uint32_t> images{};  ///< none: the file's
+};
+
 /// What a reader does beyond what the file says.
 struct SceneReaderOptions {
     std::vector<std::string> two_sided_groups{}; ///< groups whose faces radiate on both sides; "*": all
@@ -29,6 +37,7 @@ struct SceneReaderOptions {
     std::string zone{};         ///< .epJSON: the zone that is read; empty: the only one
     bool adiabatic = false;     ///< allow reflectances of 1 in .json, where heat is solved for
     std::optional<UpAxis> up{}; ///< axis upwards, in place of the file's
+    SymmetryOptions symmetry{}; ///< what the scene repeats itself by
 };
 
 /// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3 (View3D),

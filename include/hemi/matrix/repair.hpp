@@ -71,11 +71,12 @@ struct RepairReport {
 /// sums of x0), by conjugate gradients with a diagonal preconditioner. Pairs beyond a bound are put there and
 /// held, and the rest is solved again. Where targets contradict each other (two facing plates of different
 /// targets) the rows come as close as they can. Covered rows (b > buried_above) and unknown rows set no
-/// target; unknown rows stay empty, and pairs with them are in the known row only. The diagonal does not
-/// change. Rows that are reciprocal to the rounding of floats are afterwards, too. Memory: O(N), 1 bit an
-/// entry where something is held at X0, and the entries that are added. The result is the same on any number
-/// of threads. Source: least-squares enforcement as in R. P. Taylor, R. Luck, "Comparison of reciprocity and
-/// closure enforcement methods for radiation view factors", J. Thermophysics and Heat Transfer 9, 1995.
+/// target; unknown rows stay empty, and pairs with them are in the known row only. The diagonal,
+/// what patches exchange with their own images, is of pairs like others. Rows that are reciprocal to the
+/// rounding of floats are afterwards, too. Memory: O(N), 1 bit an entry where something is held at X0, and
+/// the entries that are added. The result is the same on any number of threads. Source: least-squares
+/// enforcement as in R. P. Taylor, R. Luck, "Comparison of reciprocity and closure enforcement methods for
+/// radiation view factors", J. Thermophysics and Heat Transfer 9, 1995.
 /// @param factors   N rows, changed in place
 /// @param areas     N areas
 /// @param repair    what is made true; none only measures

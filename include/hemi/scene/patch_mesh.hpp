@@ -114,6 +114,9 @@ public:
     /// from the origin.
     [[nodiscard]] double rounding() const;
 
+    /// What the scene repeats itself by: patches are those of the part that is given, see ImageMesh.
+    [[nodiscard]] const std::optional<Symmetry>& symmetry() const noexcept { return symmetry_; }
+
     /// The same surfaces with some patches cut. What is cut on one side of a two-sided surface is on the
     /// other.
     /// @param patches  indices, in any order
@@ -124,12 +127,15 @@ public:
     /// The mesh with one patch a side for every face whose pieces (Surface::continues) are one patch each.
     [[nodiscard]] WholeFaces whole_faces() const;
 
-    /// Hash over the corners, subdivision and sidedness of every surface, in order: equal for equal
-    /// geometry, whatever the materials, lamps and names. 64-bit FNV-1a.
+    /// Hash over the corners, subdivision and sidedness of every surface, in order, and the symmetry: equal
+    /// for equal geometry, whatever the materials, lamps and names. 64-bit FNV-1a.
     [[nodiscard]] std::uint64_t geometry_hash() const;
 
 private:
+    friend class ImageMesh;
     PatchMesh() = default;
+    [[nodiscard]] PatchMesh with_images(const SceneImages& images) const;
+    [[nodiscard]] std::uint32_t mirrored(std::uint32_t s, std::uint32_t local) const;
     void check_parts() const;
     void measure();
     void measure_face(std::uint32_t face, const PatchMesh& pieces, std::uint32_t first, std::uint32_t end);
@@ -141,6 +147,7 @@ private:
     std::vector<std::uint32_t> first_patch_;
     std::vector<Vec3> surface_normals_;
     std::vector<std::string> groups_;
+    std::optional<Symmetry> symmetry_;
     std::vector<double> areas_;
     std::vector<Vec3> centres_;
     std::vector<std::uint32_t> surface_of_;

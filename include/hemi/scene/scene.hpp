@@ -4,6 +4,7 @@
 #include "hemi/core/geometry.hpp"
 #include "hemi/core/names.hpp"
 #include "hemi/core/patch_cuts.hpp"
+#include "hemi/scene/symmetry.hpp"
 
 #include <array>
 #include <cstdint>
@@ -163,9 +164,10 @@ struct Scene {
     std::optional<double> unit;      ///< Metres in a scene unit; none: 1.
     /// What it says of heat. Reflectances of 1 are allowed where there is some: such surfaces are adiabatic.
     std::optional<Thermal> thermal;
-    std::optional<Sun> sun;   ///< a beam that casts shadows
-    std::optional<Sky> sky;   ///< what comes from above and below the horizon
-    bool photometric = false; ///< Fluxes are in lumens: exitances in lm/m², irradiances in lx.
+    std::optional<Sun> sun;           ///< a beam that casts shadows
+    std::optional<Sky> sky;           ///< what comes from above and below the horizon
+    bool photometric = false;         ///< Fluxes are in lumens: exitances in lm/m², irradiances in lx.
+    std::optional<Symmetry> symmetry; ///< the surfaces are a part of what is there; none: they are all
 
     /// Index of the group of that name, made if it is new.
     std::uint32_t group_index(const std::string& group_name);

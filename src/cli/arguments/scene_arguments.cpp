@@ -7,9 +7,82 @@
 
 #include <fmt/format.h>
 
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
 namespace hemi::cli {
 
+namespace {
+
+Vec3 parse_vector(std::string_view option, const std::string& text) {
+    const std::vector<std::string> parts = parse_list(text);
+    if (parts.size() != 3) {
+        throw InvalidArgument(fmt::format("{} {}; must be three numbers DX,DY,DZ", option, text));
+    }
+    Vec3 vector(0.0);
+    for (int k = 0; k < 3; ++k) {
+        vector[k] = parse_number(option, parts[static_cast<std::size_t>(k)]);
+    }
+    return vector;
+}
+
+RotationAxis parse_rotation(std::string_view option, const std::string& text) {
+    const std::vector<std::string> parts = parse_list(text);
+    const std::optional<int> axis = parts.size() == 2 ? axis_from_text(parts[0]) : std::nullopt;
+    if (!axis) {
+        throw InvalidArgument(fmt::format("{} {}; must be an axis and a number, as z,6", option, text));
+    }
+    return {*axis, parse_index(option, parts[1], 2, 360)};
+}
+
+/// What the scene repeats itself by.
+void add_symmetry(CLI::App& app, io::SymmetryOptions& symmetry) {
+    Options options(app, "Scene");
+    const auto each = [&app](const std::string& name, const std::string& form, const std::string& help,
+                             const std::function<void(const std::string&)>& read) {
+        app.add_option_function<std::vector<std::string>>(
+               name,
+               [read](const std::vector<std::string>& texts) {
+                   for (const std::string& text : texts) {
+                       read(text);
+                   }
+               },
+               help)
+            ->allow_extra_args(false)
+            ->option_text(form)
+            ->group("Scene");
+    };
+    each("--mirror", "AXIS=VALUE",
+         "the scene is one side of what there is, mirrored in the plane, as x=0; repeatable for up to three",
+         [&symmetry](const std::string& text) {
+             const std::optional<MirrorPlane> plane = plane_from_text(text);
+             if (!plane) {
+                 throw InvalidArgument(
+                     fmt::format("--mirror {}; must be a plane across an axis, as x=0", text));
+             }
+             symmetry.mirrors.push_back(*plane);
+         });
+    options.value(
+        "--rotate", "AXIS,N", "the scene is one Nth of what there is, turned about an axis, as z,6",
+        [&symmetry](const std::string& text) { symmetry.rotation = parse_rotation("--rotate", text); });
+    each("--periodic", "DX,DY,DZ",
+         "the scene repeats by a translation and its opposite; repeatable for up to three",
+         [&symmetry](const std::string& text) {
+             symmetry.periods.push_back(parse_vector("--periodic", text));
+         });
+    options.value("--images", "N", fmt::format("images each way along a translation ({})", usual_images),
+                  [&symmetry](const std::string& text) {
+                      symmetry.images = parse_index("--images", text, 1, most_images);
+                  });
+}
+
+} // namespace
+
 void add_scene_options(CLI::App& app, SceneOptions& scene) {
+    add_symmetry(app, scene.reader.symmetry);
     Options options(app, "Scene");
     auto* size = options.value("--patch-size", "S", "patch edges no longer than S scene units",
                                [&scene](const std::string& text) {

@@ -55,6 +55,32 @@ Report surfaces_report(const Scene& scene) {
     return report;
 }
 
+/// What the scene repeats itself by, and what need not be computed therefore.
+Report symmetry_report(const Scene& scene, const PatchMesh& mesh) {
+    Report report;
+    report.json["symmetry"] = nullptr;
+    if (!scene.symmetry) {
+        return report;
+    }
+    std::vector<std::string> words;
+    for (const MirrorPlane& plane : scene.symmetry->mirrors) {
+        words.push_back("mirror " + plane_text(plane));
+    }
+    if (const auto& rotation = scene.symmetry->rotation) {
+        words.push_back(fmt::format("{} turns about {}", rotation->folds, axis_text(rotation->axis)));
+    }
+    for (const Vec3& period : scene.symmetry->periods) {
+        words.push_back(fmt::format("{} each way along {}", scene.symmetry->images, point_text(period)));
+    }
+    const std::size_t images = images_of(*scene.symmetry).all.size();
+    report.add("symmetry",
+               fmt::format("{} ({}): rows and unknowns for {} of {} patches",
+                           plural(images, "image", "images"), fmt::join(words, ", "), count_text(mesh.size()),
+                           count_text(images * mesh.size())),
+               {{"symmetry", {{"images", images}, {"patches", images * mesh.size()}}}});
+    return report;
+}
+
 Report groups_report(const Scene& scene, const PatchMesh& mesh, std::span<const double> areas) {
     Table table({"group", "surfaces", "patches", "area"});
     Json list = Json::array();
@@ -186,6 +212,7 @@ Report contents_report(const Scene& scene, const PatchMesh& mesh, std::span<cons
                {{"bounds", {{"lower", point_json(lower)}, {"upper", point_json(upper)}}}});
     report.add("enclosure", to_word(scene.enclosure), {{"enclosure", to_word(scene.enclosure)}});
     report.add("environment", values_text(scene.environment), {{"environment", scene.environment}});
+    report.add(symmetry_report(scene, mesh));
     if (scene.sun) {
         report.add("sun",
                    fmt::format("{} {}, towards {}{}", values_text(scene.sun->irradiance),

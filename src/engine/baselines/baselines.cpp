@@ -5,11 +5,13 @@
 #include "engine/analytic/convex_polygon.hpp"
 #include "engine/analytic/direct_integration.hpp"
 #include "engine/hemicube/eye.hpp"
+#include "engine/image_rows.hpp"
 #include "engine/rays/patch_rays.hpp"
 #include "engine/rays/ray_tracer.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/engine/exchange_area.hpp"
+#include "hemi/scene/image_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -287,9 +289,7 @@ double visible_share(const RayTracer& tracer, const PatchMesh& mesh, std::uint32
     return all > 0.0 ? seen / all : 1.0;
 }
 
-} // namespace
-
-std::unique_ptr<RowProvider> make_baseline(const PatchMesh& mesh, const BaselineSettings& settings) {
+std::unique_ptr<RowProvider> make_rows(const PatchMesh& mesh, const BaselineSettings& settings) {
     if (mesh.size() > max_baseline_patches) {
         throw InvalidArgument(fmt::format("{} patches; baseline methods are slow and take at most {}: choose "
                                           "larger patches, or hemicubes",
@@ -315,6 +315,14 @@ std::unique_ptr<RowProvider> make_baseline(const PatchMesh& mesh, const Baseline
         break;
     }
     throw InvalidArgument("hemicube is no baseline method; make_hemicube_engine() makes it");
+}
+
+} // namespace
+
+std::unique_ptr<RowProvider> make_baseline(const PatchMesh& mesh, const BaselineSettings& settings) {
+    auto images = std::make_unique<const ImageMesh>(mesh);
+    auto rows = make_rows(images->mesh(), settings);
+    return images->any() ? fold_images(std::move(images), std::move(rows)) : std::move(rows);
 }
 
 std::vector<double> point_factors(const PatchMesh& mesh, const Vec3& point, const Vec3& normal,

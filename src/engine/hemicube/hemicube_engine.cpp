@@ -1,4 +1,5 @@
 #include "engine/hemicube/gl_rows.hpp"
+#include "engine/image_rows.hpp"
 #include "engine/rasteriser/cpu_rows.hpp"
 #include "engine/workers/worker_pool.hpp"
 #include "gl/context.hpp"
@@ -7,6 +8,7 @@
 #include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/engine/engine.hpp"
 #include "hemi/engine/point_rows.hpp"
+#include "hemi/scene/image_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -125,14 +127,17 @@ EyePoints eyes_at(std::span<const SurfacePoint> points, const PatchMesh& mesh, D
 
 std::unique_ptr<RowProvider> make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
                                                   const EngineSettings& engine) {
-    return make_raw_engine(mesh, settings, RowQuantity::form_factors, engine);
+    auto images = std::make_unique<const ImageMesh>(mesh);
+    auto rows = make_raw_engine(images->mesh(), settings, RowQuantity::form_factors, engine);
+    return images->any() ? fold_images(std::move(images), std::move(rows)) : std::move(rows);
 }
 
 std::unique_ptr<VisibilityProvider> make_visibility_engine(const PatchMesh& mesh,
                                                            const HemicubeSettings& settings,
                                                            const EngineSettings& engine) {
+    const ImageMesh images(mesh);
     return std::make_unique<VisibilityEngine>(
-        make_raw_engine(mesh, settings, RowQuantity::visibility, engine));
+        make_raw_engine(images.mesh(), settings, RowQuantity::visibility, engine));
 }
 
 std::unique_ptr<VisibilityProvider> make_point_visibility_engine(const PatchMesh& mesh,
@@ -141,10 +146,11 @@ std::unique_ptr<VisibilityProvider> make_point_visibility_engine(const PatchMesh
                                                                  const EngineSettings& engine,
                                                                  DirectionMeasure measure) {
     DeltaFormFactors::check_resolution(settings.resolution);
+    const ImageMesh images(mesh);
     auto geometry = std::make_unique<EngineGeometry>();
-    geometry->list = make_draw_list(mesh, settings.merge_lattices);
+    geometry->list = make_draw_list(images.mesh(), settings.merge_lattices);
     geometry->eyes = eyes_at(points, mesh, measure);
-    geometry->patches = mesh.size();
+    geometry->patches = images.mesh().size();
     geometry->measure = measure;
     return std::make_unique<VisibilityEngine>(
         make_raw_engine(std::move(geometry), settings, RowQuantity::visibility, engine));

@@ -3,6 +3,7 @@
 #include "core/parallel_for.hpp"
 #include "engine/rays/patch_rays.hpp"
 #include "engine/rays/ray_tracer.hpp"
+#include "hemi/scene/image_mesh.hpp"
 
 namespace hemi {
 
@@ -14,7 +15,8 @@ std::vector<std::optional<Vec3>> leak_directions(const PatchMesh& mesh,
     if (patches.empty()) {
         return directions;
     }
-    const RayTracer tracer(mesh);
+    const ImageMesh images(mesh);
+    const RayTracer tracer(images.mesh());
     parallel_for(patches.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const PatchRays sequence(mesh, patches[k], 0);

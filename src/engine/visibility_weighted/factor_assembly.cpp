@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -154,14 +155,139 @@ void finish(RowBlock& block, bool open) {
     block.visibility.shrink_to_fit();
 }
 
+/// What a patch and all images of another exchange.
+struct FoldedEntry {
+    std::uint32_t column;
+    std::uint8_t visibility;
+    double exchange; ///< A_i F(i, j)
+};
+
+/// Sums over the images of patches.
+class Folder {
+public:
+    /// All must outlive this.
+    Folder(const PairTable& pairs, const ImageMesh& images, const ExchangeAreas& exchange_areas)
+        : pairs_(pairs), images_(images), exchange_areas_(exchange_areas) {}
+
+    /// Row k, but for the columns below its patch's whose rows hold the pair.
+    [[nodiscard]] std::vector<FoldedEntry> operator()(std::uint32_t k) const {
+        const std::uint32_t i = pairs_.index.patches()[k];
+        std::vector<FoldedEntry> entries;
+        for (std::uint32_t j = 0; j < images_.size(); ++j) {
+            if (j < i && pairs_.index.row_of(j) != RowIndex::no_row) {
+                continue;
+            }
+            if (const FoldedEntry entry = add_up(k, i, j); entry.exchange > 0.0) {
+                entries.push_back(entry);
+            }
+        }
+        return entries;
+    }
+
+private:
+    [[nodiscard]] FoldedEntry add_up(std::uint32_t k, std::uint32_t i, std::uint32_t j) const {
+        const std::vector<PairVisibility>& row = pairs_.visibility[k];
+        bool seen = false;
+        for (std::uint32_t image = 0; image < images_.images() && !seen; ++image) {
+            seen = !row[images_.patch(image, j)].is_hidden();
+        }
+        double exchange = 0.0;
+        double unoccluded = 0.0; // with what is hidden: V of all is the share of it
+        bool clear = true;
+        for (std::uint32_t image = 0; image < images_.images() && seen; ++image) {
+            const std::uint32_t patch = images_.patch(image, j);
+            if (const double area = patch == i ? 0.0 : exchange_areas_(i, patch); area > 0.0) {
+                unoccluded += area;
+                exchange += area * row[patch].value();
+                clear = clear && row[patch].stored() == visibility_clear;
+            }
+        }
+        if (!(exchange > 0.0)) {
+            return {j, 0, 0.0};
+        }
+        const PairVisibility all =
+            clear ? PairVisibility::clear() : PairVisibility::from(exchange / unoccluded);
+        return {j, all.stored(), exchange};
+    }
+
+    const PairTable& pairs_;
+    const ImageMesh& images_;
+    const ExchangeAreas& exchange_areas_;
+};
+
+/// Factors of pairs of which each is in one of two rows.
+FormFactorMatrix assemble_folded(const PairTable& pairs, const ImageMesh& images, ExchangeRule rule,
+                                 bool open, const Progress& progress) {
+    const ExchangeAreas exchange_areas(images.mesh(), rule);
+    const Folder fold(pairs, images, exchange_areas);
+    const std::span<const std::uint32_t> patches = pairs.index.patches();
+    const std::span<const double> areas = images.mesh().areas();
+    std::vector<std::vector<FoldedEntry>> rows(patches.size()); // those on and above the diagonal
+    std::vector<std::vector<FoldedEntry>> below(patches.size());
+    for (std::uint32_t first = 0; first < patches.size(); first += FormFactorMatrix::block_rows) {
+        const auto end = static_cast<std::uint32_t>(
+            std::min<std::size_t>(first + FormFactorMatrix::block_rows, patches.size()));
+        parallel_for(end - first, 1, [&](std::size_t from, std::size_t upto) {
+            for (std::size_t k = first + from; k < first + upto; ++k) {
+                rows[k] = fold(static_cast<std::uint32_t>(k));
+            }
+        });
+        for (std::uint32_t k = first; k < end; ++k) {
+            for (const FoldedEntry& entry : rows[k]) {
+                const std::uint32_t other = pairs.index.row_of(entry.column);
+                if (entry.column > patches[k] && other != RowIndex::no_row) {
+                    below[other].push_back({patches[k], entry.visibility, entry.exchange});
+                }
+            }
+        }
+        if (progress && !progress(end, patches.size())) {
+            throw Cancelled();
+        }
+    }
+    FormFactorMatrix matrix(images.size());
+    for (const RowBlock& empty : std::vector<RowBlock>(matrix.blocks().begin(), matrix.blocks().end())) {
+        RowBlock block = empty;
+        for (std::uint32_t local = 0; local < block.rows(); ++local) {
+            const std::uint32_t i = block.first_row + local;
+            const std::uint32_t k = pairs.index.row_of(i);
+            block.begin[local + 1] = block.begin[local];
+            if (k == RowIndex::no_row) {
+                continue;
+            }
+            block.known[local] = 1;
+            block.environment[local] = pairs.environment[k];
+            block.blocked[local] = pairs.blocked[k];
+            std::vector<FoldedEntry> all;
+            std::merge(rows[k].begin(), rows[k].end(), below[k].begin(), below[k].end(),
+                       std::back_inserter(all),
+                       [](const FoldedEntry& a, const FoldedEntry& b) { return a.column < b.column; });
+            for (const FoldedEntry& entry : all) {
+                block.columns.push_back(entry.column);
+                block.values.push_back(static_cast<float>(entry.exchange / areas[i]));
+                block.visibility.push_back(entry.visibility);
+            }
+            block.begin[local + 1] = block.columns.size();
+            std::vector<FoldedEntry>().swap(rows[k]);
+            std::vector<FoldedEntry>().swap(below[k]);
+        }
+        finish(block, open);
+        matrix.set_block(std::move(block));
+    }
+    return matrix;
+}
+
 } // namespace
 
 bool sees_environment(double share, Enclosure enclosure) {
     return enclosure == Enclosure::open || (enclosure == Enclosure::automatic && share > max_leak);
 }
 
-FormFactorMatrix assemble_factors(const PairTable& pairs, const PatchMesh& mesh, ExchangeRule rule,
+FormFactorMatrix assemble_factors(const PairTable& pairs, const ImageMesh& images, ExchangeRule rule,
                                   Enclosure enclosure, const Progress& progress) {
+    if (images.any()) {
+        return assemble_folded(pairs, images, rule, is_open(pairs.environment, enclosure), progress);
+    }
+    const PatchMesh& mesh = images.mesh();
     const std::uint32_t size = mesh.size();
     const ExchangeAreas exchange_areas(mesh, rule);
     const bool open = is_open(pairs.environment, enclosure);

@@ -4,7 +4,7 @@
 #include "hemi/core/progress.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
-#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/scene/image_mesh.hpp"
 
 namespace hemi {
 
@@ -16,12 +16,13 @@ namespace hemi {
 /// exchange area, and the balance of every row. Last phase of compute_visibility_weighted(), which says what
 /// the balance is.
 /// @param pairs      V of all pairs
-/// @param mesh       the one that `pairs` are of
+/// @param images     of the scene that `pairs` are of; factors of a patch and all images of another are added
+/// up
 /// @param rule       of F0
 /// @param enclosure  as the scene says
 /// @param progress   called after every block of rows; may be empty
 /// @throws Cancelled
-[[nodiscard]] FormFactorMatrix assemble_factors(const PairTable& pairs, const PatchMesh& mesh,
+[[nodiscard]] FormFactorMatrix assemble_factors(const PairTable& pairs, const ImageMesh& images,
                                                 ExchangeRule rule, Enclosure enclosure,
                                                 const Progress& progress);
 

@@ -38,8 +38,9 @@ PairEstimate combine(VisibilitySample a, VisibilitySample b, double assumed) {
 class PairEstimator {
 public:
     /// All must outlive this.
-    PairEstimator(const VisibilityTable& table, const PatchMesh& mesh, const FacingTest& facing)
-        : table_(table), facing_(facing), neighbours_(mesh), mean_(table.index.rows()) {
+    PairEstimator(const VisibilityTable& table, const ImageMesh& images, const FacingTest& facing)
+        : table_(table), images_(images), facing_(facing), neighbours_(images.mesh()),
+          mean_(table.index.rows()) {
         parallel_for(mean_.size(), rows_per_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
                 mean_[k] = mean_share(table_.samples[k]);
@@ -47,13 +48,15 @@ public:
         });
     }
 
-    /// Of row k and patch j.
+    /// Of row k and patch j, which may be an image.
     [[nodiscard]] PairEstimate operator()(std::size_t k, std::uint32_t j) const {
         const std::uint32_t i = table_.index.patches()[k];
-        const std::uint32_t other = table_.index.row_of(j);
-        const bool one_way = other == RowIndex::no_row;
+        const auto [from, to] = images_.counterpart(i, j);
+        const std::uint32_t other = table_.index.row_of(from);
+        // A patch and its mirror image see one another by the same sample.
+        const bool one_way = other == RowIndex::no_row || (from == i && to == j);
         VisibilitySample there = table_.samples[k][j];
-        VisibilitySample back = one_way ? VisibilitySample() : table_.samples[other][i];
+        VisibilitySample back = one_way ? VisibilitySample() : table_.samples[other][to];
         const auto is_hidden = [](VisibilitySample one) { return one.known() && one.share() == 0.0; };
         if ((is_hidden(there) && !back.known()) || (is_hidden(back) && !there.known()) || !facing_(i, j)) {
             return {PairVisibility(), 1.0}; // known, not assumed: so 1 texel says so
@@ -62,7 +65,7 @@ public:
         double assumed = 1.0;
         if (!there.known() && !back.known()) {
             there = neighbours_.stand_in(table_.samples[k], j);
-            back = one_way ? VisibilitySample() : neighbours_.stand_in(table_.samples[other], i);
+            back = one_way ? VisibilitySample() : neighbours_.stand_in(table_.samples[other], to);
             assumed = one_way ? mean_[k] : 0.5 * (mean_[k] + mean_[other]);
         }
         return combine(there, back, assumed);
@@ -70,6 +73,7 @@ public:
 
 private:
     const VisibilityTable& table_;
+    const ImageMesh& images_;
     const FacingTest& facing_;
     CoplanarNeighbours neighbours_;
     std::vector<double> mean_; ///< see mean_share(), of each row
@@ -85,7 +89,7 @@ void add_rays(const ShadowRays::Estimate& traced, PairEstimate& pair) {
 
 } // namespace
 
-PairTable combine_pairs(VisibilityTable samples, const PatchMesh& mesh, std::uint32_t shadow_rays,
+PairTable combine_pairs(VisibilityTable samples, const ImageMesh& images, std::uint32_t shadow_rays,
                         const Progress& progress) {
     const std::span<const std::uint32_t> patches = samples.index.patches();
     const std::uint32_t size = samples.index.size();
@@ -95,8 +99,9 @@ PairTable combine_pairs(VisibilityTable samples, const PatchMesh& mesh, std::uin
             visibility[k].resize(size);
         }
     });
+    const PatchMesh& mesh = images.mesh();
     const FacingTest facing(mesh);
-    const PairEstimator estimate(samples, mesh, facing);
+    const PairEstimator estimate(samples, images, facing);
     std::optional<ShadowRays> rays;
     std::optional<ShadowRaySelection> selected;
     if (shadow_rays > 0) {
@@ -107,8 +112,10 @@ PairTable combine_pairs(VisibilityTable samples, const PatchMesh& mesh, std::uin
     const auto combine_part = [&](std::size_t k, std::uint32_t from, std::uint32_t upto) {
         const std::uint32_t i = patches[k];
         for (std::uint32_t j = from; j < upto; ++j) {
-            const std::uint32_t other = samples.index.row_of(j);
-            if (other != RowIndex::no_row && j <= i) {
+            const auto [from_end, to] = images.counterpart(i, j);
+            const std::uint32_t other = samples.index.row_of(from_end);
+            const bool by_other = from_end < i || (from_end == i && to < j);
+            if (j == i || (other != RowIndex::no_row && by_other)) {
                 continue;
             }
             PairEstimate pair = estimate(k, j);
@@ -117,7 +124,7 @@ PairTable combine_pairs(VisibilityTable samples, const PatchMesh& mesh, std::uin
             }
             visibility[k][j] = pair.visibility;
             if (other != RowIndex::no_row) {
-                visibility[other][i] = pair.visibility;
+                visibility[other][to] = pair.visibility;
             }
         }
     };

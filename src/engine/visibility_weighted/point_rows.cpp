@@ -1,11 +1,13 @@
 #include "hemi/engine/point_rows.hpp"
 
 #include "core/parallel_for.hpp"
+#include "engine/image_rows.hpp"
 #include "engine/rays/shadow_rays.hpp"
 #include "engine/visibility_weighted/coplanar_neighbours.hpp"
 #include "engine/visibility_weighted/factor_assembly.hpp"
 #include "engine/visibility_weighted/visibility_sample.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/scene/image_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -61,13 +63,14 @@ struct PointRow {
 /// Factors of single rows; thread-safe.
 class PointRows {
 public:
-    PointRows(const PatchMesh& mesh, std::span<const SurfacePoint> points,
+    PointRows(const ImageMesh& images, std::span<const SurfacePoint> points,
               const VisibilityWeightedSettings& settings, Enclosure enclosure,
               std::span<const double> weights, DirectionMeasure measure)
-        : points_(points), rays_a_pair_(settings.shadow_rays), enclosure_(enclosure), weights_(weights),
-          spheres_(measure == DirectionMeasure::solid_angle), areas_(mesh, settings.rule), neighbours_(mesh) {
+        : images_(images), points_(points), rays_a_pair_(settings.shadow_rays), enclosure_(enclosure),
+          weights_(weights), spheres_(measure == DirectionMeasure::solid_angle),
+          areas_(images.mesh(), settings.rule), neighbours_(images.mesh()) {
         if (rays_a_pair_ > 0) {
-            rays_.emplace(mesh);
+            rays_.emplace(images.mesh());
         }
     }
 
@@ -123,7 +126,8 @@ private:
     /// which one more could have come out either way.
     [[nodiscard]] double variance(const Entry& entry, double texels) const {
         const double share = (entry.visibility * texels + 0.5) / (texels + 1.0);
-        const double light = entry.unoccluded * (weights_.empty() ? 1.0 : weights_[entry.column]);
+        const double light =
+            entry.unoccluded * (weights_.empty() ? 1.0 : weights_[images_.original(entry.column)]);
         return light * light * share * (1.0 - share) / (texels + 1.0);
     }
 
@@ -184,6 +188,7 @@ private:
         return row;
     }
 
+    const ImageMesh& images_;
     std::span<const SurfacePoint> points_;
     std::uint32_t rays_a_pair_;
     Enclosure enclosure_;
@@ -204,7 +209,9 @@ void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
         throw InvalidArgument(fmt::format("point rows: {} rows for {} points, {} weights for {} patches",
                                           visibility.size(), points.size(), weights.size(), mesh.size()));
     }
-    const PointRows rows(mesh, points, settings, enclosure, weights, measure);
+    const ImageMesh images(mesh);
+    ImageFold fold(images);
+    const PointRows rows(images, points, settings, enclosure, weights, measure);
     std::vector<SampledPoint> batch;
     std::size_t done = 0;
     const auto finish_batch = [&] {
@@ -215,8 +222,9 @@ void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
             }
         });
         for (std::size_t k = 0; k < batch.size(); ++k) {
-            sink(batch[k].index,
-                 {finished[k].columns, finished[k].values, {}, finished[k].environment, batch[k].blocked});
+            const RowView row{
+                finished[k].columns, finished[k].values, {}, finished[k].environment, batch[k].blocked};
+            sink(batch[k].index, images.any() ? fold(row) : row);
         }
         done += batch.size();
         batch.clear();
@@ -229,7 +237,7 @@ void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
     visibility.rows(all, [&](std::uint32_t index, const VisibilityRow& row) {
         SampledPoint& sampled = batch.emplace_back();
         sampled.index = index;
-        sampled.samples.resize(mesh.size());
+        sampled.samples.resize(images.mesh().size());
         for (std::size_t entry = 0; entry < row.columns.size(); ++entry) {
             sampled.samples[row.columns[entry]] = {row.shares[entry], row.texels[entry]};
         }

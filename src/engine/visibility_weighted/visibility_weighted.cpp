@@ -31,6 +31,10 @@
 // do not hold. Visible over covered delta form factors, both directions pooled, is the measure of V of this
 // project.
 //
+// Of a scene with symmetry the other patch is any patch or image of one. The pair of i and image g of j lies
+// as the pair of j and the image of i by the way back does, and these two are combined; factors of j's images
+// are added up. So A_i F(i, j) = A_j F(j, i), and F(i, i) is what i sees of its own images.
+//
 // Three phases, each of which takes what the one before returns: sample_visibility(), combine_pairs(),
 // assemble_factors().
 
@@ -72,9 +76,10 @@ FormFactorMatrix compute_visibility_weighted(VisibilityProvider& visibility, con
                                              const VisibilityWeightedSettings& settings, Enclosure enclosure,
                                              const Progress& rows_done, const Progress& pairs_combined,
                                              const Progress& pairs_done) {
-    VisibilityTable samples = sample_visibility(visibility, patches, mesh.size(), rows_done);
-    const PairTable pairs = combine_pairs(std::move(samples), mesh, settings.shadow_rays, pairs_combined);
-    return assemble_factors(pairs, mesh, settings.rule, enclosure, pairs_done);
+    const ImageMesh images(mesh);
+    VisibilityTable samples = sample_visibility(visibility, patches, images.mesh().size(), rows_done);
+    const PairTable pairs = combine_pairs(std::move(samples), images, settings.shadow_rays, pairs_combined);
+    return assemble_factors(pairs, images, settings.rule, enclosure, pairs_done);
 }
 
 } // namespace hemi

@@ -4,6 +4,7 @@
 #include "io/formats/json_node.hpp"
 #include "io/formats/patch_cuts_chunk.hpp"
 #include "io/formats/surface_chunk.hpp"
+#include "io/scenes/json_symmetry.hpp"
 
 #include <fmt/format.h>
 
@@ -96,6 +97,9 @@ Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional
     }
     if (!result.solution.direct.empty()) {
         head["direct"] = true;
+    }
+    if (scene.symmetry) {
+        head["symmetry"] = symmetry_json(*scene.symmetry);
     }
     if (scene.up != UpAxis::z) {
         head["up"] = to_word(scene.up);
@@ -232,6 +236,9 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
             up.expect("y or z");
         }
         scene.up = *axis;
+    }
+    if (head.has("symmetry")) {
+        scene.symmetry = read_symmetry(head.member("symmetry"));
     }
     if (head.has("camera")) {
         scene.camera = read_camera(head.member("camera"));

@@ -1,6 +1,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "io/scenes/json_symmetry.hpp"
 #include "io/scenes/sides.hpp"
 
 #include <fmt/format.h>
@@ -102,6 +103,7 @@ Scene read_scenes(std::span<const std::filesystem::path> paths, const SceneReade
     as_read.flipped_groups.clear();
     as_read.close_bodies = false;
     as_read.orientation = Orientation::as_read;
+    as_read.symmetry = {};
     JoinedScenes joined;
     for (const std::filesystem::path& path : paths) {
         if (extension_of(path) == ".json") {
@@ -113,6 +115,7 @@ Scene read_scenes(std::span<const std::filesystem::path> paths, const SceneReade
     }
     Scene scene = joined.finish();
     set_sides(scene, options, scene.name, diagnostics, joined.exported());
+    set_symmetry(scene, options.symmetry);
     validate(scene);
     return scene;
 }

@@ -8,6 +8,7 @@
 #include "io/meshes/face_mesh.hpp"
 #include "io/scenes/json_daylight.hpp"
 #include "io/scenes/json_materials.hpp"
+#include "io/scenes/json_symmetry.hpp"
 #include "io/scenes/json_thermal.hpp"
 #include "io/scenes/obj_materials.hpp"
 #include "io/scenes/scene_folder.hpp"
@@ -158,7 +159,7 @@ public:
 private:
     void check_version() {
         root_.check_keys({"hemi", "name", "channels", "materials", "surfaces", "patch_size", "enclosure",
-                          "environment", "camera", "groups", "bands", "unit", "sun", "up"});
+                          "environment", "camera", "groups", "bands", "unit", "sun", "up", "symmetry"});
         if (!root_.has("hemi")) {
             root_.fail("\"hemi\": 1 is missing, the version of the format");
         }
@@ -450,6 +451,9 @@ private:
         }
         if (root_.has("unit")) {
             scene_.unit = read_unit(root_.member("unit"));
+        }
+        if (root_.has("symmetry")) {
+            scene_.symmetry = read_symmetry(root_.member("symmetry"));
         }
         if (root_.has("camera")) {
             scene_.camera = read_camera(root_.member("camera"), upwards(scene_.up));

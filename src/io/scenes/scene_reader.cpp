@@ -4,6 +4,7 @@
 #include "hemi/core/error.hpp"
 #include "io/formats/text_scan.hpp"
 #include "io/meshes/face_mesh.hpp"
+#include "io/scenes/json_symmetry.hpp"
 
 #include <fmt/format.h>
 
@@ -67,6 +68,7 @@ Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& op
     }
     Scene scene = reader->read(path, options, diagnostics);
     scene.up = options.up.value_or(scene.up);
+    set_symmetry(scene, options.symmetry);
     try {
         validate(scene);
     } catch (const InputError& error) {
