@@ -20,14 +20,25 @@ constexpr float far_ratio = 2.0F;
 
 Gathering::Gathering(const PatchMesh& mesh, std::uint32_t channels, std::vector<double> radiosity,
                      std::span<const double> environment)
+    : Gathering(ImageMesh(mesh), channels, std::move(radiosity), environment) {}
+
+Gathering::Gathering(const ImageMesh& images, std::uint32_t channels, std::vector<double> radiosity,
+                     std::span<const double> environment)
     : channels_(channels), radiosity_(std::move(radiosity)),
-      environment_(environment.begin(), environment.end()), bright_(mesh.size(), 0), areas_(mesh) {
+      environment_(environment.begin(), environment.end()), bright_(images.mesh().size(), 0),
+      areas_(images.mesh()) {
+    const PatchMesh& mesh = images.mesh();
     environment_.resize(environment.empty() ? channels : environment.size(), 0.0);
     if (channels == 0 || environment_.size() != channels ||
-        radiosity_.size() != std::size_t{mesh.size()} * channels) {
+        radiosity_.size() != std::size_t{images.size()} * channels) {
         throw InvalidArgument(
             fmt::format("gathering: {} values for {} patches of {} channels, {} of the environment",
-                        radiosity_.size(), mesh.size(), channels, environment_.size()));
+                        radiosity_.size(), images.size(), channels, environment_.size()));
+    }
+    for (std::uint32_t p = images.size(); p < mesh.size(); ++p) {
+        for (std::uint32_t c = 0; c < channels; ++c) {
+            radiosity_.push_back(radiosity_[std::size_t{images.original(p)} * channels + c]);
+        }
     }
     for (std::size_t k = 0; k < radiosity_.size(); ++k) {
         if (radiosity_[k] > 0.0) {

@@ -3,7 +3,7 @@
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/engine/visibility_provider.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
-#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/scene/image_mesh.hpp"
 
 #include <cstdint>
 #include <span>
@@ -17,8 +17,8 @@ namespace hemi {
 /// Rows of form factors give it exactly. For rows of visibility F(i, j) = F0(i, j) V(i, j) with V as i alone
 /// sees it and F0 the unoccluded factor: exact where patches are near each other, from centre to centre
 /// (within a few per cent, sums of them within one) where they are far. That is provisional: rows that are
-/// combined and repaired differ a little. Thread-safe. Memory: N·channels, and about 350 bytes a patch for
-/// unoccluded factors.
+/// combined and repaired differ a little. Rows of visibility are over all images of a scene with symmetry.
+/// Thread-safe. Memory: N·channels, and about 350 bytes a patch for unoccluded factors.
 class Gathering {
 public:
     /// @param mesh         is read here and not kept
@@ -33,6 +33,8 @@ public:
     void gather(std::uint32_t patch, const VisibilityRow& row, std::span<double> irradiance) const;
 
 private:
+    Gathering(const ImageMesh& images, std::uint32_t channels, std::vector<double> radiosity,
+              std::span<const double> environment);
     /// Small, since every row goes through all of them.
     struct Place {
         glm::vec3 centre; ///< from the middle of the scene

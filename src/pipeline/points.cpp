@@ -5,6 +5,7 @@
 #include "engine/visibility_weighted/factor_assembly.hpp"
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/scene/image_mesh.hpp"
 #include "pipeline/heat_rows.hpp"
 #include "pipeline/point_daylight.hpp"
 #include "pipeline/visible_radiosity.hpp"
@@ -341,11 +342,31 @@ Radiation radiation_of(const Scene& scene, const Solution& solution) {
     return radiation;
 }
 
+namespace {
+
+/// The same of all images.
+Radiation of_images(const ImageMesh& images, const Radiation& radiation) {
+    Radiation all = radiation;
+    all.radiosity.resize(std::size_t{images.mesh().size()} * radiation.channels);
+    for (std::uint32_t p = 0; p < images.mesh().size(); ++p) {
+        std::copy_n(radiation.radiosity.begin() + std::ptrdiff_t{images.original(p)} * radiation.channels,
+                    radiation.channels, all.radiosity.begin() + std::ptrdiff_t{p} * radiation.channels);
+    }
+    return all;
+}
+
+} // namespace
+
 PointValues compute_point_values(const PatchMesh& mesh, std::span<const Receiver> points,
                                  const Radiation& radiation, Enclosure enclosure,
                                  const FactorSettings& settings, std::optional<double> facing,
                                  Observer& observer) {
     check(mesh, points, radiation);
+    if (mesh.symmetry()) { // every image hides a part of the sky of its own
+        const ImageMesh images(mesh);
+        return compute_point_values(images.mesh(), points, of_images(images, radiation), enclosure, settings,
+                                    facing, observer);
+    }
     RowPlan plan = plan_rows(settings, mesh.size());
     if (plan.hemicube.eye_points > 1) {
         plan.hemicube.resolution *= resolution_factor;

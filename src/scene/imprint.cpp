@@ -298,7 +298,7 @@ private:
                 }
             }
         }
-        return {std::move(occluders), tolerance_};
+        return {std::move(occluders), tolerance_, scene_.symmetry};
     }
 
     /// A side that sees backs in at least half of all directions, and in the others pieces alone.

@@ -2,6 +2,7 @@
 
 #include "scene/convex_polygon.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -22,6 +23,34 @@ std::vector<Bounds> boxes(std::span<const Occluder> occluders) {
     return result;
 }
 
+/// The occluders and those of all images.
+/// @param corners  gets those of images, and keeps them
+std::vector<Occluder> with_images(std::vector<Occluder> occluders, const std::optional<Symmetry>& symmetry,
+                                  std::vector<std::vector<Vec3>>& corners) {
+    if (!symmetry) {
+        return occluders;
+    }
+    const SceneImages images = images_of(*symmetry);
+    const std::size_t own = occluders.size();
+    for (std::size_t k = 1; k < images.all.size(); ++k) {
+        for (std::size_t index = 0; index < own; ++index) {
+            Occluder image = occluders[index];
+            std::vector<Vec3>& there = corners.emplace_back();
+            for (const Vec3& corner : image.corners) {
+                there.push_back(images.all[k](corner));
+            }
+            if (images.all[k].mirrors()) {
+                std::reverse(there.begin(), there.end());
+            }
+            image.corners = there;
+            image.normal = images.all[k].direction(image.normal);
+            image.image = true;
+            occluders.push_back(image);
+        }
+    }
+    return occluders;
+}
+
 } // namespace
 
 std::vector<Vec3> hemisphere(const Vec3& normal) {
@@ -38,8 +67,10 @@ std::vector<Vec3> hemisphere(const Vec3& normal) {
     return result;
 }
 
-Surroundings::Surroundings(std::vector<Occluder> occluders, double slack)
-    : occluders_(std::move(occluders)), tree_(boxes(occluders_)), slack_(slack) {}
+Surroundings::Surroundings(std::vector<Occluder> occluders, double slack,
+                           const std::optional<Symmetry>& symmetry)
+    : occluders_(with_images(std::move(occluders), symmetry, image_corners_)), tree_(boxes(occluders_)),
+      slack_(slack) {}
 
 Sight Surroundings::look(std::uint32_t face, const Vec3& eye, std::span<const Vec3> rays) const {
     Sight sight;
@@ -50,7 +81,7 @@ Sight Surroundings::look(std::uint32_t face, const Vec3& eye, std::span<const Ve
             const Occluder& other = occluders_[index];
             const double distance =
                 glm::dot(other.corners[0] - eye, other.normal) / glm::dot(other.normal, ray);
-            if (other.face != face && distance > 0.0 && distance < nearest &&
+            if ((other.face != face || other.image) && distance > 0.0 && distance < nearest &&
                 contains(other.corners, other.normal, eye + distance * ray, slack_)) {
                 nearest = distance;
                 seen = &other;

@@ -2,9 +2,11 @@
 
 #include "core/box_tree.hpp"
 #include "hemi/core/geometry.hpp"
+#include "hemi/scene/symmetry.hpp"
 
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +31,7 @@ struct Occluder {
     std::uint32_t piece; ///< or `whole`
     bool front;          ///< radiates from its front
     bool back;
+    bool image = false; ///< in an image of the scene: hides what the face itself sees, too
 };
 
 /// What a point beside a face sees.
@@ -46,13 +49,16 @@ struct Sight {
 /// All that hides others in a scene.
 class Surroundings {
 public:
-    /// @param slack  what is no farther from an occluder's border meets it
-    Surroundings(std::vector<Occluder> occluders, double slack);
+    /// @param occluders  of the part of a scene that is given
+    /// @param slack      what is no farther from an occluder's border meets it
+    /// @param symmetry   of the scene, whose images hide as well
+    Surroundings(std::vector<Occluder> occluders, double slack, const std::optional<Symmetry>& symmetry = {});
 
     /// @param face  is not seen itself
     [[nodiscard]] Sight look(std::uint32_t face, const Vec3& eye, std::span<const Vec3> rays) const;
 
 private:
+    std::vector<std::vector<Vec3>> image_corners_; ///< of occluders that are images
     std::vector<Occluder> occluders_;
     BoxTree tree_;
     double slack_;

@@ -31,8 +31,15 @@ Bytes encode(const std::array<float, 3>& linear) {
 } // namespace
 
 HemicubeInset::HemicubeInset(const PatchMesh& mesh, const HemicubeSettings& settings, gl::Context& window)
-    : settings_(settings), geometry_(make_engine_geometry(mesh, settings_)),
-      rows_(geometry_, settings_, window) {}
+    : HemicubeInset(ImageMesh(mesh), settings, window) {}
+
+HemicubeInset::HemicubeInset(const ImageMesh& images, const HemicubeSettings& settings, gl::Context& window)
+    : settings_(settings), geometry_(make_engine_geometry(images.mesh(), settings_)),
+      rows_(geometry_, settings_, window) {
+    for (std::uint32_t patch = 0; patch < images.mesh().size(); ++patch) {
+        original_.push_back(images.original(patch));
+    }
+}
 
 void HemicubeInset::look(std::uint32_t patch, std::uint32_t eye) {
     const auto eyes = static_cast<std::uint32_t>(geometry_.eyes.of(patch).size());
@@ -76,7 +83,8 @@ std::optional<std::uint32_t> HemicubeInset::item_at(double x, double y) const {
     const std::uint32_t row = face == 0 ? texel(up + 1.0)
                                         : edge + static_cast<std::uint32_t>(face - 1) * (edge / 2) +
                                               std::min(texel(up), edge / 2 - 1);
-    return items_[std::size_t{row} * edge + column];
+    const std::uint32_t item = items_[std::size_t{row} * edge + column];
+    return item < item_first_patch ? item : item_first_patch + original_[item - item_first_patch];
 }
 
 void HemicubeInset::paint(std::span<const std::array<float, 3>> colours) {

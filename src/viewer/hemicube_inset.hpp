@@ -2,6 +2,7 @@
 
 #include "engine/hemicube/gl_rows.hpp"
 #include "gl/objects.hpp"
+#include "hemi/scene/image_mesh.hpp"
 #include "viewer/overlays.hpp"
 
 #include <array>
@@ -31,9 +32,12 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> seen() const;
 
 private:
+    HemicubeInset(const ImageMesh& images, const HemicubeSettings& settings, gl::Context& window);
+
     HemicubeSettings settings_;
     EngineGeometry geometry_;
     GlRows rows_;
+    std::vector<std::uint32_t> original_; ///< of every patch that is drawn, the scene's
     std::uint32_t patch_ = 0xFFFFFFFFU;
     std::uint32_t eye_ = 0;
     std::vector<std::uint32_t> items_;

@@ -40,6 +40,8 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
         put_iso_values(drawn, *input.mesh, document.surfaces(), field_->shown.values, field_->scale);
         settings_.iso_lines = iso_positions(field_->scale);
     }
+    drawn = with_images(std::move(drawn), *input.mesh);
+    drawn_patches_ = drawn.patches.size() / 3;
     dots_ = dots_of(input, look);
     renderer_.upload(dots_ ? with_dots(std::move(drawn), *dots_, settings_) : drawn);
 }
@@ -80,7 +82,10 @@ Picture SceneView::picture(const Camera& camera, std::array<std::uint32_t, 2> si
 std::optional<std::uint32_t> SceneView::item(const Camera& camera, std::array<std::uint32_t, 2> size,
                                              std::uint32_t x, std::uint32_t y) {
     const std::optional<std::uint32_t> item = renderer_.item(camera, settings(size, 1), x, y);
-    return item && *item < light_.patches.size() / 3 ? item : std::nullopt; // not of a dot
+    if (!item || *item >= drawn_patches_) { // of a dot
+        return std::nullopt;
+    }
+    return *item % static_cast<std::uint32_t>(light_.patches.size() / 3); // images follow one another
 }
 
 bool SceneView::hides_backs(const Camera& camera, std::array<std::uint32_t, 2> size) {

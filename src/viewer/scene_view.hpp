@@ -51,6 +51,7 @@ private:
     std::optional<Dots> dots_;
     std::vector<std::array<float, 3>> colours_; ///< what was painted
     PictureMesh light_;                         ///< where nothing was painted
+    std::size_t drawn_patches_ = 0;             ///< with their images, without dots
     bool evenly_lit_ = false;                   ///< that is even_light()
 };
 
