@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -155,123 +154,166 @@ void finish(RowBlock& block, bool open) {
     block.visibility.shrink_to_fit();
 }
 
-/// What a patch and all images of another exchange.
-struct FoldedEntry {
-    std::uint32_t column;
-    std::uint8_t visibility;
-    double exchange; ///< A_i F(i, j)
-};
-
-/// Sums over the images of patches.
-class Folder {
+/// Fills rows pair by pair, of a patch and all images of another, which are one entry.
+class FoldedFiller {
 public:
-    /// All must outlive this.
-    Folder(const PairTable& pairs, const ImageMesh& images, const ExchangeAreas& exchange_areas)
-        : pairs_(pairs), images_(images), exchange_areas_(exchange_areas) {}
+    /// Columns that a thread owns: it fills them in the rows that it goes through, and their rows below the
+    /// diagonal.
+    static constexpr std::uint32_t columns_at_once = 256;
 
-    /// Row k, but for the columns below its patch's whose rows hold the pair.
-    [[nodiscard]] std::vector<FoldedEntry> operator()(std::uint32_t k) const {
-        const std::uint32_t i = pairs_.index.patches()[k];
-        std::vector<FoldedEntry> entries;
-        for (std::uint32_t j = 0; j < images_.size(); ++j) {
-            if (j < i && pairs_.index.row_of(j) != RowIndex::no_row) {
+    /// All must outlive this. Makes room in the blocks.
+    FoldedFiller(const PairTable& pairs, const ImageMesh& images, const ExchangeAreas& exchange_areas,
+                 std::vector<RowBlock>& blocks)
+        : pairs_(pairs), images_(images), exchange_areas_(exchange_areas), blocks_(blocks),
+          chunks_((images.size() + columns_at_once - 1) / columns_at_once),
+          before_(pairs.index.rows() * (chunks_ + 1), 0), next_(images.size()) {
+        parallel_for(pairs.index.rows(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                count(k);
+            }
+        });
+        for (RowBlock& block : blocks) {
+            for (std::uint32_t local = 0; local < block.rows(); ++local) {
+                const std::uint32_t k = pairs.index.row_of(block.first_row + local);
+                next_[block.first_row + local] = block.begin[local];
+                block.begin[local + 1] = block.begin[local];
+                if (k != RowIndex::no_row) {
+                    block.known[local] = 1;
+                    block.environment[local] = pairs.environment[k];
+                    block.blocked[local] = pairs.blocked[k];
+                    block.begin[local + 1] += before_[std::size_t{k} * (chunks_ + 1) + chunks_];
+                }
+            }
+            block.columns.resize(block.begin.back());
+            block.values.resize(block.begin.back());
+            block.visibility.resize(block.begin.back());
+        }
+    }
+
+    /// Number of threads' shares of the columns.
+    [[nodiscard]] std::uint32_t chunks() const { return chunks_; }
+
+    /// Pairs of i with the patches j >= i of a chunk: entry (i, j), and entry (j, i), whose columns come in
+    /// ascending order if rows i do.
+    void fill(std::uint32_t i, std::uint32_t chunk) {
+        const std::uint32_t from = chunk * columns_at_once;
+        const std::uint32_t upto = std::min(from + columns_at_once, images_.size());
+        const std::uint32_t k = pairs_.index.row_of(i);
+        if (upto <= i) {
+            return;
+        }
+        if (k == RowIndex::no_row) { // only the rows that were asked for have this column
+            for (std::uint32_t j = std::max(from, i + 1); j < upto; ++j) {
+                const std::uint32_t other = pairs_.index.row_of(j);
+                if (other != RowIndex::no_row && is_seen(other, i)) {
+                    const Exchange exchange = add_up(other, j, i);
+                    put(blocks_[j / FormFactorMatrix::block_rows], next_[j]++, i, exchange.area / area(j),
+                        exchange.visibility);
+                }
+            }
+            return;
+        }
+        RowBlock& block = blocks_[i / FormFactorMatrix::block_rows];
+        std::uint64_t at = block.begin[i - block.first_row] + before_[std::size_t{k} * (chunks_ + 1) + chunk];
+        for (std::uint32_t j = from; j < upto; ++j) {
+            if (!is_seen(k, j)) {
                 continue;
             }
-            if (const FoldedEntry entry = add_up(k, i, j); entry.exchange > 0.0) {
-                entries.push_back(entry);
+            const std::uint64_t here = at++;
+            if (j < i) {
+                continue;
+            }
+            const Exchange exchange = add_up(k, i, j);
+            put(block, here, j, exchange.area / area(i), exchange.visibility);
+            if (j > i && pairs_.index.row_of(j) != RowIndex::no_row) {
+                put(blocks_[j / FormFactorMatrix::block_rows], next_[j]++, i, exchange.area / area(j),
+                    exchange.visibility);
             }
         }
-        return entries;
     }
 
 private:
-    [[nodiscard]] FoldedEntry add_up(std::uint32_t k, std::uint32_t i, std::uint32_t j) const {
-        const std::vector<PairVisibility>& row = pairs_.visibility[k];
-        bool seen = false;
-        for (std::uint32_t image = 0; image < images_.images() && !seen; ++image) {
-            seen = !row[images_.patch(image, j)].is_hidden();
+    /// What a patch and all images of another exchange.
+    struct Exchange {
+        double area; ///< A_i F(i, j)
+        std::uint8_t visibility;
+    };
+
+    void count(std::size_t k) {
+        for (std::uint32_t chunk = 0; chunk < chunks_; ++chunk) {
+            std::uint32_t seen = 0;
+            const std::uint32_t from = chunk * columns_at_once;
+            for (std::uint32_t j = from; j < std::min(from + columns_at_once, images_.size()); ++j) {
+                seen += is_seen(k, j) ? 1 : 0;
+            }
+            std::uint32_t* const before = before_.data() + k * (chunks_ + 1) + chunk;
+            before[1] = before[0] + seen;
         }
+    }
+
+    [[nodiscard]] double area(std::uint32_t i) const { return images_.mesh().areas()[i]; }
+
+    /// Whether row k sees something of some image of j.
+    [[nodiscard]] bool is_seen(std::size_t k, std::uint32_t j) const {
+        for (std::uint32_t image = 0; image < images_.images(); ++image) {
+            if (!pairs_.visibility[k][images_.patch(image, j)].is_hidden()) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// @param k  row of i
+    [[nodiscard]] Exchange add_up(std::size_t k, std::uint32_t i, std::uint32_t j) const {
         double exchange = 0.0;
         double unoccluded = 0.0; // with what is hidden: V of all is the share of it
         bool clear = true;
-        for (std::uint32_t image = 0; image < images_.images() && seen; ++image) {
+        for (std::uint32_t image = 0; image < images_.images(); ++image) {
             const std::uint32_t patch = images_.patch(image, j);
-            if (const double area = patch == i ? 0.0 : exchange_areas_(i, patch); area > 0.0) {
-                unoccluded += area;
-                exchange += area * row[patch].value();
-                clear = clear && row[patch].stored() == visibility_clear;
+            if (const double one = patch == i ? 0.0 : exchange_areas_(i, patch); one > 0.0) {
+                const PairVisibility visibility = pairs_.visibility[k][patch];
+                unoccluded += one;
+                exchange += one * visibility.value();
+                clear = clear && visibility.stored() == visibility_clear;
             }
         }
-        if (!(exchange > 0.0)) {
-            return {j, 0, 0.0};
-        }
-        const PairVisibility all =
-            clear ? PairVisibility::clear() : PairVisibility::from(exchange / unoccluded);
-        return {j, all.stored(), exchange};
+        const PairVisibility all = clear              ? PairVisibility::clear()
+                                   : unoccluded > 0.0 ? PairVisibility::from(exchange / unoccluded)
+                                                      : PairVisibility();
+        return {exchange, all.stored()};
     }
 
     const PairTable& pairs_;
     const ImageMesh& images_;
     const ExchangeAreas& exchange_areas_;
+    std::vector<RowBlock>& blocks_;
+    std::uint32_t chunks_;
+    std::vector<std::uint32_t> before_; ///< of every row: entries before each chunk, and all
+    std::vector<std::uint64_t> next_; ///< where the next entry of a row goes below the diagonal, in its block
 };
 
-/// Factors of pairs of which each is in one of two rows.
+/// Factors of patches and all images of others.
 FormFactorMatrix assemble_folded(const PairTable& pairs, const ImageMesh& images, ExchangeRule rule,
                                  bool open, const Progress& progress) {
     const ExchangeAreas exchange_areas(images.mesh(), rule);
-    const Folder fold(pairs, images, exchange_areas);
-    const std::span<const std::uint32_t> patches = pairs.index.patches();
-    const std::span<const double> areas = images.mesh().areas();
-    std::vector<std::vector<FoldedEntry>> rows(patches.size()); // those on and above the diagonal
-    std::vector<std::vector<FoldedEntry>> below(patches.size());
-    for (std::uint32_t first = 0; first < patches.size(); first += FormFactorMatrix::block_rows) {
-        const auto end = static_cast<std::uint32_t>(
-            std::min<std::size_t>(first + FormFactorMatrix::block_rows, patches.size()));
-        parallel_for(end - first, 1, [&](std::size_t from, std::size_t upto) {
-            for (std::size_t k = first + from; k < first + upto; ++k) {
-                rows[k] = fold(static_cast<std::uint32_t>(k));
-            }
-        });
-        for (std::uint32_t k = first; k < end; ++k) {
-            for (const FoldedEntry& entry : rows[k]) {
-                const std::uint32_t other = pairs.index.row_of(entry.column);
-                if (entry.column > patches[k] && other != RowIndex::no_row) {
-                    below[other].push_back({patches[k], entry.visibility, entry.exchange});
+    FormFactorMatrix matrix(images.size());
+    std::vector<RowBlock> blocks(matrix.blocks().begin(), matrix.blocks().end());
+    FoldedFiller filler(pairs, images, exchange_areas, blocks);
+    for (RowBlock& block : blocks) {
+        const std::uint32_t first = block.first_row;
+        const std::uint32_t end = first + block.rows();
+        parallel_for(filler.chunks(), 1, [&](std::size_t from, std::size_t upto) {
+            for (auto chunk = static_cast<std::uint32_t>(from); chunk < upto; ++chunk) {
+                for (std::uint32_t i = first; i < end; ++i) {
+                    filler.fill(i, chunk);
                 }
             }
-        }
-        if (progress && !progress(end, patches.size())) {
-            throw Cancelled();
-        }
-    }
-    FormFactorMatrix matrix(images.size());
-    for (const RowBlock& empty : std::vector<RowBlock>(matrix.blocks().begin(), matrix.blocks().end())) {
-        RowBlock block = empty;
-        for (std::uint32_t local = 0; local < block.rows(); ++local) {
-            const std::uint32_t i = block.first_row + local;
-            const std::uint32_t k = pairs.index.row_of(i);
-            block.begin[local + 1] = block.begin[local];
-            if (k == RowIndex::no_row) {
-                continue;
-            }
-            block.known[local] = 1;
-            block.environment[local] = pairs.environment[k];
-            block.blocked[local] = pairs.blocked[k];
-            std::vector<FoldedEntry> all;
-            std::merge(rows[k].begin(), rows[k].end(), below[k].begin(), below[k].end(),
-                       std::back_inserter(all),
-                       [](const FoldedEntry& a, const FoldedEntry& b) { return a.column < b.column; });
-            for (const FoldedEntry& entry : all) {
-                block.columns.push_back(entry.column);
-                block.values.push_back(static_cast<float>(entry.exchange / areas[i]));
-                block.visibility.push_back(entry.visibility);
-            }
-            block.begin[local + 1] = block.columns.size();
-            std::vector<FoldedEntry>().swap(rows[k]);
-            std::vector<FoldedEntry>().swap(below[k]);
-        }
+        });
         finish(block, open);
         matrix.set_block(std::move(block));
+        if (progress && !progress(end, images.size())) {
+            throw Cancelled();
+        }
     }
     return matrix;
 }
