@@ -8,6 +8,7 @@
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/matrix/product.hpp"
 #include "hemi/pipeline/form_factors.hpp"
+#include "hemi/scene/image_mesh.hpp"
 #include "pipeline/point_daylight.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +33,8 @@ constexpr std::size_t patches_at_once = 16;
 
 void add_sun(const PatchMesh& mesh, const Sun& sun, std::size_t channels,
              std::span<const std::uint32_t> patches, DirectIrradiance& result) {
-    const ShadowRays rays(mesh);
+    const ImageMesh images(mesh);
+    const ShadowRays rays(images.mesh());
     result.sun.assign(patches.size() * channels, 0.0);
     result.lit.assign(patches.size(), 0.0);
     parallel_for(patches.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {

@@ -10,9 +10,9 @@
 namespace hemi {
 
 PointDaylight::PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky, UpAxis up)
-    : mesh_(mesh), sun_(std::move(sun)), sky_(std::move(sky)), up_(upwards(up)) {
+    : mesh_(mesh), sun_(std::move(sun)), sky_(std::move(sky)), up_(upwards(up)), images_(mesh) {
     if (sun_) {
-        rays_.emplace(mesh);
+        rays_.emplace(images_.mesh());
     }
     for (std::uint32_t j = 0; j < mesh.size(); ++j) {
         const PatchCorners corners = mesh.corners(j);

@@ -3,7 +3,7 @@
 #include "engine/analytic/sky_integral.hpp"
 #include "engine/rays/shadow_rays.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
-#include "hemi/scene/patch_mesh.hpp"
+#include "hemi/scene/image_mesh.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -71,6 +71,7 @@ private:
     std::optional<Sun> sun_;
     std::optional<Sky> sky_;
     Vec3 up_;
+    ImageMesh images_;
     std::optional<ShadowRays> rays_; ///< where there is a sun
     std::vector<double> low_;        ///< height of every patch
     std::vector<double> high_;       ///< likewise

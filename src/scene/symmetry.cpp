@@ -23,6 +23,8 @@ constexpr char axis_names[] = "xyz";
 constexpr double same = 1e-9;
 /// Of the scene's diagonal: as far beyond a mirror plane may corners be that files have in single precision.
 constexpr double beyond = 1e-6;
+/// Directions of the sun that differ by less, radians, are the same one: far less than its own size.
+constexpr double sunlight = 1e-6;
 
 Isometry operator*(const Isometry& after, const Isometry& before) {
     return {after.turn * before.turn, after(before.shift)};
@@ -266,11 +268,19 @@ void check_symmetry(const Scene& scene) {
     if (!scene.symmetry) {
         return;
     }
-    (void)images_of(*scene.symmetry);
-    if (scene.sun || scene.sky) {
-        throw InputError(fmt::format("symmetry: the scene has a {}, whose light need not be the same in its "
-                                     "images; leave one out",
-                                     scene.sun ? "sun" : "sky"));
+    const SceneImages images = images_of(*scene.symmetry);
+    if (scene.sky) {
+        throw InputError("symmetry: the scene has a sky, of which images hide parts that are not known here; "
+                         "leave one out, or give the environment an exitance");
+    }
+    for (const Isometry& image : images.all) {
+        const Vec3 there = scene.sun ? image.direction(scene.sun->direction) : Vec3(0.0);
+        if (scene.sun && glm::length(there - scene.sun->direction) > sunlight) {
+            throw InputError(
+                fmt::format("symmetry: the sun stands towards {}, in an image of the scene towards "
+                            "{}; must be the same in all images",
+                            vector_text(scene.sun->direction), vector_text(there)));
+        }
     }
     const double tolerance = beyond * scene.bounds().diagonal();
     const auto face = [&scene](std::size_t s) {

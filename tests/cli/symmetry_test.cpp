@@ -140,8 +140,8 @@ TEST_CASE("Symmetry: what does not go with it is refused, with what is wrong", "
             "symmetry cannot be computed in parts");
     Json scene = half_cube(2);
     scene["symmetry"] = {{"mirror", {"x=0.5"}}};
-    scene["sun"] = {{"direction", {0, 0, 1}}, {"normal_irradiance", 1}};
-    refused({"info", directory.write("sun.json", scene)}, 3, "the scene has a sun");
+    scene["sun"] = {{"direction", {1, 0, 1}}, {"normal_irradiance", 1}};
+    refused({"info", directory.write("sun.json", scene)}, 3, "must be the same in all images");
     scene.erase("sun");
     scene["symmetry"] = {{"images", 3}};
     refused({"info", directory.write("images.json", scene)}, 3,

@@ -2,6 +2,7 @@
 #include "support/scenes.hpp"
 
 #include "hemi/matrix/balance.hpp"
+#include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/scene/image_mesh.hpp"
@@ -256,6 +257,31 @@ TEST_CASE("Symmetry: a street of 50 images is one whose images are given", "[pip
     const Difference found = difference(mesh, folded.matrix, rows.matrix);
     CHECK(found.max < 1e-6);
     CHECK(found.environment < 1e-5);
+}
+
+TEST_CASE("Symmetry: images cast shadows of the sun", "[pipeline]") {
+    Scene scene = canyon_part(4.0, 3);
+    scene.surfaces.clear();
+    add_wall(scene, "street", {0, 0, 0}, {1, 0, 0}, {0, 4, 0}, {4, 16});
+    add_wall(scene, "house", {1, 1, 0}, {0, 0, 3}, {0, 2, 0}, {6, 4});
+    add_wall(scene, "house", {0, 1, 0}, {1, 0, 0}, {0, 0, 3}, {4, 6});
+    scene.sun = Sun{glm::normalize(Vec3(0.2, 1.0, 0.6)), {1000.0}, 0.0};
+    const PatchMesh mesh(scene);
+    const ImageMesh images(mesh);
+    const std::vector<double> part = direct_irradiance(scene, mesh, FormFactorMatrix(mesh.size()));
+    const std::vector<double> whole =
+        direct_irradiance(scene, images.mesh(), FormFactorMatrix(images.mesh().size()));
+    Scene alone = scene;
+    alone.symmetry.reset();
+    const std::vector<double> without =
+        direct_irradiance(alone, PatchMesh(alone), FormFactorMatrix(mesh.size()));
+    REQUIRE(part.size() == mesh.size());
+    double hidden = 0.0;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        CHECK(part[i] == Approx(whole[i]).margin(1e-9));
+        hidden = std::max(hidden, without[i] - part[i]);
+    }
+    CHECK(hidden > 100.0);
 }
 
 TEST_CASE("Symmetry: other methods fold their rows, too", "[pipeline]") {

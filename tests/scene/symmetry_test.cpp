@@ -161,9 +161,14 @@ TEST_CASE("Symmetry: what cannot be one is refused with what is wrong", "[scene]
     scene.symmetry->images = 0;
     CHECK_THAT(message(scene), Contains("0 images along a translation"));
     scene.symmetry = mirrored({{0, 0.0}});
-    scene.sun = Sun{{0, 0, 1}, {1.0}, 0.0};
-    CHECK_THAT(message(scene), Contains("the scene has a sun"));
-    scene.sun.reset();
+    scene.sun = Sun{{0.6, 0, 0.8}, {1.0}, 0.0};
+    CHECK_THAT(message(scene),
+               Contains("the sun stands towards (0.6, 0, 0.8), in an image of the scene towards "
+                        "(-0.6, 0, 0.8)"));
+    scene.sun->direction = {0, 0.6, 0.8};
+    scene.sky = Sky{SkyDistribution::uniform, {1.0}, {0.0}};
+    CHECK_THAT(message(scene), Contains("the scene has a sky"));
+    scene.sky.reset();
     CHECK(message(scene) == "nothing is wrong");
 }
 

@@ -84,7 +84,7 @@ inline constexpr std::uint32_t most_images = 4096;
 [[nodiscard]] std::optional<int> axis_from_text(std::string_view text);
 
 /// Checks that a scene can be the part that its symmetry repeats: images_of(); no surface beyond a mirror
-/// plane or in it; neither sun nor sky.
+/// plane or in it; no sky, and a sun in the same direction in all images.
 /// @throws InputError with the surface and how far it is on the other side; as images_of()
 void check_symmetry(const Scene& scene);
 
