@@ -216,6 +216,38 @@ TEST_CASE("repair: what an open scene loses to its environment stays", "[matrix]
     }
 }
 
+TEST_CASE("repair: a pair on the diagonal moves as the pairs of patches and their images that it stands for",
+          "[matrix]") {
+    // Half of a scene whose patches see each other on their own side, and their own images on the other one.
+    constexpr std::uint32_t half = 12;
+    Random random(5);
+    const std::vector<double> areas(2 * std::size_t{half}, 1.0);
+    DenseRows whole(2 * std::size_t{half}, std::vector<double>(2 * std::size_t{half}, 0.0));
+    DenseRows part(half, std::vector<double>(half, 0.0));
+    for (std::size_t i = 0; i < half; ++i) {
+        part[i][i] = whole[i][half + i] = whole[half + i][i] = 0.2 + 0.1 * random();
+        for (std::size_t j = 0; j < i; ++j) {
+            part[i][j] = part[j][i] = 0.05 + 0.03 * random();
+            whole[i][j] = whole[j][i] = whole[half + i][half + j] = whole[half + j][half + i] = part[i][j];
+        }
+    }
+    FormFactorMatrix folded = dense_matrix(part);
+    FormFactorMatrix unfolded = dense_matrix(whole);
+    const std::vector<double> areas_of_half(half, 1.0);
+    (void)repair(folded, areas_of_half, Repair::closure);
+    (void)repair(unfolded, areas, Repair::closure);
+    double moved = 0.0;
+    for (std::uint32_t i = 0; i < half; ++i) {
+        CHECK(balance_error(folded, i) < float_limit);
+        CHECK(entry(folded, i, i) == Approx(entry(unfolded, i, half + i)).margin(1e-7));
+        moved = std::max(moved, std::abs(entry(folded, i, i) - part[i][i]));
+        for (std::uint32_t j = 0; j < i; ++j) {
+            CHECK(entry(folded, i, j) == Approx(entry(unfolded, i, j)).margin(1e-7));
+        }
+    }
+    CHECK(moved > 0.01);
+}
+
 TEST_CASE("repair: covered rows set no target", "[matrix]") {
     const ReciprocalScene scene = with_noise(closed_scene(100, 12), 0.02, 13);
     std::vector<double> blocked(100, 0.0);
