@@ -15,6 +15,24 @@ TEST_CASE("Viewer: a screenshot has the pixels of the headless picture", "[viewe
     CHECK(place.read("errors.txt").find("first.png") != std::string::npos);
 }
 
+TEST_CASE("Viewer: images of a scene with symmetry are drawn, and picked as what they are images of",
+          "[viewer][gl]") {
+    const Workplace place;
+    nlohmann::json scene = place.json("room.json");
+    scene["surfaces"].erase(3); // the right wall, where the mirror is
+    scene["symmetry"] = {{"mirror", {"x=1"}}};
+    scene["camera"] = {{"eye", {1, -3, 0.5}}, {"target", {1, 0.5, 0.5}}, {"fov", 30}};
+    place.write("room.json", scene.dump());
+    const int status = place.view("click 40 100\nreport left.json\nclick 259 100\nreport right.json\n"
+                                  "key C\nreport hemicube.json\nquit\n",
+                                  "--size 300x200 --preset fast --resolution 32");
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    REQUIRE(place.json("left.json")["picked"].is_number());
+    CHECK(place.json("left.json")["group"] == 2);
+    CHECK(place.json("right.json")["picked"] == place.json("left.json")["picked"]);
+}
+
 TEST_CASE("Viewer: moves change the picture, and coming back brings it back", "[viewer][gl]") {
     const Workplace place;
     const int status = place.view("screenshot start.png\n"
