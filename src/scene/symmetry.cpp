@@ -25,6 +25,8 @@ constexpr double same = 1e-9;
 constexpr double beyond = 1e-6;
 /// Directions of the sun that differ by less, radians, are the same one: far less than its own size.
 constexpr double sunlight = 1e-6;
+/// In diagonals of the scene: at that distance double precision still holds nine digits of it.
+constexpr double farthest_image = 1e6;
 
 Isometry operator*(const Isometry& after, const Isometry& before) {
     return {after.turn * before.turn, after(before.shift)};
@@ -282,7 +284,17 @@ void check_symmetry(const Scene& scene) {
                             vector_text(scene.sun->direction), vector_text(there)));
         }
     }
-    const double tolerance = beyond * scene.bounds().diagonal();
+    const double across = scene.bounds().diagonal();
+    for (const Isometry& image : images.all) {
+        const double away = glm::length(image(scene.bounds().centre()) - scene.bounds().centre());
+        if (!(away <= farthest_image * across)) {
+            throw InputError(
+                fmt::format("symmetry: an image is {:.3g} away from the scene, which is {:.3g} across; "
+                            "must be at most {:g} times as far",
+                            away, across, farthest_image));
+        }
+    }
+    const double tolerance = beyond * across;
     const auto face = [&scene](std::size_t s) {
         return fmt::format("face {} (group \"{}\")", face_numbers(scene.surfaces)[s],
                            scene.groups[scene.surfaces[s].group]);

@@ -1,6 +1,7 @@
 #include "support/device.hpp"
 #include "support/scenes.hpp"
 
+#include "hemi/engine/baselines.hpp"
 #include "hemi/matrix/balance.hpp"
 #include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/form_factors.hpp"
@@ -11,6 +12,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 using namespace hemi;
 using namespace hemi::test;
@@ -257,6 +259,14 @@ TEST_CASE("Symmetry: a street of 50 images is one whose images are given", "[pip
     const Difference found = difference(mesh, folded.matrix, rows.matrix);
     CHECK(found.max < 1e-6);
     CHECK(found.environment < 1e-5);
+}
+
+TEST_CASE("Symmetry: a point sees a patch and its images", "[pipeline]") {
+    const Scene scene = cube_part(3);
+    const std::vector<double> factors =
+        point_factors(PatchMesh(scene), {0.2, -0.3, 0.1}, {0.0, 0.6, -0.8}, true);
+    REQUIRE(factors.size() == PatchMesh(scene).size());
+    CHECK(std::accumulate(factors.begin(), factors.end(), 0.0) == Approx(1.0).epsilon(1e-3));
 }
 
 TEST_CASE("Symmetry: images cast shadows of the sun", "[pipeline]") {

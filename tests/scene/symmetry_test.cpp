@@ -158,6 +158,9 @@ TEST_CASE("Symmetry: what cannot be one is refused with what is wrong", "[scene]
     scene.symmetry->periods = {{0, 1, 0}};
     scene.symmetry->images = 4000;
     CHECK_THAT(message(scene), Contains("more than 4096"));
+    scene.symmetry->images = 1;
+    scene.symmetry->periods = {{0, 1e9, 0}};
+    CHECK_THAT(message(scene), Contains("must be at most 1e+06 times as far"));
     scene.symmetry->images = 0;
     CHECK_THAT(message(scene), Contains("0 images along a translation"));
     scene.symmetry = mirrored({{0, 0.0}});

@@ -122,14 +122,17 @@ Report materials_report(const Scene& scene) {
 Report scene_size_report(const LoadedScene& loaded) {
     const PatchMesh& mesh = loaded.patches();
     Report report;
-    report.add("scene",
-               fmt::format("{}, {}, {}{}", plural(mesh.size(), "patch", "patches"),
-                           plural(mesh.surfaces().size(), "surface", "surfaces"),
-                           plural(mesh.groups().size(), "group", "groups"),
-                           loaded.as_read
-                               ? fmt::format("; cut into {}", plural(loaded.mesh.size(), "part", "parts"))
-                               : std::string()),
-               {{"patches", mesh.size()}, {"parts", loaded.mesh.size()}, {"groups", mesh.groups()}});
+    report.add(
+        "scene",
+        fmt::format("{}, {}, {}{}{}", plural(mesh.size(), "patch", "patches"),
+                    plural(mesh.surfaces().size(), "surface", "surfaces"),
+                    plural(mesh.groups().size(), "group", "groups"),
+                    mesh.symmetry() ? fmt::format(", {}", plural(images_of(*mesh.symmetry()).all.size(),
+                                                                 "image", "images"))
+                                    : std::string(),
+                    loaded.as_read ? fmt::format("; cut into {}", plural(loaded.mesh.size(), "part", "parts"))
+                                   : std::string()),
+        {{"patches", mesh.size()}, {"parts", loaded.mesh.size()}, {"groups", mesh.groups()}});
     return report;
 }
 

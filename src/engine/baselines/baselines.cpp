@@ -330,6 +330,15 @@ std::vector<double> point_factors(const PatchMesh& mesh, const Vec3& point, cons
     if (std::abs(glm::length(normal) - 1.0) > 1e-9) {
         throw InvalidArgument(fmt::format("normal of length {}; must be 1", glm::length(normal)));
     }
+    if (mesh.symmetry()) {
+        const ImageMesh images(mesh);
+        const std::vector<double> all = point_factors(images.mesh(), point, normal, occlusion);
+        std::vector<double> folded(mesh.size(), 0.0);
+        for (std::uint32_t patch = 0; patch < all.size(); ++patch) {
+            folded[images.original(patch)] += all[patch];
+        }
+        return folded;
+    }
     std::vector<double> factors(mesh.size());
     std::unique_ptr<RayTracer> tracer;
     if (occlusion) {
