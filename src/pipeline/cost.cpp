@@ -1,6 +1,7 @@
 #include "hemi/pipeline/cost.hpp"
 
 #include "hemi/pipeline/form_factors.hpp"
+#include "pipeline/row_computation.hpp"
 
 #include <algorithm>
 #include <thread>
@@ -47,8 +48,11 @@ FactorCost measure_cost(const PatchMesh& mesh, const FactorSettings& settings) {
         return cost;
     };
     if (settings.method == Method::hemicube && plan.weighted) {
-        return measure_on(*make_visibility_provider(mesh, plan.hemicube, settings),
-                          estimate_visibility_weighted);
+        return measure_on(
+            *make_visibility_provider(mesh, plan.hemicube, settings),
+            [&mesh](VisibilityProvider& provider, std::span<const std::uint32_t> of, std::uint32_t samples) {
+                return estimate_pairs(provider, mesh, of, samples);
+            });
     }
     return measure_on(*make_row_provider(mesh, settings), estimate_matrix);
 }

@@ -23,11 +23,11 @@ namespace {
 constexpr double exact_unoccluded_error = 3e-5;
 
 /// Whether the table of pairs and the matrix fit; says so where they do not, and what is done instead.
-bool pairs_fit(VisibilityProvider& visibility, std::span<const std::uint32_t> patches,
+bool pairs_fit(VisibilityProvider& visibility, const PatchMesh& mesh, std::span<const std::uint32_t> patches,
                const FactorSettings& settings, Observer& observer) {
     const bool sample = patches.size() > unsampled_rows;
     const VisibilityWeightedEstimate estimate =
-        estimate_visibility_weighted(visibility, patches, sample ? sampled_rows : 0);
+        estimate_pairs(visibility, mesh, patches, sample ? sampled_rows : 0);
     if (sample) {
         observer.detail(fmt::format("{} rows and their pairs will need about {}, and {} for visibility",
                                     count_text(patches.size()), memory_text(estimate.memory_bytes),
@@ -96,14 +96,23 @@ FormFactors compute_rows_of_clusters(const Scene& scene, const PatchMesh& mesh,
 
 FormFactors compute_visibility_weighted_rows(const Scene& scene, const PatchMesh& mesh,
                                              std::span<const std::uint32_t> patches,
-                                             const FactorSettings& settings, Observer& observer,
+                                             const FactorSettings& given, Observer& observer,
                                              RowCheckpoint* checkpoint) {
+    FactorSettings settings = given;
+    if (mesh.symmetry()) {
+        if (settings.clusters == Clusters::on) {
+            throw InvalidArgument("clusters are not made of a scene with symmetry, whose images fold into "
+                                  "single patches; leave one of them out",
+                                  {"clusters"});
+        }
+        settings.clusters = Clusters::off;
+    }
     if (settings.clusters == Clusters::on) {
         return compute_rows_of_clusters(scene, mesh, patches, settings, observer);
     }
     const RowPlan plan = plan_rows(settings, mesh.size());
     const auto engine = make_visibility_provider(mesh, plan.hemicube, settings);
-    if (!pairs_fit(*engine, patches, settings, observer)) {
+    if (!pairs_fit(*engine, mesh, patches, settings, observer)) {
         if (settings.clusters == Clusters::automatic) {
             stop_if_interrupted();
             return compute_rows_of_clusters(scene, mesh, patches, settings, observer);

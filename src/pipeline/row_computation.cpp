@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace hemi {
 
 namespace {
@@ -74,6 +76,17 @@ void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, c
                         memory_text(estimate.memory_bytes), memory_limit_text(settings), advice),
             {"patch-size", "resolution", "max-memory"});
     }
+}
+
+VisibilityWeightedEstimate estimate_pairs(VisibilityProvider& visibility, const PatchMesh& mesh,
+                                          std::span<const std::uint32_t> patches, std::uint32_t samples) {
+    VisibilityWeightedEstimate estimate = estimate_visibility_weighted(visibility, patches, samples);
+    if (mesh.symmetry()) { // of which it counted every image; a row has no more entries than patches
+        estimate.entries_per_row = std::min<double>(estimate.entries_per_row, mesh.size());
+        estimate.memory_bytes =
+            visibility_weighted_memory(estimate.entries_per_row, patches.size(), visibility.size());
+    }
+    return estimate;
 }
 
 ReferencePlan plan_reference(std::span<const std::uint32_t> known, const FactorSettings& settings,

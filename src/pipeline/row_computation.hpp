@@ -37,6 +37,13 @@ void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, c
                   Observer& observer,
                   std::string_view advice = "Larger patches, a lower resolution or a higher limit");
 
+/// What compute_visibility_weighted() needs for some rows of a scene, whose entries are folded over its
+/// images.
+/// @param samples  rows that are computed, and thrown away
+[[nodiscard]] VisibilityWeightedEstimate estimate_pairs(VisibilityProvider& visibility, const PatchMesh& mesh,
+                                                        std::span<const std::uint32_t> patches,
+                                                        std::uint32_t samples);
+
 /// Says so where a method does not know what is hidden.
 void note_unoccluded(Method method, Observer& observer);
 

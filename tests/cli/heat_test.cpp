@@ -220,7 +220,7 @@ TEST_CASE("hemi solve, heat: energy balances in every closed scene that comes wi
         CHECK(std::abs(balance["environment"].get<double>()) < 1e-7 * emitted);
         CHECK(balance["absorbed"].get<double>() == Approx(emitted).epsilon(1e-7));
     }
-    CHECK(closed == 5);
+    CHECK(closed == 6);
 }
 
 TEST_CASE("hemi heat: a furnace with a load on its hearth balances", "[cli][heat][scenes]") {

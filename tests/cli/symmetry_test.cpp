@@ -77,6 +77,7 @@ TEST_CASE("Symmetry: info tells the images and what need not be computed", "[cli
     REQUIRE(run.status == 0);
     const Json info = run.json();
     CHECK(info["symmetry"]["images"] == 4);
+    CHECK(info["estimate"]["entries_per_row"].get<int>() <= info["patches"].get<int>());
     CHECK(info["symmetry"]["patches"] == 4 * info["patches"].get<int>());
     CHECK(run_hemi({"info", quarter, "--device", "cpu"}).out_has("4 images (mirror x=1, mirror y=0.6)"));
 }
