@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <utility>
@@ -16,6 +17,15 @@ struct DrawnPatch {
     std::uint32_t patch;
     double weight;
 };
+
+/// Makes half of a sample follow `other`.
+inline void mix_importance(std::vector<double>& importance, const std::vector<double>& other) {
+    const double sum = std::accumulate(importance.begin(), importance.end(), 0.0);
+    const double sum_of_other = std::accumulate(other.begin(), other.end(), 0.0);
+    for (std::size_t k = 0; k < importance.size(); ++k) {
+        importance[k] = importance[k] / sum + other[k] / sum_of_other;
+    }
+}
 
 /// Draws about `count` of `patches` with probabilities that go like `importance`, spread over them in order.
 inline std::vector<DrawnPatch> draw_sample(const std::vector<std::uint32_t>& patches,
@@ -40,7 +50,7 @@ public:
     void add(double error, double area) { errors_.push_back({std::abs(error), area}); }
     /// A patch of the sample is complete: what it adds to the variance of squares().
     /// @param weight  how many patches it stands for
-    /// @param square  what it added to squares(), with that weight
+    /// @param square  what it added to squares(), with that weight, less what was expected of it
     void end_patch(double weight, double square) { variance_ += (weight - 1.0) / weight * square * square; }
 
     /// Sum of their squares times areas.
@@ -54,7 +64,8 @@ public:
 
     /// @param unit  what they are relative to
     /// @param more  by which the mean square is more than that of these errors
-    [[nodiscard]] FieldError summary(double unit, double more) {
+    /// @param rms_more  the same of the rms alone
+    [[nodiscard]] FieldError summary(double unit, double more, double rms_more = 1.0) {
         double total = 0.0;
         for (const auto& [error, area] : errors_) {
             total += area;
@@ -64,8 +75,9 @@ public:
             return result;
         }
         std::sort(errors_.begin(), errors_.end());
-        result.rms = std::sqrt(more * squares() / total) / unit;
-        result.doubt = std::sqrt(more * (squares() + std::sqrt(variance_)) / total) / unit - result.rms;
+        const double scale = more * rms_more / total;
+        result.rms = std::sqrt(scale * squares()) / unit;
+        result.doubt = std::sqrt(scale * (squares() + std::sqrt(variance_))) / unit - result.rms;
         double below = 0.0;
         for (const auto& [error, area] : errors_) {
             result.percentile95 = std::sqrt(more) * error / unit;

@@ -12,7 +12,10 @@
 #include "hemi/solver/solver.hpp"
 #include "pipeline/corner_interpolation.hpp"
 #include "pipeline/error_sample.hpp"
+#include "pipeline/group_factor_errors.hpp"
 #include "pipeline/group_importance.hpp"
+#include "pipeline/patch_error_model.hpp"
+#include "pipeline/vertex_bends.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
 #include <fmt/format.h>
@@ -76,6 +79,11 @@ public:
             throw InvalidArgument("patch size error: the solution belongs to another mesh");
         }
         find_units();
+        near_ = patches_near_surfaces(mesh_);
+        if (gathered_) {
+            find_visible();
+            bends_ = vertex_bends(mesh_, solution_, visible_);
+        }
     }
 
     [[nodiscard]] bool anything_reflects() const {
@@ -110,7 +118,6 @@ public:
                                         part(observer, 0), part(observer, 1), part(observer, 2));
         direct_ = direct_irradiances(scene_, fine, factors, rows);
         rows_ = std::move(rows);
-        near_ = patches_near_surfaces(mesh_);
         if (factors_.matrix.clusters() == nullptr) { // one-way rows cannot be solved backwards
             find_importance(bytes_of(rows_.size(), fine.size()), settings, observer);
         }
@@ -128,9 +135,7 @@ public:
             add_patch(sample[k], quarters[k], fine, parents, factors, vertices, field, groups);
             const double area = sample[k].weight * mesh_.areas()[sample[k].patch];
             for (std::uint32_t c = 0; c < channels_; ++c) {
-                const double square = vertices[c].squares() - before[2 * c];
-                squares.push_back(square / area);
-                vertices[c].end_patch(sample[k].weight, square);
+                squares.push_back(vertices_over_quarters() * (vertices[c].squares() - before[2 * c]) / area);
                 field[c].end_patch(sample[k].weight, field[c].squares() - before[2 * c + 1]);
             }
         }
@@ -148,7 +153,7 @@ public:
         };
         for (std::uint32_t c = 0; c < channels_; ++c) {
             if (units_[c] > 0.0) {
-                take_worst(result.vertices, vertices[c].summary(units_[c], 1.0));
+                take_worst(result.vertices, vertex_errors(vertices[c], sample, squares, c));
                 take_worst(result.field, field[c].summary(units_[c], linear_over_quarters));
             }
         }
@@ -197,11 +202,22 @@ private:
         }
         if (scene_.sun) {
             // Edges of its shadows err much on little area: half of the sample is theirs.
-            const double sum = std::accumulate(importance.begin(), importance.end(), 0.0);
-            const double sum_at_edges = std::accumulate(at_edges.begin(), at_edges.end(), 0.0);
-            for (std::size_t k = 0; k < importance.size(); ++k) {
-                importance[k] = importance[k] / sum + at_edges[k] / sum_at_edges;
+            mix_importance(importance, at_edges);
+        }
+        if (!bends_.empty()) {
+            // Gathered vertices err most on little area, where the radiosity bends: half of the sample is
+            // theirs. The other half is for the constants, and for what bends do not show.
+            std::vector<double> at_bends;
+            for (const std::uint32_t patch : patches_) {
+                double bend = 0.0;
+                for (std::uint32_t c = 0; c < channels_; ++c) {
+                    if (units_[c] > 0.0) {
+                        bend = std::max(bend, std::sqrt(signs(patch, c)[1]) / units_[c]);
+                    }
+                }
+                at_bends.push_back(std::sqrt(mesh_.areas()[patch]) * bend);
             }
+            mix_importance(importance, at_bends);
         }
         const double count = effort * std::clamp(sampled_share * static_cast<double>(patches_.size()),
                                                  min_sampled, max_sampled);
@@ -226,50 +242,83 @@ private:
 
     /// What makes the error of a patch large, squared and absolute: how fast the radiosity changes there, how
     /// fast the change changes, and a little everywhere.
-    [[nodiscard]] std::array<double, 2> signs(std::uint32_t patch, std::uint32_t channel) const {
+    [[nodiscard]] PatchErrorModel::Signs signs(std::uint32_t patch, std::uint32_t channel) const {
         constexpr double least = 1e-3; // of the channel's unit
-        const double even = least * units_[channel];
-        return {means_.square(patch, solution_, channel) + even * even,
-                means_.bend(patch, solution_, channel) + even * even};
+        const double even = std::pow(least * units_[channel], 2.0);
+        if (bends_.empty()) {
+            return {means_.square(patch, solution_, channel) + even,
+                    means_.bend(patch, solution_, channel) + even};
+        }
+        return {shown_.square(patch, solution_, channel) + even,
+                std::pow(bends_[at(patch, channel)], 2.0) + even};
     }
 
-    /// SampledErrors of all patches that count, modelled: a sum of both signs, neither below 0, that agrees
-    /// best with the sample, relative to what the signs are there; then scaled to the sample's whole. Patches
-    /// of the sample have no less than was found there.
+    /// By how much the bends of all patches that count, squared, are more than the sample says, as means
+    /// by area.
+    [[nodiscard]] double missed_bends(const std::vector<DrawnPatch>& sample, std::uint32_t channel) const {
+        double found = 0.0;
+        double area_found = 0.0;
+        for (const DrawnPatch& drawn : sample) {
+            const double area = drawn.weight * mesh_.areas()[drawn.patch];
+            found += area * signs(drawn.patch, channel)[1];
+            area_found += area;
+        }
+        double all = 0.0;
+        double area_all = 0.0;
+        for (const std::uint32_t patch : patches_) {
+            all += mesh_.areas()[patch] * signs(patch, channel)[1];
+            area_all += mesh_.areas()[patch];
+        }
+        return found > 0.0 ? all / area_all / (found / area_found) : 1.0;
+    }
+
+    /// Mean square of the error of interpolated vertices over that of its means over four equal parts: for a
+    /// quadratic field and true vertices these means are the bend.
+    [[nodiscard]] double vertices_over_quarters() const { return gathered_ ? square_error_of_bend : 1.0; }
+
+    /// Errors of the interpolated vertices, of one channel.
+    /// @param errors   of the sample
+    /// @param squares  of the sample: area means of the squared errors of every patch, channel by channel
+    [[nodiscard]] FieldError vertex_errors(SampledErrors& errors, const std::vector<DrawnPatch>& sample,
+                                           const std::vector<double>& squares, std::uint32_t channel) const {
+        const auto sampled = [&](std::size_t k) { return sample[k].weight * mesh_.areas()[sample[k].patch]; };
+        // Gathered vertices err as the radiosity bends, whose sum over all patches is known: few of them
+        // have half of it, and a sample has some of these more or less. What is left to chance is how far
+        // the error of the sample differs from what its bends say.
+        double of_bends = 0.0;
+        if (!bends_.empty()) {
+            double found = 0.0;
+            for (std::size_t k = 0; k < sample.size(); ++k) {
+                of_bends += sampled(k) * squares[k * channels_ + channel];
+                found += sampled(k) * signs(sample[k].patch, channel)[1];
+            }
+            of_bends /= std::max(found, std::numeric_limits<double>::min());
+        }
+        for (std::size_t k = 0; k < sample.size(); ++k) {
+            const double expected = of_bends > 0.0 ? of_bends * signs(sample[k].patch, channel)[1] : 0.0;
+            errors.end_patch(sample[k].weight, sampled(k) * (squares[k * channels_ + channel] - expected) /
+                                                   vertices_over_quarters());
+        }
+        return errors.summary(units_[channel], vertices_over_quarters(),
+                              bends_.empty() ? 1.0 : missed_bends(sample, channel));
+    }
+
+    /// SampledErrors of all patches that count, modelled by their signs, see PatchErrorModel; then scaled to
+    /// the whole. Patches of the sample have no less than was found there.
     /// @param squares  of the sample: area means of the squared errors of every patch, channel by channel
     [[nodiscard]] std::vector<double> model_patches(const std::vector<DrawnPatch>& sample,
                                                     const std::vector<double>& squares) const {
         std::vector<double> result(std::size_t{mesh_.size()} * channels_, 0.0);
         for (std::uint32_t c = 0; c < channels_; ++c) {
-            std::array<std::array<double, 2>, 2> products{};
-            std::array<double, 2> right{};
+            PatchErrorModel model;
             for (std::size_t k = 0; k < sample.size(); ++k) {
-                const auto sign = signs(sample[k].patch, c);
-                const double weight =
-                    sample[k].weight * mesh_.areas()[sample[k].patch] / std::pow(sign[0] + sign[1], 2.0);
-                for (std::size_t a = 0; a < 2; ++a) {
-                    for (std::size_t b = 0; b < 2; ++b) {
-                        products[a][b] += weight * sign[a] * sign[b];
-                    }
-                    right[a] += weight * sign[a] * squares[k * channels_ + c];
-                }
+                model.add(signs(sample[k].patch, c), squares[k * channels_ + c],
+                          sample[k].weight * mesh_.areas()[sample[k].patch]);
             }
-            const std::array<double, 2> shares = least_squares(products, right);
-            double expected = 0.0;
-            double found = 0.0;
-            const auto modelled = [&](std::uint32_t patch) {
-                const auto sign = signs(patch, c);
-                return shares[0] * sign[0] + shares[1] * sign[1];
-            };
-            for (std::size_t k = 0; k < sample.size(); ++k) {
-                const double area = sample[k].weight * mesh_.areas()[sample[k].patch];
-                expected += area * modelled(sample[k].patch);
-                found += area * squares[k * channels_ + c];
-            }
-            const double scale = expected > 0.0 ? found / expected : 0.0;
+            model.fit();
             for (const std::uint32_t patch : patches_) {
                 if (reflectance_[at(patch, c)] > 0.0) {
-                    result[at(patch, c)] = std::sqrt(scale * modelled(patch));
+                    result[at(patch, c)] = std::sqrt(model.square(signs(patch, c)));
                 }
             }
             for (std::size_t k = 0; k < sample.size(); ++k) {
@@ -278,25 +327,6 @@ private:
             }
         }
         return result;
-    }
-
-    /// Of two equations, the solution without negative numbers that comes nearest.
-    static std::array<double, 2> least_squares(const std::array<std::array<double, 2>, 2>& products,
-                                               const std::array<double, 2>& right) {
-        const double determinant = products[0][0] * products[1][1] - products[0][1] * products[1][0];
-        if (determinant > 1e-9 * products[0][0] * products[1][1]) {
-            const double first = (right[0] * products[1][1] - right[1] * products[0][1]) / determinant;
-            const double second = (right[1] * products[0][0] - right[0] * products[1][0]) / determinant;
-            if (first >= 0.0 && second >= 0.0) {
-                return {first, second};
-            }
-            // One of them alone explains more.
-            if (second < 0.0 || first > second) {
-                return {right[0] / products[0][0], 0.0};
-            }
-            return {0.0, right[1] / products[1][1]};
-        }
-        return {products[0][0] > 0.0 ? right[0] / products[0][0] : 0.0, 0.0};
     }
 
     /// What the corners of the sample would show if all were gathered.
@@ -414,15 +444,20 @@ private:
         return {{1.0, 0.0}};
     }
 
+    void find_visible() {
+        visible_ = visible_radiosity(mesh_, SmoothSurfaces(mesh_), near_, channels_, solution_.radiosity,
+                                     solution_.exitance, solution_.back_face_share);
+    }
+
     /// How the radiosity varies within the patches, where it is known well enough: at gathered vertices. A
     /// gather takes patches for even, which is the error that it leaves.
     void find_variation(const PatchMesh& fine, const std::vector<std::uint32_t>& parents) {
         if (!gathered_) {
             return;
         }
-        const std::vector<double> visible =
-            visible_radiosity(mesh_, SmoothSurfaces(mesh_), near_, channels_, solution_.radiosity,
-                              solution_.exitance, solution_.back_face_share);
+        if (visible_.empty()) {
+            find_visible();
+        }
         variation_.assign(std::size_t{fine.size()} * channels_, 0.0);
         std::vector<double> means(std::size_t{mesh_.size()} * channels_, 0.0);
         for (std::uint32_t k = 0; k < fine.size(); ++k) {
@@ -441,7 +476,7 @@ private:
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 const std::size_t parent = at(parents[k], c);
                 variation_[std::size_t{k} * channels_ + c] +=
-                    visible[parent] - solution_.radiosity[parent] - means[parent];
+                    visible_[parent] - solution_.radiosity[parent] - means[parent];
             }
         }
     }
@@ -475,7 +510,8 @@ private:
                     mesh_.areas()[i] * irradiance_[at(i, c)];
             }
         }
-        const std::vector<SampledSum> by_factors = factor_error_sums();
+        const std::vector<SampledSum> by_factors =
+            factor_error_sums(scene_, mesh_, factors_, solution_, importance_);
         std::vector<GroupError> errors(importance_.groups());
         for (std::size_t g = 0; g < errors.size(); ++g) {
             bool lit = false;
@@ -495,48 +531,6 @@ private:
             }
         }
         return errors;
-    }
-
-    /// What rows let through too much of the sky, W/m²: channel c of the k-th row at [k·channels + c]; empty
-    /// where there is none.
-    [[nodiscard]] std::vector<double> sky_errors(std::span<const std::uint32_t> rows) const {
-        if (!scene_.sky) {
-            return {};
-        }
-        std::vector<double> errors = direct_irradiances(scene_, mesh_, factors_.matrix, rows).sky;
-        const std::vector<double> better = direct_irradiances(scene_, mesh_, factors_.reference, rows).sky;
-        for (std::size_t k = 0; k < errors.size(); ++k) {
-            errors[k] -= better[k];
-        }
-        return errors;
-    }
-
-    /// SampledErrors of the sampled rows' irradiance, times area and importance: channel c of group g at
-    /// [g·channels + c].
-    [[nodiscard]] std::vector<SampledSum> factor_error_sums() const {
-        std::vector<SampledSum> sums(std::size_t{importance_.groups()} * channels_);
-        if (factors_.reference.size() != mesh_.size()) {
-            return sums; // their errors are not known
-        }
-        const IrradianceErrors errors = irradiance_errors(factors_.matrix, factors_.reference, channels_,
-                                                          solution_.radiosity, scene_.environment);
-        const std::vector<double> sky = sky_errors(errors.rows);
-        double known = 0.0;
-        for (std::uint32_t i = 0; i < mesh_.size(); ++i) {
-            known += factors_.matrix.known(i) ? 1.0 : 0.0;
-        }
-        const double weight = known / static_cast<double>(errors.rows.size());
-        for (std::size_t k = 0; k < errors.rows.size(); ++k) {
-            const std::uint32_t i = errors.rows[k];
-            const std::span<const double> importance = importance_.of(i);
-            for (std::size_t column = 0; column < sums.size(); ++column) {
-                const std::size_t value = k * channels_ + column % channels_;
-                sums[column].add(mesh_.areas()[i] * importance[column] *
-                                     (errors.errors[value] + (sky.empty() ? 0.0 : sky[value])),
-                                 weight);
-            }
-        }
-        return sums;
     }
 
     /// Share of a patch, or of a quarter of it, that something stands on: of its back-face share, where that
@@ -624,6 +618,8 @@ private:
     std::vector<std::uint32_t> patches_; // those that reflect and are not buried, ascending
     std::vector<double> units_;          // a channel: rms of B - E over them
     std::vector<std::uint32_t> near_;    // patches with a surface near in front of them, ascending
+    std::vector<double> visible_;        // see visible_radiosity(); where vertices are gathered
+    std::vector<double> bends_;          // see vertex_bends(); empty: not all vertices are gathered
     GroupImportance importance_;
     std::vector<double> variation_;   // of fine patches, with their channels; empty: not known
     std::vector<double> irradiance_;  // of all patches, N·channels; with the importance
