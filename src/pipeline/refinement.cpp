@@ -10,6 +10,9 @@
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/scene/imprint.hpp"
 #include "matrix/split_rows.hpp"
+#include "pipeline/refined_gather.hpp"
+#include "pipeline/vertex_bends.hpp"
+#include "pipeline/visible_radiosity.hpp"
 
 #include <fmt/format.h>
 
@@ -31,12 +34,21 @@ constexpr double first_patches = 400.0;
 constexpr double least_left_by_parts = 1.0 / 16.0;
 constexpr double most_left_by_parts = 0.5;
 constexpr double usually_left_by_parts = 0.25;
-/// A step aims a little below the goal, since estimates scatter.
-constexpr double aim = 0.9;
 /// A step splits at least and at most such shares of the patches: fewer are not worth a step's solution and
-/// estimate, more would follow an estimate from a mesh that is too coarse to see where the error is.
-constexpr double least_split = 1.0 / 16.0;
-constexpr double most_split = 1.0 / 3.0;
+/// estimate, more would follow an estimate from a mesh that is too coarse to see where the error is. It aims a
+/// little below the goal, since estimates scatter.
+struct Pace {
+    double least;
+    double most;
+    double aim;
+};
+constexpr Pace by_samples{1.0 / 16.0, 1.0 / 3.0, 0.9};
+/// Where all gathered vertices show where the error is: they cost less and scatter less.
+constexpr Pace by_bends{0.03, 0.15, 0.97};
+/// Patches that have so much of the square of the error must have vertices gathered on the mesh as it is.
+constexpr double most_of_error = 0.5;
+/// Below so many times the goal, a sample says what bends mean for the error.
+constexpr double near_goal = 1.5;
 /// Times the usual sample of patches for estimates near the goal: refinement stops where they say so, and
 /// would stop too early by a lucky one.
 constexpr double effort_near_goal = 2.0;
@@ -57,7 +69,9 @@ constexpr const char* factors_are_left = "smaller patches no longer make the err
 
 /// Contributions of the patches to the square of the error that the goal is for: area times squared error,
 /// relative to what is reflected, of the channel where it is largest.
-std::vector<double> contributions(const PatchMesh& mesh, const Solution& solution, ErrorOf error_of) {
+/// @param bends  see vertex_bends(); empty: not known
+std::vector<double> contributions(const PatchMesh& mesh, const Solution& solution, ErrorOf error_of,
+                                  std::span<const double> bends) {
     const std::uint32_t channels = solution.channels;
     std::vector<double> reflected(channels, 0.0);
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
@@ -79,7 +93,9 @@ std::vector<double> contributions(const PatchMesh& mesh, const Solution& solutio
         for (std::uint32_t c = 0; c < channels; ++c) {
             const std::size_t at = std::size_t{i} * channels + c;
             double square = 0.0;
-            if (error_of == ErrorOf::vertices) {
+            if (!bends.empty()) {
+                square = bends[at] * bends[at];
+            } else if (error_of == ErrorOf::vertices) {
                 square = std::pow(solution.patch_size_error->patches[at], 2.0);
             } else {
                 for (std::uint32_t k = 0; k < count; ++k) {
@@ -210,7 +226,7 @@ public:
             observer_.detail(fmt::format("refinement: {}, error {:.2g} %",
                                          plural(step.patches, "patch", "patches"), 100.0 * step.error));
             observer_.refined(result_);
-            const bool enough = is_enough(errors.all);
+            const bool enough = is_enough(bends_.empty() ? errors.all : errors.all / pace().aim);
             if (enough || !may_go_on()) {
                 errors = finish();
                 result_.steps.back().error = errors.all;
@@ -240,6 +256,8 @@ public:
 
 private:
     static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+    [[nodiscard]] const Pace& pace() const { return bends_.empty() ? by_samples : by_bends; }
 
     [[nodiscard]] bool is_enough(double error) const {
         if (goal_.error) {
@@ -296,7 +314,7 @@ private:
     /// Whether smaller patches alone can meet the goal; says so where they cannot.
     bool can_help(const Errors& errors) {
         const double others = errors.all * errors.all - errors.patch_size * errors.patch_size;
-        if (others >= std::pow(aim * *goal_.error, 2.0)) {
+        if (others >= std::pow(pace().aim * *goal_.error, 2.0)) {
             result_.stopped = factors_are_left;
         }
         return result_.stopped.empty();
@@ -329,21 +347,99 @@ private:
         const bool far = !last && steps.size() < steps_of_small_samples &&
                          (!goal_.error || steps.empty() || steps.back().error > far_from_goal * *goal_.error);
         const bool gathers = should_gather(goal_.gather, settings_, result_.mesh, result_.solution);
+        bends_.clear();
+        if (gathers && goal_.error_of == ErrorOf::vertices) {
+            return estimate_by_bends(last);
+        }
+        estimate_by_sample(gathers && !last ? Gather::on : Gather::off, far ? 1.0 : effort_near_goal);
+        return result_.stopped.empty() ? errors_of(result_.solution, goal_.error_of)
+                                       : Errors{not_known, not_known};
+    }
+
+    /// From how the radiosity of gathered vertices bends, all of them.
+    Errors estimate_by_bends(bool last) {
+        Solution& solution = result_.solution;
+        if (!last) {
+            vertices_.gather(scene_, result_.mesh, settings_, solution, observer_);
+        }
+        const std::vector<double> visible = visible_radiosity(
+            result_.mesh, SmoothSurfaces(result_.mesh), patches_near_surfaces(result_.mesh),
+            solution.channels, solution.radiosity, solution.exitance, solution.back_face_share);
+        bends_ = vertex_bends(result_.mesh, solution, visible);
+        while (!last && vertices_.refresh(scene_, result_.mesh, largest(), settings_, solution, observer_)) {
+            bends_ = vertex_bends(result_.mesh, solution, visible);
+        }
+        const double bend = rms_of_bends();
+        double error = std::sqrt(square_of_bend_) * bend;
+        if (last || bend == 0.0 || (!sampled_ && goal_.error && error < near_goal * *goal_.error)) {
+            estimate_by_sample(Gather::off, last ? effort_near_goal : 1.0);
+            if (!result_.stopped.empty()) {
+                return {not_known, not_known};
+            }
+            error = result_.solution.patch_size_error->vertices.rms;
+            square_of_bend_ = bend > 0.0 ? std::pow(error / bend, 2.0) : square_of_bend_;
+            sampled_ = true;
+        }
+        if (last) {
+            const Errors errors = errors_of(solution, goal_.error_of);
+            others_ = std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
+            return errors;
+        }
+        return {error, std::hypot(error, others_)};
+    }
+
+    /// Patches that have most of the square of the error, by their bends.
+    [[nodiscard]] std::vector<std::uint32_t> largest() const {
+        const std::vector<double> parts =
+            contributions(result_.mesh, result_.solution, goal_.error_of, bends_);
+        std::vector<std::uint32_t> order = all_patches(result_.mesh.size());
+        std::stable_sort(order.begin(), order.end(),
+                         [&parts](std::uint32_t a, std::uint32_t b) { return parts[a] > parts[b]; });
+        double left = most_of_error * std::accumulate(parts.begin(), parts.end(), 0.0);
+        std::size_t count = 0;
+        while (count < order.size() && left > 0.0) {
+            left -= parts[order[count++]];
+        }
+        order.resize(count);
+        return order;
+    }
+
+    /// Of all patches that reflect, relative to what is reflected, in the worst channel.
+    [[nodiscard]] double rms_of_bends() const {
+        const PatchMesh& mesh = result_.mesh;
+        const Solution& solution = result_.solution;
+        double worst = 0.0;
+        for (std::uint32_t c = 0; c < solution.channels; ++c) {
+            double bends = 0.0;
+            double reflected = 0.0;
+            for (const std::uint32_t i : reflecting_patches(scene_, mesh)) {
+                if (solution.back_face_share[i] > buried_above) {
+                    continue;
+                }
+                const std::size_t at = std::size_t{i} * solution.channels + c;
+                bends += mesh.areas()[i] * bends_[at] * bends_[at];
+                reflected += mesh.areas()[i] * std::pow(solution.radiosity[at] - solution.exitance[at], 2.0);
+            }
+            worst = reflected > 0.0 ? std::max(worst, bends / reflected) : worst;
+        }
+        return std::sqrt(worst);
+    }
+
+    void estimate_by_sample(Gather gather, double effort) {
         result_.solution.patch_size_error = estimate_patch_size_error(
             scene_, result_.mesh, result_.factors, result_.solution, settings_, observer_,
-            gathers && !last ? Gather::on : Gather::off, far ? 1.0 : effort_near_goal);
+            gather, effort);
         if (!result_.solution.patch_size_error) {
             if (!result_.steps.empty()) {
                 result_.stopped = fmt::format("memory is short to estimate the error of {}",
                                               plural(result_.mesh.size(), "patch", "patches"));
-                return {not_known, not_known};
+                return;
             }
             throw InvalidArgument(
                 "patches cannot be cut where it tells: nothing in the scene reflects light, or "
                 "memory is short",
                 {"error-target"});
         }
-        return errors_of(result_.solution, goal_.error_of);
     }
 
     /// Errors of the form factors and gathered vertices for the mesh as it is now.
@@ -357,14 +453,17 @@ private:
         estimate_error(result_.factors);
         result_.solution =
             solve_radiosity(scene_, result_.mesh, result_.factors, solver_, observer_, with_irradiance_);
-        gather_at_vertices(scene_, result_.mesh, settings_, goal_.gather, result_.solution, observer_);
+        if (should_gather(goal_.gather, settings_, result_.mesh, result_.solution)) {
+            vertices_ = {}; // all of them again: as the sources are now
+            vertices_.gather(scene_, result_.mesh, settings_, result_.solution, observer_);
+        }
         return estimate(true);
     }
 
     /// Patches that are to be split, ascending.
     [[nodiscard]] std::vector<std::uint32_t> choose(const Errors& errors) {
         const PatchMesh& mesh = result_.mesh;
-        std::vector<double> parts = contributions(mesh, result_.solution, goal_.error_of);
+        std::vector<double> parts = contributions(mesh, result_.solution, goal_.error_of, bends_);
         const double left_by_parts = left_by(parts);
         const double total = std::accumulate(parts.begin(), parts.end(), 0.0);
         std::vector<std::uint32_t> order;
@@ -382,14 +481,15 @@ private:
         double wanted = 0.0;
         if (goal_.error && errors.patch_size > 0.0) {
             const double others = errors.all * errors.all - errors.patch_size * errors.patch_size;
-            least_error_ = std::min(least_error_, errors.patch_size);
-            wanted = std::max(0.0, std::pow(aim * *goal_.error, 2.0) - std::max(0.0, others)) /
+            least_error_ =
+                bends_.empty() ? std::min(least_error_, errors.patch_size) : errors.patch_size;
+            wanted = std::max(0.0, std::pow(pace().aim * *goal_.error, 2.0) - std::max(0.0, others)) /
                      (least_error_ * least_error_);
         }
         const auto share = [&mesh](double of) {
             return static_cast<std::size_t>(std::ceil(of * mesh.size()));
         };
-        std::size_t most = share(most_split);
+        std::size_t most = share(pace().most);
         if (goal_.patches > 0) { // a split in four adds three
             most = std::min<std::size_t>(most, (std::max(goal_.patches, mesh.size()) - mesh.size()) / 3 + 1);
         }
@@ -397,7 +497,7 @@ private:
         std::vector<bool> chosen(mesh.size(), false);
         std::size_t count = 0;
         for (const std::uint32_t i : order) {
-            if (count >= most || (count >= share(least_split) && goal_.error && left <= wanted * total)) {
+            if (count >= most || (count >= share(pace().least) && goal_.error && left <= wanted * total)) {
                 break;
             }
             left -= (1.0 - left_by_parts) * parts[i];
@@ -500,6 +600,7 @@ private:
         rows.work.rows += result_.raw.work.rows;
         rows.work.hemicubes += result_.raw.work.hemicubes;
         rows.work.seconds += result_.raw.work.seconds;
+        vertices_.split(result_.mesh, result_.solution, finer.mesh, finer.parents);
         result_.raw = std::move(rows);
         result_.mesh = std::move(finer.mesh);
         parents_ = std::move(finer.parents);
@@ -516,6 +617,11 @@ private:
     RefinementRows rows_;
     Stopwatch watch_;
     Refinement result_;
+    RefinedGather vertices_;          ///< on the way
+    std::vector<double> bends_;       ///< of the mesh, see vertex_bends(); empty: not known
+    double square_of_bend_ = square_error_of_bend; ///< square of the error over that of the bends
+    bool sampled_ = false;            ///< whether that is from a sample
+    double others_ = 0.0;             ///< what the error had of other parts when it was known last
     double least_error_ = std::numeric_limits<double>::infinity(); ///< of the patches' size, so far
     std::vector<double> contributions_;  ///< of the patches that the last step began with
     std::vector<std::uint32_t> parents_; ///< of the patches as they are now, among those
