@@ -10,7 +10,6 @@
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/scene/imprint.hpp"
 #include "matrix/split_rows.hpp"
-#include "pipeline/refined_gather.hpp"
 #include "pipeline/vertex_bends.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
@@ -35,8 +34,8 @@ constexpr double least_left_by_parts = 1.0 / 16.0;
 constexpr double most_left_by_parts = 0.5;
 constexpr double usually_left_by_parts = 0.25;
 /// A step splits at least and at most such shares of the patches: fewer are not worth a step's solution and
-/// estimate, more would follow an estimate from a mesh that is too coarse to see where the error is. It aims a
-/// little below the goal, since estimates scatter.
+/// estimate, more would follow an estimate from a mesh that is too coarse to see where the error is. It aims
+/// a little below the goal, since estimates scatter.
 struct Pace {
     double least;
     double most;
@@ -45,8 +44,6 @@ struct Pace {
 constexpr Pace by_samples{1.0 / 16.0, 1.0 / 3.0, 0.9};
 /// Where all gathered vertices show where the error is: they cost less and scatter less.
 constexpr Pace by_bends{0.03, 0.15, 0.97};
-/// Patches that have so much of the square of the error must have vertices gathered on the mesh as it is.
-constexpr double most_of_error = 0.5;
 /// Below so many times the goal, a sample says what bends mean for the error.
 constexpr double near_goal = 1.5;
 /// Times the usual sample of patches for estimates near the goal: refinement stops where they say so, and
@@ -320,18 +317,22 @@ private:
         return result_.stopped.empty();
     }
 
-    /// Whether two steps have not brought the error below nine tenths of what it was before.
+    /// Whether twice as many patches, in two steps or more, have not brought the error below nine tenths of
+    /// what it was.
     [[nodiscard]] bool is_stuck() const {
-        if (result_.steps.size() < 4) {
-            return false;
-        }
+        const std::vector<Refinement::Step>& steps = result_.steps;
         const auto least = [](auto begin, auto end) {
             return std::min_element(begin, end,
                                     [](const auto& a, const auto& b) { return a.error < b.error; })
                 ->error;
         };
-        const auto recent = result_.steps.end() - 2;
-        return least(recent, result_.steps.end()) > 0.9 * least(result_.steps.begin(), recent);
+        const auto recent = std::find_if(steps.begin(), steps.end(), [&steps](const Refinement::Step& step) {
+            return 2 * step.patches > steps.back().patches;
+        });
+        if (recent == steps.begin() || steps.end() - recent < 2) {
+            return false;
+        }
+        return least(recent, steps.end()) > 0.9 * least(steps.begin(), recent);
     }
 
     void solve() {
@@ -360,15 +361,12 @@ private:
     Errors estimate_by_bends(bool last) {
         Solution& solution = result_.solution;
         if (!last) {
-            vertices_.gather(scene_, result_.mesh, settings_, solution, observer_);
+            gather_at_vertices(scene_, result_.mesh, settings_, Gather::on, solution, observer_);
         }
         const std::vector<double> visible = visible_radiosity(
             result_.mesh, SmoothSurfaces(result_.mesh), patches_near_surfaces(result_.mesh),
             solution.channels, solution.radiosity, solution.exitance, solution.back_face_share);
         bends_ = vertex_bends(result_.mesh, solution, visible);
-        while (!last && vertices_.refresh(scene_, result_.mesh, largest(), settings_, solution, observer_)) {
-            bends_ = vertex_bends(result_.mesh, solution, visible);
-        }
         const double bend = rms_of_bends();
         double error = std::sqrt(square_of_bend_) * bend;
         if (last || bend == 0.0 || (!sampled_ && goal_.error && error < near_goal * *goal_.error)) {
@@ -382,26 +380,11 @@ private:
         }
         if (last) {
             const Errors errors = errors_of(solution, goal_.error_of);
-            others_ = std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
+            others_ =
+                std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
             return errors;
         }
         return {error, std::hypot(error, others_)};
-    }
-
-    /// Patches that have most of the square of the error, by their bends.
-    [[nodiscard]] std::vector<std::uint32_t> largest() const {
-        const std::vector<double> parts =
-            contributions(result_.mesh, result_.solution, goal_.error_of, bends_);
-        std::vector<std::uint32_t> order = all_patches(result_.mesh.size());
-        std::stable_sort(order.begin(), order.end(),
-                         [&parts](std::uint32_t a, std::uint32_t b) { return parts[a] > parts[b]; });
-        double left = most_of_error * std::accumulate(parts.begin(), parts.end(), 0.0);
-        std::size_t count = 0;
-        while (count < order.size() && left > 0.0) {
-            left -= parts[order[count++]];
-        }
-        order.resize(count);
-        return order;
     }
 
     /// Of all patches that reflect, relative to what is reflected, in the worst channel.
@@ -427,8 +410,7 @@ private:
 
     void estimate_by_sample(Gather gather, double effort) {
         result_.solution.patch_size_error = estimate_patch_size_error(
-            scene_, result_.mesh, result_.factors, result_.solution, settings_, observer_,
-            gather, effort);
+            scene_, result_.mesh, result_.factors, result_.solution, settings_, observer_, gather, effort);
         if (!result_.solution.patch_size_error) {
             if (!result_.steps.empty()) {
                 result_.stopped = fmt::format("memory is short to estimate the error of {}",
@@ -451,11 +433,13 @@ private:
         }
         result_.factors.reference = result_.raw.reference;
         estimate_error(result_.factors);
+        std::vector<float> vertices = std::move(result_.solution.vertex_radiosity);
         result_.solution =
             solve_radiosity(scene_, result_.mesh, result_.factors, solver_, observer_, with_irradiance_);
-        if (should_gather(goal_.gather, settings_, result_.mesh, result_.solution)) {
-            vertices_ = {}; // all of them again: as the sources are now
-            vertices_.gather(scene_, result_.mesh, settings_, result_.solution, observer_);
+        if (vertices.empty()) {
+            gather_at_vertices(scene_, result_.mesh, settings_, goal_.gather, result_.solution, observer_);
+        } else { // the light is the same
+            result_.solution.vertex_radiosity = std::move(vertices);
         }
         return estimate(true);
     }
@@ -481,8 +465,7 @@ private:
         double wanted = 0.0;
         if (goal_.error && errors.patch_size > 0.0) {
             const double others = errors.all * errors.all - errors.patch_size * errors.patch_size;
-            least_error_ =
-                bends_.empty() ? std::min(least_error_, errors.patch_size) : errors.patch_size;
+            least_error_ = bends_.empty() ? std::min(least_error_, errors.patch_size) : errors.patch_size;
             wanted = std::max(0.0, std::pow(pace().aim * *goal_.error, 2.0) - std::max(0.0, others)) /
                      (least_error_ * least_error_);
         }
@@ -600,7 +583,6 @@ private:
         rows.work.rows += result_.raw.work.rows;
         rows.work.hemicubes += result_.raw.work.hemicubes;
         rows.work.seconds += result_.raw.work.seconds;
-        vertices_.split(result_.mesh, result_.solution, finer.mesh, finer.parents);
         result_.raw = std::move(rows);
         result_.mesh = std::move(finer.mesh);
         parents_ = std::move(finer.parents);
@@ -617,11 +599,10 @@ private:
     RefinementRows rows_;
     Stopwatch watch_;
     Refinement result_;
-    RefinedGather vertices_;          ///< on the way
-    std::vector<double> bends_;       ///< of the mesh, see vertex_bends(); empty: not known
+    std::vector<double> bends_;                    ///< of the mesh, see vertex_bends(); empty: not known
     double square_of_bend_ = square_error_of_bend; ///< square of the error over that of the bends
-    bool sampled_ = false;            ///< whether that is from a sample
-    double others_ = 0.0;             ///< what the error had of other parts when it was known last
+    bool sampled_ = false;                         ///< whether that is from a sample
+    double others_ = 0.0; ///< what the error had of other parts when it was known last
     double least_error_ = std::numeric_limits<double>::infinity(); ///< of the patches' size, so far
     std::vector<double> contributions_;  ///< of the patches that the last step began with
     std::vector<std::uint32_t> parents_; ///< of the patches as they are now, among those

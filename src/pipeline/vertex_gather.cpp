@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -131,7 +130,7 @@ struct VertexGather::State {
         }
     }
 
-    /// Takes out the corners that show what a longer edge does.
+    /// Takes out the corners that show what a longer edge does, whatever they would gather.
     void drop_hanging(std::vector<std::vector<std::uint32_t>>& corners_at) const {
         for (const SmoothSurfaces::Hanging& hanging : surfaces.hanging()) {
             std::erase_if(corners_at[hanging.vertex], [&](std::uint32_t corner) {
@@ -198,45 +197,6 @@ struct VertexGather::State {
         });
     }
 
-    /// Points without a known value; what is known of the others goes to `at_points`.
-    [[nodiscard]] std::vector<std::uint32_t> unknown_points(std::span<const float> known,
-                                                            std::uint32_t channels,
-                                                            std::span<float> at_points) const {
-        std::vector<std::uint32_t> counts(points.size(), 0); // corners with a value
-        for (std::size_t corner = 0; corner < point_of.size() && !known.empty(); ++corner) {
-            if (point_of[corner] == no_point || std::isnan(known[corner * channels])) {
-                continue;
-            }
-            const std::uint32_t count = ++counts[point_of[corner]];
-            for (std::uint32_t c = 0; c < channels; ++c) { // their mean
-                float& value = at_points[std::size_t{point_of[corner]} * channels + c];
-                value += (known[corner * channels + c] - value) / static_cast<float>(count);
-            }
-        }
-        std::vector<std::uint32_t> unknown;
-        for (std::uint32_t point = 0; point < points.size(); ++point) {
-            if (counts[point] == 0) {
-                unknown.push_back(point);
-            }
-        }
-        return unknown;
-    }
-
-    /// Values at corners that have a point which is not buried; not a number elsewhere.
-    [[nodiscard]] std::vector<float> known_corners(const std::vector<float>& at_points,
-                                                   const std::vector<std::uint8_t>& buried,
-                                                   std::uint32_t channels) const {
-        std::vector<float> known(point_of.size() * channels, std::numeric_limits<float>::quiet_NaN());
-        for (std::size_t corner = 0; corner < point_of.size(); ++corner) {
-            if (point_of[corner] != no_point && buried[point_of[corner]] == 0) {
-                std::copy_n(at_points.begin() +
-                                static_cast<std::ptrdiff_t>(std::size_t{point_of[corner]} * channels),
-                            channels, known.begin() + static_cast<std::ptrdiff_t>(corner * channels));
-            }
-        }
-        return known;
-    }
-
     /// Values of the points as values of all corners.
     [[nodiscard]] std::vector<float> corners(const std::vector<float>& at_points,
                                              const std::vector<std::uint8_t>& buried, std::uint32_t channels,
@@ -280,28 +240,16 @@ std::span<const SurfacePoint> VertexGather::points() const {
 
 std::vector<float> VertexGather::compute(const PatchValues& values, std::span<const double> radiosity,
                                          const FactorSettings& settings, Enclosure enclosure,
-                                         std::uint64_t keep_bytes, Observer& observer,
-                                         std::vector<float>* known) {
+                                         std::uint64_t keep_bytes, Observer& observer) {
     State& state = *state_;
     state.check(values, radiosity);
-    if (known != nullptr && !known->empty() &&
-        known->size() != state.point_of.size() * values.channels) {
-        throw InvalidArgument(fmt::format("gather: {} known values for {} corners of {} channels",
-                                          known->size(), state.point_of.size(), values.channels));
-    }
     const std::vector<double> seen = state.visible(values, radiosity);
     state.kept = {};
     KeptRows kept; // the state's when all are there
     const std::uint32_t channels = values.channels;
     std::vector<float> at_points(state.points.size() * channels, 0.0F);
     std::vector<std::uint8_t> buried(state.points.size(), 0);
-    const std::vector<std::uint32_t> rows = state.unknown_points(
-        known == nullptr ? std::span<const float>() : std::span<const float>(*known), channels, at_points);
-    std::vector<SurfacePoint> points;
-    for (const std::uint32_t point : rows) {
-        points.push_back(state.points[point]);
-    }
-    if (!points.empty()) {
+    if (!state.points.empty()) {
         RowPlan plan = plan_rows(settings, state.mesh.size());
         if (plan.hemicube.eye_points > 1) {
             plan.hemicube.resolution *= resolution_factor;
@@ -311,20 +259,19 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
             weights[j] = *std::max_element(radiosity.begin() + std::ptrdiff_t{j} * channels,
                                            radiosity.begin() + (std::ptrdiff_t{j} + 1) * channels);
         }
-        bool keep = keep_bytes > 0 && known == nullptr;
+        bool keep = keep_bytes > 0;
         if (keep) {
             kept.columns.resize(state.points.size());
             kept.values.resize(state.points.size());
             kept.environment.resize(state.points.size());
             kept.blocked.resize(state.points.size());
         }
-        const auto engine = make_point_visibility_provider(state.mesh, points, plan.hemicube, settings);
+        const auto engine = make_point_visibility_provider(state.mesh, state.points, plan.hemicube, settings);
         const PointDaylight daylight(state.mesh, values.sun, values.sky, values.up);
         compute_point_rows(
-            *engine, state.mesh, points, plan.weighted.value_or(VisibilityWeightedSettings{}),
+            *engine, state.mesh, state.points, plan.weighted.value_or(VisibilityWeightedSettings{}),
             enclosure, weights,
-            [&](std::uint32_t row_index, const RowView& row) {
-                const std::uint32_t index = rows[row_index];
+            [&](std::uint32_t index, const RowView& row) {
                 const auto light = std::span(at_points).subspan(std::size_t{index} * channels, channels);
                 gathered_radiosity(row, values, seen, state.hosts[index], light);
                 state.add_direct(daylight, index, row, values, light);
@@ -348,9 +295,6 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
             });
     }
     state.kept = std::move(kept);
-    if (known != nullptr) {
-        *known = state.known_corners(at_points, buried, channels);
-    }
     return state.corners(at_points, buried, channels, radiosity);
 }
 
@@ -396,14 +340,14 @@ bool should_gather(Gather wanted, const FactorSettings& settings, const PatchMes
 }
 
 void gather_at_vertices(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,
-                        Gather wanted, Solution& solution, Observer& observer, std::vector<float>* known) {
-    gather_at_vertices(mesh, patch_values(scene, mesh), scene.enclosure, settings, wanted, solution, observer,
-                       known);
+                        Gather wanted, Solution& solution, Observer& observer) {
+    gather_at_vertices(mesh, patch_values(scene, mesh), scene.enclosure, settings, wanted, solution,
+                       observer);
 }
 
 void gather_at_vertices(const PatchMesh& mesh, const PatchValues& values, Enclosure enclosure,
                         const FactorSettings& settings, Gather wanted, Solution& solution,
-                        Observer& observer, std::vector<float>* known) {
+                        Observer& observer) {
     solution.vertex_radiosity.clear();
     if (!should_gather(wanted, settings, mesh, solution)) {
         return;
@@ -418,7 +362,7 @@ void gather_at_vertices(const PatchMesh& mesh, const PatchValues& values, Enclos
         }
     }
     VertexGather gather(mesh, solution.back_face_share, reflecting);
-    solution.vertex_radiosity = gather.compute(values, solution.radiosity, settings, enclosure, 0, observer, known);
+    solution.vertex_radiosity = gather.compute(values, solution.radiosity, settings, enclosure, 0, observer);
     observer.detail(fmt::format("gathered at {} vertices in {}", count_text(gather.points().size()),
                                 seconds_text(watch.seconds())));
 }

@@ -22,8 +22,7 @@ namespace hemi {
 /// A row belongs to a vertex of a smooth surface (see corner_values()): patches that meet there and continue
 /// each other share it. It is seen from the vertex or, on the rim of a surface, from a twentieth of a patch
 /// within; on curved surfaces along the mean of the normals. Covered patches take no part, and vertices that
-/// turn out to lie under something take what their neighbours have; those in the middle of an edge of a
-/// larger patch what that edge shows.
+/// turn out to lie under something take what their neighbours have.
 /// Memory: about 100 bytes a vertex; with kept rows 8 bytes an entry more.
 /// Source: D. Lischinski, F. Tampieri, D. P. Greenberg, "Combining Hierarchical Radiosity and Discontinuity
 /// Meshing", SIGGRAPH 1993 (a last gather at vertices); I. H. Sloan, "Improvement by iteration for compact
@@ -49,15 +48,12 @@ public:
     /// @param enclosure  as the scene says
     /// @param keep_bytes rows are kept, for gather(), as long as they take less; 0: they are not
     /// @param observer   gets progress (Phase::gather) and may cancel
-    /// @param known      values at corners, as they are returned, that need no row of their own; not a number
-    ///   elsewhere, or empty. Gets those of all corners that have one; no rows are kept then
     /// @return B at corner k of patch i, channel c, at [(i·4 + k)·channels + c]; that of triangles has no k=3
     /// @throws InvalidArgument for values that do not fit; as make_point_visibility_engine(); Cancelled
     [[nodiscard]] std::vector<float> compute(const PatchValues& values, std::span<const double> radiosity,
                                              const FactorSettings& settings, Enclosure enclosure,
                                              std::uint64_t keep_bytes = 0,
-                                             Observer& observer = no_observer(),
-                                             std::vector<float>* known = nullptr);
+                                             Observer& observer = no_observer());
 
     /// Whether the rows were kept.
     [[nodiscard]] bool has_rows() const;
@@ -104,16 +100,14 @@ struct Names<Gather> {
 /// @param wanted    by the user
 /// @param solution  of the mesh
 /// @param observer  gets progress and may cancel
-/// @param known     see VertexGather::compute()
 /// @throws as VertexGather::compute()
 void gather_at_vertices(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,
-                        Gather wanted, Solution& solution, Observer& observer = no_observer(),
-                        std::vector<float>* known = nullptr);
+                        Gather wanted, Solution& solution, Observer& observer = no_observer());
 /// The same for any values of the patches. Where they differ among the patches that meet at a vertex, those
 /// of the largest count there.
 /// @throws InvalidArgument too, for values that do not fit
 void gather_at_vertices(const PatchMesh& mesh, const PatchValues& values, Enclosure enclosure,
                         const FactorSettings& settings, Gather wanted, Solution& solution,
-                        Observer& observer = no_observer(), std::vector<float>* known = nullptr);
+                        Observer& observer = no_observer());
 
 } // namespace hemi
