@@ -317,22 +317,24 @@ private:
         return result_.stopped.empty();
     }
 
-    /// Whether twice as many patches, in two steps or more, have not brought the error below nine tenths of
-    /// what it was.
+    /// Whether two steps, or as many small ones as make twice the patches, have not brought the error below
+    /// nine tenths of what it was before.
     [[nodiscard]] bool is_stuck() const {
         const std::vector<Refinement::Step>& steps = result_.steps;
+        if (steps.size() < 4) {
+            return false;
+        }
         const auto least = [](auto begin, auto end) {
             return std::min_element(begin, end,
                                     [](const auto& a, const auto& b) { return a.error < b.error; })
                 ->error;
         };
-        const auto recent = std::find_if(steps.begin(), steps.end(), [&steps](const Refinement::Step& step) {
-            return 2 * step.patches > steps.back().patches;
-        });
-        if (recent == steps.begin() || steps.end() - recent < 2) {
-            return false;
+        auto recent = steps.end() - 2;
+        while (!bends_.empty() && recent != steps.begin() && 2 * recent->patches > steps.back().patches) {
+            --recent;
         }
-        return least(recent, steps.end()) > 0.9 * least(steps.begin(), recent);
+        return recent != steps.begin() &&
+               least(recent, steps.end()) > 0.9 * least(steps.begin(), recent);
     }
 
     void solve() {
@@ -352,9 +354,9 @@ private:
         if (gathers && goal_.error_of == ErrorOf::vertices) {
             return estimate_by_bends(last);
         }
-        estimate_by_sample(gathers && !last ? Gather::on : Gather::off, far ? 1.0 : effort_near_goal);
-        return result_.stopped.empty() ? errors_of(result_.solution, goal_.error_of)
-                                       : Errors{not_known, not_known};
+        return estimate_by_sample(gathers && !last ? Gather::on : Gather::off, far ? 1.0 : effort_near_goal)
+                   ? errors_of(result_.solution, goal_.error_of)
+                   : Errors{not_known, not_known};
     }
 
     /// From how the radiosity of gathered vertices bends, all of them.
@@ -370,8 +372,7 @@ private:
         const double bend = rms_of_bends();
         double error = std::sqrt(square_of_bend_) * bend;
         if (last || bend == 0.0 || (!sampled_ && goal_.error && error < near_goal * *goal_.error)) {
-            estimate_by_sample(Gather::off, last ? effort_near_goal : 1.0);
-            if (!result_.stopped.empty()) {
+            if (!estimate_by_sample(Gather::off, last ? effort_near_goal : 1.0)) {
                 return {not_known, not_known};
             }
             error = result_.solution.patch_size_error->vertices.rms;
@@ -408,20 +409,22 @@ private:
         return std::sqrt(worst);
     }
 
-    void estimate_by_sample(Gather gather, double effort) {
+    /// @return whether memory allows it; else it was said
+    bool estimate_by_sample(Gather gather, double effort) {
         result_.solution.patch_size_error = estimate_patch_size_error(
             scene_, result_.mesh, result_.factors, result_.solution, settings_, observer_, gather, effort);
         if (!result_.solution.patch_size_error) {
             if (!result_.steps.empty()) {
                 result_.stopped = fmt::format("memory is short to estimate the error of {}",
                                               plural(result_.mesh.size(), "patch", "patches"));
-                return;
+                return false;
             }
             throw InvalidArgument(
                 "patches cannot be cut where it tells: nothing in the scene reflects light, or "
                 "memory is short",
                 {"error-target"});
         }
+        return true;
     }
 
     /// Errors of the form factors and gathered vertices for the mesh as it is now.
