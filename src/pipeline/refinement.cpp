@@ -333,8 +333,7 @@ private:
         while (!bends_.empty() && recent != steps.begin() && 2 * recent->patches > steps.back().patches) {
             --recent;
         }
-        return recent != steps.begin() &&
-               least(recent, steps.end()) > 0.9 * least(steps.begin(), recent);
+        return recent != steps.begin() && least(recent, steps.end()) > 0.9 * least(steps.begin(), recent);
     }
 
     void solve() {
