@@ -1,5 +1,6 @@
 #include "cli/loaded_scene.hpp"
 
+#include "cli/face_exitances.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/core/stopwatch.hpp"
@@ -148,6 +149,9 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
         radiate_by_temperature(scene, diagnostics);
     }
     terminal.warn(diagnostics);
+    if (options.exitance_from) {
+        set_exitances(scene, *options.exitance_from);
+    }
     warn_of_turned_faces(scene, terminal);
     if (options.reader.up && !options.up_is_visible && !scene.sky && !scene.sun) {
         throw InvalidArgument(

@@ -1,5 +1,6 @@
 #include "cli/point_source.hpp"
 
+#include "cli/arguments/option_values.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/nearest_word.hpp"
 #include "hemi/core/text.hpp"
@@ -141,8 +142,10 @@ PointTable read_point_table(const std::filesystem::path& path, std::string_view 
         }
         try {
             points.columns.push_back({name, unit_of_column(name), values_in(path, table, c)});
-        } catch (const ParseError&) { // words, such as names of rooms
-            if (name == column) {
+        } catch (const ParseError&) { // words, such as names of rooms; among numbers they are slips
+            if (name == column || std::any_of(table.rows.begin(), table.rows.end(), [c](const auto& row) {
+                    return to_number(row[c]).has_value();
+                })) {
                 throw;
             }
         }

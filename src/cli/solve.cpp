@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -48,22 +49,47 @@ Outputs check_outputs(const SolveArguments& arguments) {
     return outputs;
 }
 
-/// Only rows that are neither stored nor refined may be those of clusters.
-void check_clusters(const SolveArguments& arguments) {
-    if (arguments.rows.factors.clusters != Clusters::on) {
-        return;
-    }
-    const auto refuse = [](std::string_view option, std::string_view why) {
-        throw InvalidArgument(fmt::format("--clusters on excludes {}, {}; leave one out", option, why));
-    };
+/// What keeps rows from being those of clusters.
+struct ClusterObstacle {
+    std::string_view option;
+    std::string_view why;
+};
+std::optional<ClusterObstacle> cluster_obstacle(const SolveArguments& arguments) {
+    const FactorSettings& settings = arguments.rows.factors;
     if (arguments.factors) {
-        refuse("--factors", "as files hold factors of single patches");
+        return {{"--factors", "as files hold factors of single patches"}};
     }
     if (arguments.refines() || arguments.rows.error_target) {
-        refuse("--error-target and --refine", "which need the pairs of patches");
+        return {{"--error-target and --refine", "which need the pairs of patches"}};
     }
-    if (arguments.rows.factors.preset == Preset::plain) {
-        refuse("--preset plain", "since clusters are made of visibility");
+    if (settings.preset == Preset::plain || settings.method != Method::hemicube) {
+        return {{"--preset plain and --method", "since clusters are made of visibility"}};
+    }
+    if (settings.repair && *settings.repair != Repair::none) {
+        return {{"--repair", "which needs the pairs of patches"}};
+    }
+    if (settings.shadow_rays && *settings.shadow_rays > 0) {
+        return {{"--shadow-rays", "which are those of single pairs"}};
+    }
+    if (arguments.solver.method == SolverMethod::conjugate_gradient) {
+        return {{"--solver cg", "which needs reciprocal rows"}};
+    }
+    return std::nullopt;
+}
+
+void check_clusters(const SolveArguments& arguments) {
+    const Clusters clusters = arguments.rows.factors.clusters;
+    const auto obstacle = cluster_obstacle(arguments);
+    if (obstacle && clusters == Clusters::on) {
+        throw InvalidArgument(
+            fmt::format("--clusters on excludes {}, {}; leave one out", obstacle->option, obstacle->why));
+    }
+    const std::vector<std::string>& given = arguments.common.given;
+    if ((obstacle || clusters == Clusters::off) &&
+        std::find(given.begin(), given.end(), "--cluster-error") != given.end()) {
+        throw InvalidArgument(
+            fmt::format("--cluster-error has no effect with {}: no clusters are made; leave one out",
+                        obstacle ? obstacle->option : "--clusters off"));
     }
 }
 
@@ -287,7 +313,7 @@ Report draw(const SolveArguments& arguments, const LoadedScene& loaded, const So
 ExitStatus run(const SolveArguments& given, const Terminal& terminal) {
     check_input(given);
     SolveArguments arguments = given;
-    if (arguments.factors || arguments.refines() || arguments.rows.error_target) {
+    if (cluster_obstacle(arguments)) {
         arguments.rows.factors.clusters = Clusters::off;
     }
     const Outputs outputs = check_outputs(arguments);

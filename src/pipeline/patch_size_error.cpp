@@ -14,6 +14,7 @@
 #include "pipeline/error_sample.hpp"
 #include "pipeline/group_factor_errors.hpp"
 #include "pipeline/group_importance.hpp"
+#include "pipeline/image_count.hpp"
 #include "pipeline/patch_error_model.hpp"
 #include "pipeline/vertex_bends.hpp"
 #include "pipeline/visible_radiosity.hpp"
@@ -100,7 +101,8 @@ public:
             rows.insert(rows.end(), four.begin(), four.end());
         }
         std::sort(rows.begin(), rows.end());
-        if (const auto bytes = bytes_of(rows.size(), fine.size()); bytes > memory_limit(settings)) {
+        if (const auto bytes = bytes_of(rows.size(), fine.size() * image_count(fine));
+            bytes > memory_limit(settings)) {
             observer.warning(fmt::format("what the patches' size does is not estimated: that needs about {}",
                                          memory_text(bytes)),
                              "max-memory");
@@ -119,7 +121,7 @@ public:
         direct_ = direct_irradiances(scene_, fine, factors, rows);
         rows_ = std::move(rows);
         if (factors_.matrix.clusters() == nullptr) { // one-way rows cannot be solved backwards
-            find_importance(bytes_of(rows_.size(), fine.size()), settings, observer);
+            find_importance(bytes_of(rows_.size(), fine.size() * image_count(fine)), settings, observer);
         }
         find_variation(fine, parents);
         std::vector<SampledErrors> vertices(channels_);

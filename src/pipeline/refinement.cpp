@@ -10,6 +10,7 @@
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/scene/imprint.hpp"
 #include "matrix/split_rows.hpp"
+#include "pipeline/image_count.hpp"
 #include "pipeline/vertex_bends.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
@@ -566,7 +567,7 @@ private:
         }
         const double growth = static_cast<double>(finer.mesh.size()) / result_.mesh.size();
         const double bytes =
-            pair_bytes * static_cast<double>(fresh.size()) * finer.mesh.size() +
+            pair_bytes * static_cast<double>(fresh.size() * image_count(finer.mesh)) * finer.mesh.size() +
             entry_bytes * growth * growth * static_cast<double>(result_.raw.matrix.entries());
         if (bytes > static_cast<double>(memory_limit(settings_))) {
             result_.stopped =

@@ -2,6 +2,7 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/pipeline/accuracy.hpp"
+#include "pipeline/image_count.hpp"
 
 #include <fmt/format.h>
 
@@ -45,7 +46,8 @@ public:
     [[nodiscard]] const Candidate& next(std::span<const double> radiosity) {
         while (next_ < candidates_.size()) {
             const Candidate& candidate = candidates_[next_++];
-            if (pair_table_bytes(candidate, mesh_.size(), patches_.size()) > memory_limit_) {
+            if (image_count(mesh_) * pair_table_bytes(candidate, mesh_.size(), patches_.size()) >
+                memory_limit_) {
                 too_large_ = candidate.description();
                 continue;
             }

@@ -5,6 +5,7 @@
 #include "hemi/pipeline/radiosity.hpp"
 #include "pipeline/answers.hpp"
 #include "pipeline/failure.hpp"
+#include "pipeline/image_count.hpp"
 
 #include <fmt/format.h>
 
@@ -134,7 +135,8 @@ private:
             entry.omitted = "no time was left";
             return;
         }
-        if (pair_table_bytes(candidate, mesh_.size(), mesh_.size()) > memory_limit(base_)) {
+        if (image_count(mesh_) * pair_table_bytes(candidate, mesh_.size(), mesh_.size()) >
+            memory_limit(base_)) {
             entry.omitted = "its table of pairs does not fit into the memory";
             return;
         }

@@ -156,7 +156,7 @@ TEST_CASE("pieces: light on a face out of plane is the mean over it, as stored a
     CHECK(finer["surfaces"] == 6);
 }
 
-TEST_CASE("pieces: two triangles of a quadrilateral are subdivided as it; faces are the file's", "[cli]") {
+TEST_CASE("pieces: two triangles of a quadrilateral are subdivided as it, faces are the file's", "[cli]") {
     const Directory directory;
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
     const std::vector<std::array<int, 4>> quads{{1, 2, 3, 4}, {8, 7, 6, 5}, {2, 1, 5, 6},

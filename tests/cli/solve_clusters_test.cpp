@@ -59,7 +59,17 @@ TEST_CASE("solve: what needs single pairs refuses clusters", "[cli]") {
     CHECK_THAT(refusal({"--error-target", "5%"}), Contains("--clusters on excludes --error-target"));
     CHECK_THAT(refusal({"--preset", "plain"}), Contains("--clusters on excludes --preset plain"));
     CHECK_THAT(refusal({"--method", "montecarlo"}), Contains("--method excludes --clusters"));
-    CHECK_THAT(refusal({"--repair", "closure"}), Contains("repair closure: rows of clusters"));
-    CHECK_THAT(refusal({"--solver", "cg"}), Contains("clusters of sources"));
+    CHECK_THAT(refusal({"--repair", "closure"}), Contains("--clusters on excludes --repair"));
+    CHECK_THAT(refusal({"--solver", "cg"}), Contains("--clusters on excludes --solver cg"));
+    CHECK_THAT(refusal({"--shadow-rays", "8"}), Contains("--clusters on excludes --shadow-rays"));
+    for (const Words& without :
+         {Words{"--clusters", "off"}, Words{"--repair", "closure"}, Words{"--refine", "500"}}) {
+        Words words{"solve", scene, "--device", "cpu", "--cluster-error", "1%"};
+        words.insert(words.end(), without.begin(), without.end());
+        const Outcome run = run_hemi(words);
+        CHECK(run.status == 2);
+        CHECK_THAT(run.err, Contains("--cluster-error has no effect with --"));
+    }
     CHECK_THAT(refusal({"--cluster-error", "0"}), Contains("--cluster-error"));
+    CHECK_THAT(refusal({"--mirror", "x=-1"}), Contains("clusters are not made of a scene with symmetry"));
 }

@@ -138,6 +138,25 @@ TEST_CASE("clusters change the gathered light by less than they may, and need fe
     CHECK(entries[0] < pairs.entries() / 3);
 }
 
+TEST_CASE("rows balance where pairs near each other cannot take what is missing") {
+    // Narrow gaps between blocks: few pairs, most of them partly hidden.
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(1.2, 1.0, 0.8), 10);
+    for (int k = 0; k < 4; ++k) {
+        const double x = 0.2 + 0.21 * k;
+        add_block(scene, "block", Vec3(x, 0.2, 0.02), Vec3(x + 0.19, 0.8, 0.4), 6);
+    }
+    const PatchMesh mesh(scene);
+    const HemicubeSettings hemicube{.resolution = 32, .eye_points = 1};
+    const auto engine = make_visibility_engine(mesh, hemicube, {test_device(), 2, find_worker_program()});
+    ClusterSettings settings;
+    settings.opening = 0.5;
+    const FormFactorMatrix rows =
+        compute_clustered(*engine, mesh, all_patches(mesh.size()), settings, Enclosure::automatic);
+    CHECK(row_sums(rows).environment_max == 0.0);
+    CHECK(row_sums(rows).balance_error_max < 1e-6);
+}
+
 TEST_CASE("pairs near each other are reciprocal, also where far ones are in clusters") {
     const PatchMesh mesh(room_with_blocks(12));
     ClusterSettings settings;

@@ -160,7 +160,8 @@ void add_clusters(CLI::App& app, RowOptions& rows) {
                           "of all patches do not fit), on or off",
                           rows.factors.clusters)
         ->excludes(app.get_option("--method"));
-    options.value("--cluster-error", "T", "what clusters may change the gathered light by, relative (0.1%)",
+    options.value("--cluster-error", "T",
+                  "about what clusters may change the gathered light by, relative (0.1%)",
                   [&rows](const std::string& text) {
                       rows.factors.cluster_error = parse_share("--cluster-error", text);
                   });
@@ -176,6 +177,10 @@ void add_environment(CLI::App& app, SceneOptions& scene) {
                           scene.environment.push_back(parse_number("--environment", value));
                       }
                   });
+    options.path(
+        "--exitance-from", "FILE.csv", scene.exitance_from,
+        "exitance of single faces: columns index (of a face, from 0) and exitance, or exitance_CHANNEL; "
+        "overrides the scene");
 }
 
 void add_solver(CLI::App& app, SolverSettings& solver) {

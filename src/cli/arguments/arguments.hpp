@@ -45,6 +45,7 @@ struct SceneOptions {
     std::optional<Enclosure> enclosure;
     std::vector<double>
         environment; ///< `--environment`: one value for all channels or one for each; empty: the scene's
+    std::optional<std::filesystem::path> exitance_from; ///< table of what faces radiate, see set_exitances()
     io::SceneReaderOptions reader;
     bool imprint = true;        ///< cut faces where they touch
     bool up_is_visible = false; ///< results depend on the axis upwards even without a sky

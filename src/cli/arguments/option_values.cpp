@@ -19,15 +19,6 @@ namespace {
     throw InvalidArgument(fmt::format("{} {}: must be {}", option, text.empty() ? "''" : text, wanted));
 }
 
-std::optional<double> to_number(std::string_view text) {
-    double value = 0.0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-        return std::nullopt;
-    }
-    return value;
-}
-
 std::vector<std::string_view> split(std::string_view text, char separator) {
     std::vector<std::string_view> parts;
     while (true) {
@@ -84,6 +75,15 @@ std::string join(std::span<const std::string> words) {
 }
 
 } // namespace
+
+std::optional<double> to_number(std::string_view text) {
+    double value = 0.0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
+        return std::nullopt;
+    }
+    return value;
+}
 
 double parse_number(std::string_view option, const std::string& text) {
     const auto value = to_number(text);

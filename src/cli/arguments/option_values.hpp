@@ -16,6 +16,8 @@
 /// All throw InvalidArgument.
 namespace hemi::cli {
 
+/// A finite number, or nothing where the text is anything else; throws nothing.
+[[nodiscard]] std::optional<double> to_number(std::string_view text);
 /// A finite number.
 [[nodiscard]] double parse_number(std::string_view option, const std::string& text);
 /// A finite number above zero.

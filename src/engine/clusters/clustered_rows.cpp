@@ -4,6 +4,7 @@
 #include "engine/clusters/cluster_tree.hpp"
 #include "engine/visibility_weighted/factor_assembly.hpp"
 #include "engine/visibility_weighted/pair_visibility.hpp"
+#include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/engine/exchange_area.hpp"
@@ -312,19 +313,33 @@ public:
 
     void run() {
         // A row of the pairs alone lacks what is far: it counts as environment meanwhile.
-        std::vector<RowBlock> blocks(near_.blocks().begin(), near_.blocks().end());
+        std::vector<RowBlock> blocks = near_.take_blocks();
+        for (RowBlock& block : blocks) {
+            const std::uint32_t first = block.first_row;
+            near_.set_block(std::move(block));
+            for (std::uint32_t i = first; i < std::min(first + FormFactorMatrix::block_rows, near_.size());
+                 ++i) {
+                if (near_.known(i)) {
+                    balance_far(rows_[i], near_.row(i), true);
+                }
+            }
+        }
+        blocks = near_.take_blocks();
         for (RowBlock& block : blocks) {
             for (std::uint32_t local = 0; local < block.rows(); ++local) {
-                if (block.known[local] != 0) {
-                    Row& row = rows_[block.first_row + local];
-                    balance_far(row, near_.row(block.first_row + local));
-                    block.environment[local] = row.environment + sum_of(row.far);
-                    block.blocked[local] = row.blocked;
-                }
+                const Row& row = rows_[block.first_row + local];
+                block.environment[local] = block.known[local] != 0 ? row.environment + sum_of(row.far) : 0.0;
+                block.blocked[local] = block.known[local] != 0 ? row.blocked : 0.0;
             }
             near_.set_block(std::move(block));
         }
         (void)repair(near_, mesh_.areas(), Repair::closure, settings_);
+        // Few pairs, held at their bounds, cannot always take their share: far factors take what is left.
+        for (std::uint32_t i = 0; i < near_.size(); ++i) {
+            if (near_.known(i)) {
+                balance_far(rows_[i], near_.row(i), false);
+            }
+        }
     }
 
 private:
@@ -339,11 +354,13 @@ private:
     /// Of a factor F0 V: that of a share of samples that are hidden or not, and of F0.
     [[nodiscard]] double variance(double value, std::uint8_t code) const {
         const double visibility = std::max<double>(code, 0.5) / visibility_clear;
-        const double sampling = code == visibility_clear ? 0.0 : (1.0 - visibility) / visibility;
-        return value * value * (sampling + settings_.unoccluded_error * settings_.unoccluded_error);
+        const double sampling = code == visibility_clear ? 0.0 : visibility * (1.0 - visibility);
+        const double rule = settings_.unoccluded_error * settings_.unoccluded_error;
+        return value * value * (sampling + rule) / (visibility * visibility);
     }
 
-    void balance_far(Row& row, const RowView& near) {
+    /// @param shared  whether the near pairs take their share of what is missing, or are as they stay
+    void balance_far(Row& row, const RowView& near, bool shared) {
         const double most = std::max(0.0, 1.0 - row.blocked);
         const double sum = near.sum() + sum_of(row.far);
         if (open_ && row.environment > 0.0) {
@@ -351,7 +368,7 @@ private:
         }
         const double missing = most - row.environment - sum;
         double variances = 0.0;
-        for (std::size_t k = 0; k < near.columns.size(); ++k) {
+        for (std::size_t k = 0; k < near.columns.size() && shared; ++k) {
             variances += variance(static_cast<double>(near.values[k]), near.visibility[k]);
         }
         for (const Entry& entry : row.far) {
@@ -370,6 +387,21 @@ private:
     RepairSettings settings_;
     bool open_;
 };
+
+/// Factor by which the near factors of a row are changed where nothing else balances it: no far ones are
+/// there, or not enough. The row's pairs are then reciprocal only as far as visibility is known.
+double last_change(const Row& row, double near_sum) {
+    constexpr double rounding = 1e-6;
+    double sum = near_sum;
+    for (const Entry& entry : row.far) {
+        sum += static_cast<double>(entry.value);
+    }
+    const double missing = 1.0 - row.environment - row.blocked - sum;
+    if (!(near_sum > 0.0) || std::abs(missing) < rounding || row.blocked > buried_above) {
+        return 1.0;
+    }
+    return std::max(0.0, 1.0 + missing / near_sum);
+}
 
 /// Areas as far as they exchange light with others: what reaches backs counts for nobody. All of a patch
 /// without a row.
@@ -426,8 +458,10 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
                 if (near.known(i)) {
                     block.known[local] = 1;
                     const RowView pairs = near.row(i);
+                    const double change = last_change(rows[i], pairs.sum());
                     for (std::size_t k = 0; k < pairs.columns.size(); ++k) {
-                        append(block, {pairs.columns[k], pairs.values[k], pairs.visibility[k]});
+                        const double value = change * static_cast<double>(pairs.values[k]);
+                        append(block, {pairs.columns[k], static_cast<float>(value), pairs.visibility[k]});
                     }
                     for (const Entry& entry : rows[i].far) {
                         append(block, entry);
