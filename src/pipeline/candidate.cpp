@@ -229,8 +229,8 @@ Measurement try_on_all(const Scene& scene, const PatchMesh& mesh, const Candidat
 }
 
 std::uint64_t pair_table_bytes(const Candidate& candidate, std::uint32_t patches, std::size_t rows) {
-    constexpr std::uint64_t bytes_a_pair = 4; // while both tables are there
-    return is_weighted(candidate.settings) ? bytes_a_pair * patches * static_cast<std::uint64_t>(rows) : 0;
+    constexpr std::uint64_t bytes_of_pair = 4; // while both tables are there
+    return is_weighted(candidate.settings) ? bytes_of_pair * patches * static_cast<std::uint64_t>(rows) : 0;
 }
 
 } // namespace hemi

@@ -8,7 +8,7 @@ namespace hemi {
 namespace {
 
 // Patches look the same way where the cosine between their normals is above this.
-constexpr double same_way = 0.9;
+constexpr double facing_alike = 0.9;
 
 std::vector<Bounds> bounds_of_patches(const PatchMesh& mesh) {
     std::vector<Bounds> bounds(mesh.size());
@@ -46,7 +46,7 @@ std::optional<std::uint32_t> PatchLocator::find(const SurfacePoint& point) const
     double least = std::numeric_limits<double>::infinity();
     const Vec3 margin(tolerance_);
     tree_.overlapping({point.position - margin, point.position + margin}, [&](std::uint32_t patch) {
-        if (glm::dot(mesh_->normal(patch), point.normal) < same_way) {
+        if (glm::dot(mesh_->normal(patch), point.normal) < facing_alike) {
             return;
         }
         const PatchCorners corners = mesh_->corners(patch);

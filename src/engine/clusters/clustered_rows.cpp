@@ -33,19 +33,19 @@ struct Entry {
 };
 
 /// One row while all are computed.
-struct Row {
+struct ClusteredRow {
     std::vector<Entry> near; ///< patches, ascending
     std::vector<Entry> far;  ///< clusters, ascending
     double environment = 0.0;
     double blocked = 0.0;
 
     [[nodiscard]] std::size_t bytes() const {
-        return sizeof(Row) + (near.capacity() + far.capacity()) * sizeof(Entry);
+        return sizeof(ClusteredRow) + (near.capacity() + far.capacity()) * sizeof(Entry);
     }
 };
 
 /// A row of visibility, kept.
-struct KeptRow {
+struct SeenRow {
     std::uint32_t patch = 0;
     std::vector<std::uint32_t> columns;
     std::vector<float> shares;
@@ -66,10 +66,10 @@ public:
         : mesh_(mesh), tree_(tree), exchange_(exchange), opening_(opening), part_of_(mesh.size()),
           share_(mesh.size(), unknown) {}
 
-    [[nodiscard]] Row make(const KeptRow& seen) {
+    [[nodiscard]] ClusteredRow make(const SeenRow& seen) {
         stand_at(seen.patch);
         sums_.assign(parts_.size(), {});
-        Row row{{}, {}, seen.environment, seen.blocked};
+        ClusteredRow row{{}, {}, seen.environment, seen.blocked};
         double shares = 0.0;
         for (std::size_t k = 0; k < seen.columns.size(); ++k) {
             const std::uint32_t j = seen.columns[k];
@@ -114,7 +114,7 @@ private:
         }
     }
 
-    void add(Row& row, std::uint32_t part, std::uint32_t j, double share, bool clear) {
+    void add(ClusteredRow& row, std::uint32_t part, std::uint32_t j, double share, bool clear) {
         const double unoccluded = exchange_(patch_, j) / area_;
         if (!(unoccluded > 0.0)) {
             return;
@@ -130,7 +130,7 @@ private:
     }
 
     /// Patches that no texel covers: as visible as the others of their part, or as all that the row knows.
-    void add_unknown(Row& row, double mean) {
+    void add_unknown(ClusteredRow& row, double mean) {
         for (std::uint32_t part = 0; part < parts_.size(); ++part) {
             const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
             const Sum& sum = sums_[part];
@@ -166,7 +166,7 @@ private:
         return std::acos(cosine) - cluster.cone - std::asin(size / distance) < 0.5 * std::numbers::pi;
     }
 
-    void finish(Row& row) {
+    void finish(ClusteredRow& row) {
         const auto by_column = [](const Entry& a, const Entry& b) { return a.column < b.column; };
         std::sort(row.near.begin(), row.near.end(), by_column);
         for (std::uint32_t part = 0; part < parts_.size(); ++part) {
@@ -213,7 +213,7 @@ public:
     }
 
     /// The rows of all patches, of which those that did not come are empty.
-    [[nodiscard]] std::vector<Row> finish() {
+    [[nodiscard]] std::vector<ClusteredRow> finish() {
         flush();
         return std::move(rows_);
     }
@@ -227,7 +227,7 @@ private:
         parallel_for(kept_.size(), grain, [&](std::size_t begin, std::size_t end) {
             const auto maker = take_maker();
             for (std::size_t k = begin; k < end; ++k) {
-                Row row = maker->make(kept_[k]);
+                ClusteredRow row = maker->make(kept_[k]);
                 bytes += row.bytes();
                 rows_[kept_[k].patch] = std::move(row);
             }
@@ -263,8 +263,8 @@ private:
     double opening_;
     std::uint64_t max_memory_;
     std::uint64_t bytes_ = 0;
-    std::vector<KeptRow> kept_;
-    std::vector<Row> rows_;
+    std::vector<SeenRow> kept_;
+    std::vector<ClusteredRow> rows_;
     std::mutex mutex_;
     std::vector<std::shared_ptr<RowMaker>> makers_; ///< idle
 };
@@ -276,7 +276,7 @@ void append(RowBlock& block, const Entry& entry) {
 }
 
 /// Pairs near each other, as one matrix. Takes them out of the rows.
-FormFactorMatrix near_pairs(std::vector<Row>& rows, std::span<const std::uint32_t> patches,
+FormFactorMatrix near_pairs(std::vector<ClusteredRow>& rows, std::span<const std::uint32_t> patches,
                             const PatchMesh& mesh) {
     FormFactorMatrix matrix(mesh.size());
     std::vector<RowBlock> blocks = matrix.take_blocks();
@@ -287,7 +287,7 @@ FormFactorMatrix near_pairs(std::vector<Row>& rows, std::span<const std::uint32_
         for (std::size_t b = begin; b < end; ++b) {
             RowBlock& block = blocks[b];
             for (std::uint32_t local = 0; local < block.rows(); ++local) {
-                Row& row = rows[block.first_row + local];
+                ClusteredRow& row = rows[block.first_row + local];
                 for (const Entry& entry : std::exchange(row.near, {})) {
                     append(block, entry);
                 }
@@ -305,8 +305,8 @@ class RowBalancer {
 public:
     /// @param near  reciprocal pairs of the rows
     /// @param open  whether the scene is
-    RowBalancer(std::vector<Row>& rows, FormFactorMatrix& near, const PatchMesh& mesh, ExchangeRule rule,
-                bool open)
+    RowBalancer(std::vector<ClusteredRow>& rows, FormFactorMatrix& near, const PatchMesh& mesh,
+                ExchangeRule rule, bool open)
         : rows_(rows), near_(near), mesh_(mesh), open_(open) {
         settings_.unoccluded_error = rule == ExchangeRule::exact ? 3e-5 : settings_.unoccluded_error;
     }
@@ -327,7 +327,7 @@ public:
         blocks = near_.take_blocks();
         for (RowBlock& block : blocks) {
             for (std::uint32_t local = 0; local < block.rows(); ++local) {
-                const Row& row = rows_[block.first_row + local];
+                const ClusteredRow& row = rows_[block.first_row + local];
                 block.environment[local] = block.known[local] != 0 ? row.environment + sum_of(row.far) : 0.0;
                 block.blocked[local] = block.known[local] != 0 ? row.blocked : 0.0;
             }
@@ -360,7 +360,7 @@ private:
     }
 
     /// @param shared  whether the near pairs take their share of what is missing, or are as they stay
-    void balance_far(Row& row, const RowView& near, bool shared) {
+    void balance_far(ClusteredRow& row, const RowView& near, bool shared) {
         const double most = std::max(0.0, 1.0 - row.blocked);
         const double sum = near.sum() + sum_of(row.far);
         if (open_ && row.environment > 0.0) {
@@ -381,7 +381,7 @@ private:
         }
     }
 
-    std::vector<Row>& rows_;
+    std::vector<ClusteredRow>& rows_;
     FormFactorMatrix& near_;
     const PatchMesh& mesh_;
     RepairSettings settings_;
@@ -390,7 +390,7 @@ private:
 
 /// Factor by which the near factors of a row are changed where nothing else balances it: no far ones are
 /// there, or not enough. The row's pairs are then reciprocal only as far as visibility is known.
-double last_change(const Row& row, double near_sum) {
+double last_change(const ClusteredRow& row, double near_sum) {
     constexpr double rounding = 1e-6;
     double sum = near_sum;
     for (const Entry& entry : row.far) {
@@ -405,7 +405,7 @@ double last_change(const Row& row, double near_sum) {
 
 /// Areas as far as they exchange light with others: what reaches backs counts for nobody. All of a patch
 /// without a row.
-std::vector<double> seen_areas(const std::vector<Row>& rows, const PatchMesh& mesh) {
+std::vector<double> seen_areas(const std::vector<ClusteredRow>& rows, const PatchMesh& mesh) {
     std::vector<double> areas(mesh.areas().begin(), mesh.areas().end());
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         areas[i] *= std::max(0.0, 1.0 - rows[i].blocked);
@@ -429,7 +429,7 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
             fmt::format("opening of clusters {}; it must be finite and above 0", settings.opening));
     }
     const ClusterTree tree(mesh);
-    std::vector<Row> rows;
+    std::vector<ClusteredRow> rows;
     {
         RowCollector collector(mesh, tree, settings);
         std::size_t done = 0;
@@ -441,7 +441,7 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
         });
         rows = collector.finish();
     }
-    const bool open = std::any_of(rows.begin(), rows.end(), [enclosure](const Row& row) {
+    const bool open = std::any_of(rows.begin(), rows.end(), [enclosure](const ClusteredRow& row) {
         return sees_environment(row.environment, enclosure);
     });
     FormFactorMatrix near = near_pairs(rows, patches, mesh);
