@@ -109,7 +109,8 @@ TEST_CASE("clusters look one way, and their spheres hold their patches") {
     for (std::uint32_t k = 0; k < tree.clusters()->nodes().size(); ++k) {
         const ClusterShape& shape = tree.shape(k);
         for (const std::uint32_t i : tree.clusters()->patches(k)) {
-            for (const Vec3& corner : mesh.corners(i).polygon()) {
+            const PatchCorners corners = mesh.corners(i);
+            for (const Vec3& corner : corners.polygon()) {
                 REQUIRE(glm::distance(corner, shape.centre) <= shape.radius * (1.0 + 1e-12));
             }
             REQUIRE(glm::dot(mesh.normal(i), shape.axis) >= std::cos(shape.cone) - 1e-12);
