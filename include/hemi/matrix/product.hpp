@@ -10,7 +10,7 @@
 namespace hemi {
 
 /// Calls `visit(j, F(i, j))` for the entries of a row. What comes from a cluster of patches is shared out
-/// among them by their areas; then patches come in no order, and one of area 0 may come with 0.
+/// among them by their weights; then patches come in no order, and one of area 0 may come with 0.
 template <class Visit>
 void visit_sources(const FormFactorMatrix& factors, const RowView& row, const Visit& visit) {
     const std::uint32_t patches = factors.size();
