@@ -215,7 +215,7 @@ void LoadedScene::adopt(PatchMesh other, const CoarseMesh& begin, bool parts) {
 bool LoadedScene::has_whole_faces() const {
     const PatchMesh& own = patches();
     for (std::uint32_t face = 0; face < own.surfaces().size(); ++face) {
-        if (own.patches_per_side(face) != 1) {
+        if (own.patches_per_side(face) != 1 || own.surfaces()[face].joins) {
             return false;
         }
     }

@@ -48,7 +48,7 @@ struct LoadedScene {
     void adopt(PatchMesh other, const CoarseMesh& begin, bool parts);
     /// The mesh as it is, to be cut further.
     [[nodiscard]] CoarseMesh as_begin() const { return {mesh, patches(), parts()}; }
-    /// Whether every patch that results are about is one side of a face.
+    /// Whether every patch that results are about is one side of a face as the file has it.
     [[nodiscard]] bool has_whole_faces() const;
 
     /// The scene as it was read.

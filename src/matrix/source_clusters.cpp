@@ -102,7 +102,7 @@ void SourceClusters::fill(std::span<double> values, std::size_t stride) const {
             continue;
         }
         const double* const first = means + node.child * stride;
-        const double share = weights_[k] > 0.0 ? weights_[node.child] / weights_[k] : 0.5;
+        const double share = first_share(static_cast<std::uint32_t>(k));
         for (std::size_t c = 0; c < stride; ++c) {
             mean[c] = share * first[c] + (1.0 - share) * first[stride + c];
         }

@@ -62,6 +62,9 @@ public:
             }
             radii_.push_back(radius);
         }
+        if (factors.clusters() != nullptr) {
+            enclose(*factors.clusters());
+        }
     }
 
     [[nodiscard]] PointDaylight::Environment seen(std::uint32_t i) const {
@@ -71,8 +74,12 @@ public:
         }
         const Eyes eyes = eyes_of(i);
         SkyMoments hidden;
-        visit_sources(factors_, row,
-                      [&](std::uint32_t j, double factor) { hidden += factor * behind(i, eyes, j); });
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            const auto factor = static_cast<double>(row.values[k]);
+            const std::uint32_t column = row.columns[k];
+            hidden += factor * (column < mesh_.size() ? behind(i, eyes, column)
+                                                      : behind_cluster(i, eyes, column - mesh_.size()));
+        }
         return PointDaylight::split(row.environment, row.blocked, open_sky(mesh_.normal(i), up_), hidden);
     }
 
@@ -82,6 +89,30 @@ private:
         std::array<Vec3, 5> at;
         std::array<double, 5> weight;
     };
+
+    /// Of a cluster: where its patches are, by their weights.
+    struct Sphere {
+        Vec3 centre{0.0};
+        double radius = 0.0; ///< about it, of all patches
+    };
+
+    void enclose(const SourceClusters& clusters) {
+        spheres_.resize(clusters.nodes().size());
+        for (std::size_t k = spheres_.size(); k-- > 0;) { // children come after their parents
+            const std::uint32_t child = clusters.nodes()[k].child;
+            if (child == 0) {
+                const std::uint32_t patch = clusters.order()[clusters.nodes()[k].begin];
+                spheres_[k] = {mesh_.centres()[patch], radii_[patch]};
+                continue;
+            }
+            const Sphere& a = spheres_[child];
+            const Sphere& b = spheres_[child + 1];
+            Sphere& whole = spheres_[k];
+            whole.centre = glm::mix(b.centre, a.centre, clusters.first_share(static_cast<std::uint32_t>(k)));
+            whole.radius = std::max(glm::distance(whole.centre, a.centre) + a.radius,
+                                    glm::distance(whole.centre, b.centre) + b.radius);
+        }
+    }
 
     [[nodiscard]] Eyes eyes_of(std::uint32_t i) const {
         const PatchCorners corners = mesh_.corners(i);
@@ -97,6 +128,25 @@ private:
         eyes.at[4] = mesh_.centres()[i];
         eyes.weight[4] = 1.0;
         return eyes;
+    }
+
+    /// The same of a cluster: at once where all of it is above the horizon, or below.
+    [[nodiscard]] SkyMoments behind_cluster(std::uint32_t i, const Eyes& eyes, std::uint32_t cluster) const {
+        const SourceClusters& clusters = *factors_.clusters();
+        const Sphere& sphere = spheres_[cluster];
+        const Vec3 way = sphere.centre - mesh_.centres()[i];
+        const double rise = glm::dot(way, up_);
+        if (std::abs(rise) > radii_[i] + sphere.radius) {
+            return in_direction(rise / glm::length(way));
+        }
+        const SourceClusters::Node& node = clusters.nodes()[cluster];
+        if (node.child == 0) {
+            return behind(i, eyes, clusters.order()[node.begin]);
+        }
+        const double first = clusters.first_share(cluster);
+        SkyMoments above = first * behind_cluster(i, eyes, node.child);
+        above += (1.0 - first) * behind_cluster(i, eyes, node.child + 1);
+        return above;
     }
 
     /// Mean over what a patch sees of another, of being above the horizon, and of sin(elevation) there.
@@ -130,6 +180,7 @@ private:
     const FormFactorMatrix& factors_;
     Vec3 up_;
     std::vector<double> radii_;
+    std::vector<Sphere> spheres_; ///< of clusters
 };
 
 std::vector<double> sky_irradiance(const PatchMesh& mesh, const Sky& sky, const Vec3& up,

@@ -5,9 +5,11 @@
 #include "hemi/core/error.hpp"
 #include "hemi/engine/clustered_rows.hpp"
 #include "hemi/engine/engine.hpp"
+#include "hemi/engine/exchange_area.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/matrix/product.hpp"
 #include "hemi/matrix/repair.hpp"
+#include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 
@@ -137,6 +139,44 @@ TEST_CASE("clusters change the gathered light by less than they may, and need fe
     CHECK(entries[0] < entries[1]);
     CHECK(entries[1] < entries[2]);
     CHECK(entries[0] < pairs.entries() / 3);
+}
+
+TEST_CASE("a far plate of more patches than a hemicube has texels for them receives what it should") {
+    // Two squares, the upper one tilted: row sums are exact factors, which patches without a texel share in.
+    Scene scene = empty_scene();
+    add_polygon(scene, "low",
+                {{-0.05, -0.05, 0.0}, {0.05, -0.05, 0.0}, {0.05, 0.05, 0.0}, {-0.05, 0.05, 0.0}}, {1, 1});
+    add_polygon(scene, "high", {{-1.0, 1.0, 4.0}, {1.0, 1.0, 4.0}, {1.0, -1.0, 5.0}, {-1.0, -1.0, 5.0}},
+                {96, 96});
+    const PatchMesh mesh(scene);
+    const HemicubeSettings hemicube{.resolution = 16, .eye_points = 1};
+    const auto engine = make_visibility_engine(mesh, hemicube, {test_device(), 2, find_worker_program()});
+    const std::vector<std::uint32_t> low{0};
+    const FormFactorMatrix rows = compute_clustered(*engine, mesh, low, {}, Enclosure::open);
+    const ExchangeAreas exchange(mesh);
+    double expected = 0.0;
+    for (std::uint32_t j = 1; j < mesh.size(); ++j) {
+        expected += exchange(0, j) / mesh.areas()[0];
+    }
+    REQUIRE(expected > 0.04);
+    CHECK(rows.row(0).columns.size() < 40);
+    CHECK(rows.row(0).sum() == Approx(expected).epsilon(1e-3));
+}
+
+TEST_CASE("the sky behind clusters is what it is behind their patches") {
+    Scene scene = empty_scene();
+    add_polygon(scene, "street", {{0, 0, 0}, {2, 0, 0}, {2, 6, 0}, {0, 6, 0}}, {12, 12});
+    add_polygon(scene, "west", {{0, 0, -1}, {0, 0, 3}, {0, 6, 3}, {0, 6, -1}}, {24, 24});
+    add_polygon(scene, "east", {{2, 6, -1}, {2, 6, 2}, {2, 0, 2}, {2, 0, -1}}, {24, 24});
+    scene.sky = Sky{SkyDistribution::overcast, {1.0}, {0.3}};
+    const PatchMesh mesh(scene);
+    const std::vector<double> pairs =
+        direct_irradiance(scene, mesh, in_pairs(mesh, {.resolution = 64, .eye_points = 4}, 0));
+    ClusterSettings settings;
+    settings.opening = cluster_opening(1e-3);
+    const FormFactorMatrix rows = clustered(mesh, settings);
+    REQUIRE(rows.entries() < 150u * mesh.size());
+    CHECK(relative_rms(direct_irradiance(scene, mesh, rows), pairs) < 1e-3);
 }
 
 TEST_CASE("rows balance where pairs near each other cannot take what is missing") {

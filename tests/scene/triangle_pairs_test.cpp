@@ -1,6 +1,7 @@
 #include "hemi/scene/triangle_pairs.hpp"
 
 #include "hemi/scene/imprint.hpp"
+#include "pipeline/cut_mesh.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -90,6 +91,13 @@ TEST_CASE("join_triangle_pairs: whatever corner the triangles begin with, and wh
             CHECK(mesh.normal(0).z == 1.0);
         }
     }
+}
+
+TEST_CASE("cut_mesh: joins pairs of triangles where it is given a size", "[scene]") {
+    const Scene triangles = pair({a, b, c}, {a, c, d});
+    CHECK(cut_mesh(triangles, {0.25, {}}, false).size() == 16);
+    CHECK(cut_mesh(triangles, {0.25, {}}, true).size() == 16);
+    CHECK(cut_mesh(triangles, {}, true).size() == 2);
 }
 
 TEST_CASE("join_triangle_pairs: what is no quadrilateral, or unlike, or cut otherwise, stays", "[scene]") {

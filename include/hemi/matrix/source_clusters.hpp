@@ -40,9 +40,16 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> patches(std::uint32_t node) const {
         return std::span(order_).subspan(nodes_[node].begin, nodes_[node].end - nodes_[node].begin);
     }
+    /// Sum of the weights of a node's patches.
+    [[nodiscard]] double weight(std::uint32_t node) const { return weights_[node]; }
     /// Share of the weight of a node that one of its patches has; 0 where nothing has any.
     [[nodiscard]] double share(std::uint32_t patch, std::uint32_t node) const {
         return weights_[node] > 0.0 ? weights_[leaf_of_[patch]] / weights_[node] : 0.0;
+    }
+
+    /// Share of the first child in the means of a node that has children; half where nothing has any weight.
+    [[nodiscard]] double first_share(std::uint32_t node) const {
+        return weights_[node] > 0.0 ? weights_[nodes_[node].child] / weights_[node] : 0.5;
     }
 
     /// Writes the means of the nodes behind the values of the patches.

@@ -32,6 +32,8 @@ public:
     [[nodiscard]] const ClusterShape& shape(std::uint32_t node) const { return shapes_[node]; }
     /// Of the sphere about a patch, scene units.
     [[nodiscard]] double radius_of(std::uint32_t patch) const { return shapes_[leaf_of_[patch]].radius; }
+    /// Of the patches of a node, scene units squared.
+    [[nodiscard]] double area(std::uint32_t node) const { return clusters_->weight(node); }
     /// Position of a patch in SourceClusters::order().
     [[nodiscard]] std::uint32_t position(std::uint32_t patch) const { return position_[patch]; }
 

@@ -63,8 +63,7 @@ class RowMaker {
 public:
     /// All must outlive this.
     RowMaker(const PatchMesh& mesh, const ClusterTree& tree, const ExchangeAreas& exchange, double opening)
-        : mesh_(mesh), tree_(tree), exchange_(exchange), opening_(opening), part_of_(mesh.size()),
-          share_(mesh.size(), unknown) {}
+        : mesh_(mesh), tree_(tree), exchange_(exchange), opening_(opening), share_(mesh.size(), unknown) {}
 
     [[nodiscard]] ClusteredRow make(const SeenRow& seen) {
         stand_at(seen.patch);
@@ -75,8 +74,9 @@ public:
             const std::uint32_t j = seen.columns[k];
             const auto share = static_cast<double>(seen.shares[k]);
             share_[tree_.position(j)] = seen.shares[k];
-            const std::uint32_t part = part_of_[tree_.position(j)];
+            const std::uint32_t part = part_at(tree_.position(j));
             ++sums_[part].known;
+            sums_[part].area += mesh_.areas()[j];
             sums_[part].shares += share;
             shares += share;
             if (share > 0.0) {
@@ -94,10 +94,13 @@ public:
 
 private:
     static constexpr float unknown = -1.0F;
+    /// Patches of a cluster that no texel covers, each of which is asked.
+    static constexpr std::uint32_t most_asked = 16;
 
     /// Of one part of what a row sees.
     struct Sum {
         std::uint32_t known = 0; ///< patches that texels say something of
+        double area = 0.0;       ///< of these
         double shares = 0.0;     ///< of these, together
         double factor = 0.0;     ///< F of a far part
         double unoccluded = 0.0; ///< F0 of its patches that are not hidden
@@ -108,10 +111,16 @@ private:
         patch_ = patch;
         area_ = mesh_.areas()[patch];
         tree_.seen_from(patch, opening_, parts_);
-        for (std::uint32_t part = 0; part < parts_.size(); ++part) {
-            const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
-            std::fill(part_of_.begin() + node.begin, part_of_.begin() + node.end, part);
+        begins_.clear();
+        for (const ClusterTree::Part& part : parts_) {
+            begins_.push_back(tree_.clusters()->nodes()[part.node].begin);
         }
+    }
+
+    /// The part that holds a position in the tree.
+    [[nodiscard]] std::uint32_t part_at(std::uint32_t position) const {
+        const auto after = std::upper_bound(begins_.begin(), begins_.end(), position);
+        return static_cast<std::uint32_t>(after - begins_.begin()) - 1;
     }
 
     void add(ClusteredRow& row, std::uint32_t part, std::uint32_t j, double share, bool clear) {
@@ -134,11 +143,16 @@ private:
         for (std::uint32_t part = 0; part < parts_.size(); ++part) {
             const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
             const Sum& sum = sums_[part];
-            if (sum.known == node.end - node.begin) {
+            const std::uint32_t left = node.end - node.begin - sum.known;
+            if (left == 0) {
                 continue;
             }
             const double share = sum.known > 0 ? sum.shares / sum.known : mean;
             if (!(share > 0.0) || (sum.known == 0 && !may_face(tree_.shape(parts_[part].node)))) {
+                continue;
+            }
+            if (left > most_asked) {
+                add_sampled(part, node, share);
                 continue;
             }
             for (std::uint32_t at = node.begin; at < node.end; ++at) {
@@ -148,6 +162,29 @@ private:
                 }
             }
         }
+    }
+
+    /// Of many patches that no texel covers: a cluster is small and far, so that a few of them, anywhere in
+    /// it, say what all receive an area.
+    void add_sampled(std::uint32_t part, const SourceClusters::Node& node, double share) {
+        double area = 0.0;
+        double exchange = 0.0;
+        const double step = static_cast<double>(node.end - node.begin) / most_asked;
+        for (std::uint32_t k = 0; k < most_asked; ++k) {
+            const auto at = node.begin + static_cast<std::uint32_t>((k + 0.5) * step);
+            const std::uint32_t j = tree_.clusters()->order()[at];
+            area += mesh_.areas()[j];
+            exchange += exchange_(patch_, j);
+        }
+        if (!(exchange > 0.0)) {
+            return;
+        }
+        Sum& sum = sums_[part];
+        const double left = std::max(0.0, tree_.area(parts_[part].node) - sum.area);
+        const double unoccluded = exchange / area * left / area_;
+        sum.factor += unoccluded * share;
+        sum.unoccluded += unoccluded;
+        sum.clear = false;
     }
 
     /// Whether some patch of a cluster may have its front towards this one's.
@@ -188,7 +225,7 @@ private:
     std::uint32_t patch_ = 0;              ///< of the row
     double area_ = 0.0;                    ///< of it
     std::vector<ClusterTree::Part> parts_; ///< what it sees
-    std::vector<std::uint32_t> part_of_;   ///< by position in the tree
+    std::vector<std::uint32_t> begins_;    ///< of the parts: positions of their first patches
     std::vector<float> share_;             ///< V by position in the tree, or `unknown`
     std::vector<Sum> sums_;                ///< by part
 };
