@@ -16,8 +16,10 @@
 #include "hemi/pipeline/daylight.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -25,6 +27,19 @@
 namespace hemi::cli {
 
 namespace {
+
+/// Says of which file an error is.
+template <class Work>
+auto of_file(const std::filesystem::path& path, const Work& work) {
+    const auto text = [&](const Error& error) { return fmt::format("{}: {}", path.string(), error.what()); };
+    try {
+        return work();
+    } catch (const InputError& error) {
+        throw InputError(text(error), error.settings());
+    } catch (const NotConverged& error) {
+        throw NotConverged(text(error), error.settings());
+    }
+}
 
 io::TextTable read_series(const std::filesystem::path& path) {
     io::TextTable table = io::read_table(path);
@@ -35,6 +50,16 @@ io::TextTable read_series(const std::filesystem::path& path) {
                                      plural(table.columns.size(), "column", "columns")));
     }
     return table;
+}
+
+/// The first column is that of the times.
+void check_times(const std::filesystem::path& path, const io::TextTable& table, const Scene& scene) {
+    const std::string& first = table.columns.front();
+    if (std::find(scene.groups.begin(), scene.groups.end(), first) != scene.groups.end()) {
+        throw InputError(fmt::format("{}: the first column is called {}, which is a group; a series begins "
+                                     "with a column of times",
+                                     path.string(), first));
+    }
 }
 
 /// What the scene says nothing of has the temperatures of the first line.
@@ -65,11 +90,14 @@ void give_temperatures(Scene& scene, const std::filesystem::path& path, const io
 
 /// The table as a schedule, whose names and values can be used.
 HeatSchedule schedule_of(const std::filesystem::path& path, const io::TextTable& table,
-                         const LoadedScene& loaded, const HeatProblem& problem) {
+                         const LoadedScene& loaded, const HeatProblem& problem, Observer& observer) {
     HeatSchedule schedule;
     schedule.columns.assign(table.columns.begin() + 1, table.columns.end());
-    const std::vector<HeatQuantity> quantities =
-        check_heat_schedule(loaded.mesh.groups(), loaded.group_of, problem, schedule);
+    schedule.places = table.lines;
+    const auto check = [&](Observer& told) {
+        return check_heat_schedule(loaded.mesh.groups(), loaded.group_of, problem, schedule, told);
+    };
+    const std::vector<HeatQuantity> quantities = of_file(path, [&] { return check(no_observer()); });
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
         schedule.labels.push_back(table.rows[row][0]);
         for (std::size_t c = 1; c < table.columns.size(); ++c) {
@@ -77,11 +105,62 @@ HeatSchedule schedule_of(const std::filesystem::path& path, const io::TextTable&
                 parse_cell(path, table, row, c, quantities[c - 1] == HeatQuantity::temperature));
         }
     }
+    (void)check(observer);
     return schedule;
 }
 
 bool is_picture(const std::filesystem::path& path) {
     return extension_of(path) == ".png";
+}
+
+bool is_table(const std::filesystem::path& path) {
+    return extension_of(path) == ".csv";
+}
+
+/// What came of the lines of a series: a time, then a column for every group.
+void write_series(const std::filesystem::path& path, const HeatSchedule& schedule,
+                  const std::vector<std::string>& groups, const HeatSeries& series) {
+    io::TextTable table;
+    table.columns = {"time"};
+    const std::array quantities{std::pair("temperature", &series.temperature),
+                                std::pair("net_flux", &series.net_flux),
+                                std::pair("net_power", &series.net_power)};
+    for (const auto& [quantity, values] : quantities) {
+        for (const std::string& group : groups) {
+            table.columns.push_back(fmt::format("{}_{}", quantity, group));
+        }
+    }
+    table.columns.emplace_back("environment_power");
+    for (std::size_t l = 0; l < schedule.labels.size(); ++l) {
+        std::vector<std::string>& row = table.rows.emplace_back(1, schedule.labels[l]);
+        for (const auto& [quantity, values] : quantities) {
+            for (std::size_t g = 0; g < groups.size(); ++g) {
+                const double value = (*values)[l * groups.size() + g];
+                row.push_back(std::isnan(value) ? std::string() : fmt::format("{}", value));
+            }
+        }
+        row.push_back(fmt::format("{}", series.environment_power[l]));
+    }
+    io::write_table(path, table);
+}
+
+/// What files beside a series hold: not its lines.
+void tell_of_own_state(const HeatArguments& arguments, const Terminal& terminal) {
+    std::vector<std::string> options;
+    if (arguments.output && !is_table(*arguments.output)) {
+        options.emplace_back("-o");
+    }
+    if (arguments.fluxes) {
+        options.emplace_back("--fluxes");
+    }
+    if (arguments.result) {
+        options.emplace_back("--result");
+    }
+    if (!options.empty()) {
+        terminal.warn(fmt::format("{}: what the scene itself says, not a line of the series; -o FILE.csv has "
+                                  "its lines",
+                                  fmt::join(options, ", ")));
+    }
 }
 
 Outputs check_outputs(const HeatArguments& arguments) {
@@ -95,7 +174,12 @@ Outputs check_outputs(const HeatArguments& arguments) {
         outputs.keep(*arguments.series);
     }
     if (arguments.output) {
-        outputs.add("-o", *arguments.output, {".vtp", ".png"});
+        if (is_table(*arguments.output) && !arguments.series) {
+            throw InvalidArgument(fmt::format("-o {}: a .csv is for the lines of a --series; --fluxes writes "
+                                              "one of the patches",
+                                              arguments.output->string()));
+        }
+        outputs.add("-o", *arguments.output, {".vtp", ".png", ".csv"});
         if (!is_picture(*arguments.output)) {
             for (const std::string& option : arguments.picture.options) {
                 const auto& given = arguments.common.given;
@@ -126,6 +210,19 @@ std::vector<io::CellArray> of_patches(std::vector<io::CellArray> arrays, const L
                           : arrays;
 }
 
+/// Net fluxes times areas, W: areas are in square units of the scene, whatever these are.
+std::vector<io::CellArray> with_powers(std::vector<io::CellArray> arrays, std::span<const double> areas,
+                                       double unit) {
+    const auto flux = std::find_if(arrays.begin(), arrays.end(),
+                                   [](const io::CellArray& array) { return array.name == "net_flux"; });
+    io::CellArray power{"net_power", {}, {}};
+    for (std::size_t i = 0; i < areas.size(); ++i) {
+        power.values.push_back(flux->values[i] * areas[i] * unit * unit);
+    }
+    arrays.insert(flux + 1, std::move(power));
+    return arrays;
+}
+
 void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, const HeatProblem& problem,
                    const HeatSolution& solution) {
     std::vector<std::string> bands;
@@ -142,11 +239,14 @@ void write_patches(const HeatArguments& arguments, const LoadedScene& loaded, co
         arrays.push_back({"direct", problem.direct, bands});
     }
     if (arguments.fluxes) {
-        io::write_patch_table(*arguments.fluxes, loaded.patches(), of_patches(arrays, loaded),
-                              loaded.as_read ? loaded.as_read->left : io::PatchPlaces());
+        const io::PatchPlaces left = loaded.as_read ? loaded.as_read->left : io::PatchPlaces();
+        const std::span<const double> areas = left.areas.empty() ? loaded.patches().areas() : left.areas;
+        io::write_patch_table(*arguments.fluxes, loaded.patches(),
+                              with_powers(of_patches(arrays, loaded), areas, problem.unit), left);
     }
-    if (arguments.output && !is_picture(*arguments.output)) {
-        io::write_vtp(*arguments.output, loaded.mesh, arrays);
+    if (arguments.output && extension_of(*arguments.output) == ".vtp") {
+        io::write_vtp(*arguments.output, loaded.mesh,
+                      with_powers(std::move(arrays), loaded.mesh.areas(), problem.unit));
     }
 }
 
@@ -193,6 +293,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
         load_thermal_scene("heat", arguments.scene, arguments.input, arguments.heat, true, terminal);
     seconds["load"] = loaded.seconds;
     if (lines) {
+        check_times(*arguments.series, *lines, loaded.scene);
         give_temperatures(loaded.scene, *arguments.series, *lines);
     }
     if (arguments.output && is_picture(*arguments.output)) { // tested before the work
@@ -203,7 +304,7 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer);
     HeatSchedule schedule;
     if (lines) {
-        schedule = schedule_of(*arguments.series, *lines, loaded, problem);
+        schedule = schedule_of(*arguments.series, *lines, loaded, problem, observer);
     }
     const FormFactors factors = find_heat_rows(arguments.common, arguments.rows, arguments.input, loaded,
                                                observer, terminal, seconds);
@@ -218,7 +319,8 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     HeatSeries series;
     if (lines) {
         const Stopwatch series_watch;
-        series = solve_heat_series(factors, problem, schedule, {}, observer);
+        series = of_file(*arguments.series,
+                         [&] { return solve_heat_series(factors, problem, schedule, {}, observer); });
         seconds["series"] = series_watch.seconds();
         terminal.detail(fmt::format("{} {}", plural(lines->rows.size(), "line", "lines"),
                                     series.superposed ? "by superposition of one solve a column"
@@ -242,14 +344,21 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
     Report tables = heat_report(factors, problem, solution, errors);
     tables.json["series"] = nullptr;
     if (lines) {
+        Report of_lines = series_report(factors.groups, schedule.labels, series);
+        if (arguments.output && is_table(*arguments.output)) {
+            write_series(*arguments.output, schedule, factors.groups, series);
+            of_lines.text = fmt::format("{} in {}\n", plural(schedule.labels.size(), "line", "lines"),
+                                        arguments.output->string());
+        }
         tables.text += "\n";
-        tables.add(series_report(factors.groups, schedule.labels, series));
+        tables.add(of_lines);
+        tell_of_own_state(arguments, terminal);
     }
     Report report = scene_size_report(loaded);
     report.add(rows_report(factors, sums, enclosure));
     report.add(repair_report(factors, seconds["repair"]));
     report.add(seconds.report());
-    report.add(heat_balance_report(solution));
+    report.add(heat_balance_report(factors, problem, solution));
     report.add(picture);
     report.json.update(tables.json);
     report.json["bands"] = problem.bands;
@@ -283,6 +392,8 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
         report.json.erase("series");
     }
     show_with_tables(outputs, std::move(report), tables, arguments.common.json, terminal);
+    report_no_fronts(sums, factors.matrix, terminal);
+    report_met_backs(power_to_backs(factors, solution), factors.groups, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }

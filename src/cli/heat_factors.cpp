@@ -59,17 +59,22 @@ void refuse_repeat(Once& once, std::string_view option, const std::string& name,
         fmt::format("group {}: a power of {:.6g} W cannot leave: other faces cover all of it", name, power));
 }
 
-/// A condition for all of a group in place of those that it has.
-void set_condition(Scene& scene, std::string_view option, const std::string& name,
-                   const HeatCondition& condition) {
+/// A condition for all of a group in place of those that it has. What is isothermal stays so by another power
+/// or flux.
+void set_condition(Scene& scene, std::string_view option, const std::string& name, HeatCondition condition) {
     const std::uint32_t group = group_of_option(scene, option, name);
-    const auto index = static_cast<std::uint32_t>(scene.thermal->conditions.size());
-    scene.thermal->conditions.push_back(condition);
+    std::vector<HeatCondition>& conditions = scene.thermal->conditions;
+    const auto index = static_cast<std::uint32_t>(conditions.size());
     bool covered = true;
     for (Surface& surface : scene.surfaces) {
-        surface.heat = surface.group == group ? index : surface.heat;
-        covered = covered && surface.group != group;
+        if (surface.group == group) {
+            const bool was = surface.heat != no_heat && conditions[surface.heat].isothermal;
+            condition.isothermal = !condition.temperature && (condition.isothermal || was);
+            surface.heat = index;
+            covered = false;
+        }
     }
+    conditions.push_back(condition);
     if (covered && condition.power.value_or(0.0) != 0.0) {
         fail_covered(name, *condition.power);
     }
@@ -231,13 +236,20 @@ std::vector<double> read_areas(const std::filesystem::path& path, std::size_t pa
 }
 
 /// What rows of a file without balance lack goes to the environment, unless it is as good as nothing.
-void add_environment_shares(FormFactorMatrix& matrix, double max_row_error) {
+/// @throws InputError where a row has more than there is to see
+void add_environment_shares(FormFactorMatrix& matrix, double max_row_error,
+                            const std::filesystem::path& path) {
     std::vector<RowBlock> blocks = matrix.take_blocks();
     for (RowBlock& block : blocks) {
         for (std::uint32_t r = 0; r < block.rows(); ++r) {
             double sum = block.blocked[r];
             for (std::uint64_t k = block.begin[r]; k < block.begin[r + 1]; ++k) {
                 sum += static_cast<double>(block.values[k]);
+            }
+            if (sum > 1.0 + max_row_error) {
+                throw InputError(fmt::format("{}: the factors of row {} add up to {:.6g}; must be at most 1, "
+                                             "or what --max-row-error allows above it",
+                                             path.string(), block.first_row + r, sum));
             }
             block.environment[r] = 1.0 - sum > max_row_error ? 1.0 - sum : 0.0;
         }
@@ -261,7 +273,7 @@ FormFactors read_foreign(const FactorInput& input, const LoadedScene& loaded, do
     factors.enclosure = loaded.scene.enclosure;
     factors.provenance.renderer = path.string();
     factors.work.from_file = true;
-    add_environment_shares(factors.matrix, max_row_error);
+    add_environment_shares(factors.matrix, max_row_error, path);
     return factors;
 }
 
@@ -358,9 +370,6 @@ LoadedScene load_thermal_scene(std::string_view command, SceneOptions options, c
     set_properties(scene, heat); // over those of the table
     if (heat.environment) {
         scene.thermal->environment_temperature = heat.environment;
-    }
-    if (heat.unit) {
-        scene.unit = heat.unit;
     }
     return loaded;
 }

@@ -5,6 +5,7 @@
 #include "cli/output_paths.hpp"
 #include "cli/point_source.hpp"
 #include "cli/report/factor_report.hpp"
+#include "cli/report/heat_report.hpp"
 #include "cli/report/points_report.hpp"
 #include "cli/report/seconds.hpp"
 #include "cli/terminal_observer.hpp"
@@ -106,7 +107,7 @@ Outputs check_outputs(const PointsArguments& arguments) {
     const HeatOptions& heat = arguments.heat;
     if (arguments.daylight &&
         (arguments.posture || !heat.temperature.empty() || !heat.heat_flux.empty() || !heat.power.empty() ||
-         heat.table || !heat.emissivity.empty() || heat.environment || heat.unit)) {
+         heat.table || !heat.emissivity.empty() || heat.environment)) {
         throw InvalidArgument("--daylight is about the light of the sky alone, without temperatures");
     }
     outputs.refuse_with_json(arguments.common.json);
@@ -120,16 +121,24 @@ bool is_thermal(const PointsArguments& arguments) {
         return true;
     }
     bool thermal = false;
+    bool photometric = false;
     if (extension_of(arguments.scene.path) == ".json") {
         io::SceneReaderOptions reader = arguments.scene.reader;
         reader.adiabatic = true;
         Diagnostics ignored; // the scene is read again
         const Scene scene = io::read_scene(arguments.scene.path, reader, ignored);
         thermal = scene.thermal && !scene.thermal->conditions.empty();
+        photometric = scene.photometric;
     }
-    if (!thermal && (!heat.emissivity.empty() || heat.environment || heat.unit)) {
-        throw InvalidArgument(fmt::format("--emissivity, --environment-temperature and --unit are for scenes "
-                                          "with temperatures; nothing is said of those of {}",
+    if (arguments.scene.reader.unit && !thermal && !photometric) {
+        throw InvalidArgument(
+            fmt::format("--unit is for scenes with temperatures or in lumens; irradiances of "
+                        "{} do not depend on it",
+                        arguments.scene.path.string()));
+    }
+    if (!thermal && (!heat.emissivity.empty() || heat.environment)) {
+        throw InvalidArgument(fmt::format("--emissivity and --environment-temperature are for scenes with "
+                                          "temperatures; nothing is said of those of {}",
                                           arguments.scene.path.string()));
     }
     return thermal;
@@ -462,10 +471,11 @@ ExitStatus run(const PointsArguments& arguments, const Terminal& terminal) {
     json.update(points_json(points.points, values, asked));
     json.update(report.json);
     report.json = std::move(json);
+    Report table;
     if (!arguments.output) {
-        report.text += "\n" + table_text(point_table(points.points, columns));
+        table.text = table_text(point_table(points.points, columns));
     }
-    outputs.show(report, arguments.common.json, terminal);
+    show_with_tables(outputs, std::move(report), table, arguments.common.json, terminal);
     report_points_inside(values, terminal);
     return lit.status;
 }

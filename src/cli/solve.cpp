@@ -121,14 +121,21 @@ void check_input(const SolveArguments& arguments) {
     }
 }
 
-/// Where light comes from and is reflected: without reflection all of it is known.
+bool is_lit_from_outside(const Scene& scene) {
+    return scene.sun || scene.sky ||
+           std::any_of(scene.environment.begin(), scene.environment.end(),
+                       [](double exitance) { return exitance > 0.0; });
+}
+
+/// Where light comes from and is reflected; all where something is wanted of all, or light comes from
+/// outside.
 std::vector<std::uint32_t> needed_patches(const SolveArguments& arguments, const LoadedScene& loaded) {
-    if (!arguments.factors && !arguments.with_irradiance() &&
-        reflecting_patches(loaded.scene, loaded.mesh).empty()) {
-        return {};
+    if (arguments.factors || arguments.with_irradiance() || arguments.patches ||
+        is_lit_from_outside(loaded.scene)) {
+        return all_patches(loaded.mesh.size());
     }
-    return arguments.factors || arguments.with_irradiance()
-               ? all_patches(loaded.mesh.size())
+    return reflecting_patches(loaded.scene, loaded.mesh).empty()
+               ? std::vector<std::uint32_t>()
                : shining_patches(patch_values(loaded.scene, loaded.mesh));
 }
 
@@ -153,7 +160,7 @@ Solved solve(const SolveArguments& arguments, const LoadedScene& loaded, Observe
     seconds["repair"] = repair_watch.seconds();
     const Stopwatch solve_watch;
     Solution solution = solve_radiosity(loaded.scene, loaded.mesh, factors, arguments.solver, observer,
-                                        arguments.with_irradiance());
+                                        arguments.with_irradiance() || is_lit_from_outside(loaded.scene));
     seconds["solve"] = solution.seconds;
     seconds["estimate"] += solve_watch.seconds() - solution.seconds;
     return {std::move(factors), std::move(solution)};
@@ -352,6 +359,10 @@ ExitStatus run(const SolveArguments& given, const Terminal& terminal) {
     const RowSums sums = row_sums(factors.matrix);
     const EnclosureFinding enclosure = find_leaks(factors, max_row_error);
     report_no_fronts(sums, factors.matrix, terminal);
+    if (!arguments.scene.environment.empty() && loaded.scene.enclosure != Enclosure::closed &&
+        factors.matrix.all_known() && sums.environment_max == 0.0) {
+        terminal.warn("--environment has no effect: no patch sees the environment");
+    }
     report_buried(sums, terminal);
     if (arguments.patches) {
         loaded.write_patches(*arguments.patches, factors.matrix);

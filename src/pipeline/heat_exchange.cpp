@@ -89,11 +89,14 @@ private:
     }
 
     void finish() {
+        constexpr double rounding = 1e-13; // of what a group radiates, as yet the sum over its patches
         const auto at = [this](std::uint32_t g, std::uint32_t h) { return std::size_t{g} * groups_ + h; };
         for (std::uint32_t g = 0; g < groups_; ++g) {
             for (std::uint32_t h = 0; h < g; ++h) {
                 const double mean = 0.5 * (result_.conductance[at(g, h)] + result_.conductance[at(h, g)]);
-                result_.conductance[at(g, h)] = result_.conductance[at(h, g)] = mean;
+                // Groups that do not see each other have none but what rounding leaves.
+                const double least = rounding * std::min(result_.emissivity[g], result_.emissivity[h]);
+                result_.conductance[at(g, h)] = result_.conductance[at(h, g)] = mean > least ? mean : 0.0;
             }
         }
         for (std::uint32_t g = 0; g < groups_; ++g) {
@@ -331,7 +334,8 @@ HeatExchange heat_exchange(const FormFactors& factors, const HeatProblem& proble
     if (by_temperature != problem.table_of.end()) {
         const std::uint32_t i = static_cast<std::uint32_t>(by_temperature - problem.table_of.begin());
         throw InputError(fmt::format("exchange factors know no temperatures, and the emissivity of group {} "
-                                     "depends on it; give one value",
+                                     "depends on it; give one value, as --emissivity '{}=0.7'",
+                                     factors.groups[factors.group_of[i]],
                                      factors.groups[factors.group_of[i]]));
     }
     return Exchange(factors, problem).find(settings, observer);

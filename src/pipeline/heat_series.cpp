@@ -38,7 +38,7 @@ std::uint32_t condition_of(const std::vector<std::string>& groups, std::span<con
         }
         std::vector<std::string> known = groups;
         known.emplace_back(environment_name);
-        throw InputError(fmt::format("series: no group \"{}\"{}", name, did_you_mean_or_list(name, known)));
+        throw InputError(fmt::format("no group \"{}\"{}", name, did_you_mean_or_list(name, known)));
     }
     const auto group = static_cast<std::uint32_t>(found - groups.begin());
     std::set<std::uint32_t> own;
@@ -47,10 +47,9 @@ std::uint32_t condition_of(const std::vector<std::string>& groups, std::span<con
         (group_of[i] == group ? own : others).insert(problem.condition_of[i]);
     }
     const auto refuse = [&name](const char* has) {
-        throw InputError(
-            fmt::format("series: group \"{}\" has {}; the column needs one kind of condition for all "
-                        "of it and nothing else: temperature, heat flux or power",
-                        name, has));
+        throw InputError(fmt::format("group \"{}\" has {}; the column needs one kind of condition for all "
+                                     "of it and nothing else: temperature, heat flux or power",
+                                     name, has));
     };
     if (own.size() > 1 && own.contains(no_heat)) {
         refuse("parts without temperature, heat flux and power");
@@ -89,8 +88,9 @@ std::uint32_t condition_of(const std::vector<std::string>& groups, std::span<con
 
 /// A line, from 1, for messages.
 std::string line_text(const HeatSchedule& schedule, std::size_t line) {
-    return line < schedule.labels.size() ? fmt::format("line {} (\"{}\")", line + 1, schedule.labels[line])
-                                         : fmt::format("line {}", line + 1);
+    const std::size_t place = line < schedule.places.size() ? schedule.places[line] : line + 1;
+    return line < schedule.labels.size() ? fmt::format("line {} (\"{}\")", place, schedule.labels[line])
+                                         : fmt::format("line {}", place);
 }
 
 /// The conditions that the columns change, in the problem.
@@ -106,18 +106,46 @@ std::vector<std::uint32_t> conditions_of(const std::vector<std::string>& groups,
     for (const std::string& name : schedule.columns) {
         conditions.push_back(condition_of(groups, group_of, problem, name));
         if (std::count(schedule.columns.begin(), schedule.columns.end(), name) > 1) {
-            throw InputError(fmt::format("series: two columns \"{}\"", name));
+            throw InputError(fmt::format("two columns \"{}\"", name));
         }
     }
     for (std::size_t k = 0; k < schedule.values.size(); ++k) {
         const std::uint32_t c = conditions[k % columns];
         if ((c == of_environment || problem.conditions[c].temperature) && !(schedule.values[k] >= 0.0)) {
-            throw InputError(fmt::format("series: {}, {}: {} K; must not be below 0 K",
+            throw InputError(fmt::format("{}, {}: {} K; must not be below 0 K",
                                          line_text(schedule, k / columns), schedule.columns[k % columns],
                                          schedule.values[k]));
         }
     }
     return conditions;
+}
+
+/// Columns of temperatures that are those of a room in °C throughout, while others are hot.
+void warn_of_celsius(const HeatProblem& problem, const HeatSchedule& schedule,
+                     std::span<const HeatQuantity> quantities, Observer& observer) {
+    constexpr double cold = 150.0;
+    constexpr double warm = 250.0;
+    double hottest = problem.environment_temperature.value_or(0.0);
+    for (const HeatCondition& condition : problem.conditions) {
+        hottest = std::max(hottest, condition.temperature.value_or(0.0));
+    }
+    std::vector<double> most(quantities.size(), 0.0);
+    for (std::size_t k = 0; k < schedule.values.size(); ++k) {
+        double& of_column = most[k % quantities.size()];
+        of_column = std::max(of_column, schedule.values[k]);
+    }
+    for (std::size_t c = 0; c < quantities.size(); ++c) {
+        hottest = quantities[c] == HeatQuantity::temperature ? std::max(hottest, most[c]) : hottest;
+    }
+    for (std::size_t c = 0; c < quantities.size() && hottest > warm; ++c) {
+        const bool sky = schedule.columns[c] == environment_name; // space has 2.7 K
+        if (quantities[c] == HeatQuantity::temperature && most[c] < cold && most[c] > (sky ? 5.0 : 0.0)) {
+            observer.warning(fmt::format("column {} has {} K at most, while others have up to {} K; if °C is "
+                                         "meant, write \"{} C\"",
+                                         schedule.columns[c], most[c], hottest, most[c]),
+                             "temperature");
+        }
+    }
 }
 
 class Series {
@@ -184,7 +212,7 @@ private:
     template <class Work>
     void with_line(std::size_t l, const Work& work) const {
         const auto text = [&](const Error& error) {
-            return fmt::format("series: {}: {}", line_text(schedule_, l), error.what());
+            return fmt::format("{}: {}", line_text(schedule_, l), error.what());
         };
         try {
             work();
@@ -420,12 +448,14 @@ private:
 
 std::vector<HeatQuantity> check_heat_schedule(const std::vector<std::string>& groups,
                                               std::span<const std::uint32_t> group_of,
-                                              const HeatProblem& problem, const HeatSchedule& schedule) {
+                                              const HeatProblem& problem, const HeatSchedule& schedule,
+                                              Observer& observer) {
     HeatProblem changed = problem;
     std::vector<HeatQuantity> quantities;
     for (const std::uint32_t c : conditions_of(groups, group_of, changed, schedule)) {
         quantities.push_back(c == of_environment ? HeatQuantity::temperature : given(changed.conditions[c]));
     }
+    warn_of_celsius(problem, schedule, quantities, observer);
     return quantities;
 }
 

@@ -125,6 +125,24 @@ TEST_CASE("hemi solve: sun and sky are reported apart, and stored", "[cli][solve
     CHECK(picture.status == 0);
 }
 
+TEST_CASE("hemi solve: the sky lights black surfaces, too", "[cli][solve][sky]") {
+    const Directory directory;
+    Json scene = court(overcast);
+    for (Json& material : scene["materials"]) {
+        material = {{"reflectance", 0}};
+    }
+    const std::string file = directory.write("black.json", scene);
+    const Outcome run = run_hemi(on_cpu({"solve", file, "--json", "--patches", directory.path("p.csv")}));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    CHECK_FALSE(run.err_has("nothing radiates"));
+    CHECK(run.json()["balance"]["absorbed"].get<double>() == Approx(8000.0).epsilon(1e-3));
+    for (const Json& group : run.json()["light"]) {
+        CHECK(group["irradiance"].get<double>() > 100.0);
+    }
+    CHECK(directory.read("p.csv").find(",\n") == std::string::npos); // no empty cell at the end of a line
+}
+
 TEST_CASE("hemi solve: lumens are what a lamp gives", "[cli][solve][daylight]") {
     const Directory directory;
     Json scene = cube(6); // 1 m: an integrating cube, whose mean illuminance is flux / (area (1 - rho))

@@ -45,6 +45,29 @@ TEST_CASE("hemi exchange: conductances are reciprocal and balance", "[cli][heat]
     CHECK(large.json()["seconds"]["estimate"] == 0.0);
 }
 
+TEST_CASE("hemi exchange: rooms that are apart exchange nothing at all", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3, 2);
+    const std::size_t faces = scene["surfaces"].size();
+    for (std::size_t k = 0; k < faces; ++k) {
+        Json face = scene["surfaces"][k];
+        face["name"] = "other_" + face["name"].get<std::string>();
+        for (Json& point : face["polygon"]) {
+            point[0] = point[0].get<double>() + 5.0;
+        }
+        scene["surfaces"].push_back(face);
+    }
+    scene.erase("groups");
+    const Json exchange =
+        run_hemi(on_cpu({"exchange", directory.write("rooms.json", scene), "--json"})).json();
+    for (std::size_t g = 0; g < faces; ++g) {
+        for (std::size_t h = faces; h < 2 * faces; ++h) {
+            REQUIRE(exchange["conductance"][g][h] == 0.0);
+        }
+        REQUIRE(exchange["conductance"][g][g] >= 0.0);
+    }
+}
+
 TEST_CASE("hemi exchange --min: small conductances go to the others", "[cli][heat]") {
     const Directory directory;
     Json scene = box(1, 2, 3, 2);

@@ -74,8 +74,8 @@ TEST_CASE("hemi heat: the JSON has all that is promised, in the right sizes", "[
     CHECK(quiet.err.empty());
     CHECK(quiet.out.starts_with("group "));
     const std::string table = directory.read("box.csv");
-    CHECK(table.starts_with("index,group,area,cx,cy,cz,nx,ny,nz,temperature,net_flux,emitted,absorbed,"
-                            "irradiation,radiosity\n0,bottom,"));
+    CHECK(table.starts_with("index,group,area,cx,cy,cz,nx,ny,nz,temperature,net_flux,net_power,emitted,"
+                            "absorbed,irradiation,radiosity\n0,bottom,"));
     CHECK(std::count(table.begin(), table.end(), '\n') == 55);
     CHECK(directory.read("box.vtp").find("Name=\"net_flux\"") != std::string::npos);
 }
@@ -142,7 +142,7 @@ TEST_CASE("hemi heat: a power cannot leave a group that is covered", "[cli][heat
     const std::string table = directory.read("fluxes.csv");
     const std::size_t under = table.find(",under,");
     REQUIRE(under != std::string::npos);
-    CHECK(table.substr(under, table.find('\n', under) - under).ends_with(",,0,,,,"));
+    CHECK(table.substr(under, table.find('\n', under) - under).ends_with(",,0,0,,,,"));
 }
 
 TEST_CASE("hemi heat: MOOSE's cavity by factors from a file", "[cli][heat]") {
@@ -167,6 +167,10 @@ TEST_CASE("hemi heat: MOOSE's cavity by factors from a file", "[cli][heat]") {
         run_hemi({"heat", scene, "--factors", directory.write("G.csv", "i,j,F\n0,1,1\n1,0,1\n")});
     CHECK(wrong.status == 3);
     CHECK(wrong.err_has("2 rows"));
+    const Outcome much = run_hemi(
+        {"heat", scene, "--factors", directory.write("H.csv", "i,j,F\n0,2,1.5\n1,3,1\n2,0,1\n3,1,1\n")});
+    CHECK(much.status == 3);
+    CHECK(much.err_has("H.csv: the factors of row 0 add up to 1.5; must be at most 1"));
 }
 
 TEST_CASE("hemi heat: MOOSE's cavity as a duct of 600 m", "[cli][heat]") {
@@ -443,7 +447,89 @@ TEST_CASE("hemi heat: a series of temperatures", "[cli][heat]") {
     refused("time,left\n0,0\n1,20C\n", "a number");
     refused("time,back\n0,20C\n", "a number");
     refused("time,botom\n0,300\n", "\"bottom\"");
-    refused("time,left\n0 h,0\n1 h,-50000\n", "line 2 (\"1 h\"): group left");
+    refused("time,left\n0 h,0\n# a comment\n1 h,-50000\n", "bad.csv: line 4 (\"1 h\"): group left");
+    refused("bottom,top\n550,300\n", "the first column is called bottom, which is a group");
+    refused("time,bottom,bottom\n0,300,300\n", "bad.csv: two columns \"bottom\"");
+
+    // Lines in a table; other files hold the scene's own state, which is told. Temperatures in °C likewise.
+    const std::string lines = directory.path("lines.csv");
+    const Outcome written =
+        run_hemi(on_cpu({"heat", scene, "--series", directory.write("cold.csv", "time,top\n0 h,20\n1 h,25\n"),
+                         "-o", lines, "--fluxes", fluxes}));
+    INFO(written.err);
+    REQUIRE(written.status == 0);
+    CHECK(written.err_has("--fluxes: what the scene itself says, not a line of the series"));
+    CHECK(written.err_has("column top has 25 K at most"));
+    std::istringstream table(directory.read("lines.csv"));
+    std::string header;
+    std::string first;
+    REQUIRE(std::getline(table, header));
+    REQUIRE(std::getline(table, first));
+    CHECK(header.starts_with("time,temperature_bottom,temperature_top,"));
+    CHECK(header.ends_with(",net_power_back,environment_power"));
+    CHECK(first.starts_with("0 h,550,20,"));
+    CHECK(run_hemi(on_cpu({"heat", scene, "-o", lines})).err_has("--fluxes writes"));
+}
+
+TEST_CASE("hemi heat: what is isothermal stays so by another power", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3, 3);
+    scene["groups"]["back"] = {{"power", 100}, {"isothermal", true}};
+    const Json own = run_hemi(on_cpu({"heat", directory.write("a.json", scene), "--json"})).json();
+    scene["groups"]["back"]["power"] = 0;
+    const Json given =
+        run_hemi(on_cpu({"heat", directory.write("b.json", scene), "--power", "back=100", "--json"})).json();
+    CHECK(given["temperature"] == own["temperature"]);
+}
+
+TEST_CASE("hemi heat: areas of a table are in the scene's unit, powers in W", "[cli][heat]") {
+    const Directory directory;
+    const auto powers = [&](const Json& scene, Words more) {
+        const std::string file = directory.path("power.csv");
+        more.insert(more.begin(), {"heat", directory.write("scene.json", scene), "--fluxes", file, "-q"});
+        const Outcome run = run_hemi(on_cpu(std::move(more)));
+        REQUIRE(run.status == 0);
+        std::istringstream table(directory.read("power.csv"));
+        std::string line;
+        REQUIRE(std::getline(table, line));
+        CHECK(line.starts_with("index,group,area,cx,cy,cz,nx,ny,nz,temperature,net_flux,net_power,"));
+        std::vector<double> result;
+        while (std::getline(table, line)) {
+            std::istringstream cells(line);
+            std::string cell;
+            for (int k = 0; k < 12; ++k) {
+                std::getline(cells, cell, ',');
+            }
+            result.push_back(std::stod(cell));
+        }
+        return result;
+    };
+    const std::vector<double> metres = powers(box(1, 2, 3), {});
+    const std::vector<double> millimetres = powers(box(1000, 2000, 3000), {"--unit", "mm"});
+    REQUIRE(metres.size() == 6);
+    for (std::size_t i = 0; i < 6; ++i) {
+        CHECK(millimetres[i] == Approx(metres[i]).epsilon(1e-9).margin(1e-6));
+    }
+    CHECK(std::abs(metres[0]) > 100.0);
+}
+
+TEST_CASE("hemi heat: what meets backs is told", "[cli][heat]") {
+    const Directory directory;
+    Json scene = box(1, 2, 3);
+    scene["surfaces"].push_back({{"name", "baffle"},
+                                 {"material", "side"},
+                                 {"polygon", {{0.2, 0.2, 1}, {0.8, 0.2, 1}, {0.8, 1.8, 1}, {0.2, 1.8, 1}}}});
+    scene["groups"]["baffle"] = {{"temperature", 400}};
+    const Outcome run = run_hemi(on_cpu({"heat", directory.write("baffle.json", scene), "--json"}));
+    INFO(run.err);
+    CHECK(run.err_has("of the radiation meets backs of one-sided surfaces, most of it from bottom"));
+    const Json balance = run.json()["balance"];
+    CHECK(balance["backs"].get<double>() > 0.05);
+    CHECK(balance["emitted"].get<double>() > 1000.0);
+    const Json whole = run_hemi(on_cpu({"heat", directory.write("box.json", box(1, 2, 3)), "--json"})).json();
+    CHECK(whole["balance"]["backs"] == 0.0);
+    CHECK(whole["balance"]["emitted"].get<double>() ==
+          Approx(whole["balance"]["absorbed"].get<double>()).epsilon(1e-9));
 }
 
 TEST_CASE("hemi heat -o PICTURE.png: temperatures and fluxes in false colours", "[cli][heat][gl]") {

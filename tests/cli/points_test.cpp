@@ -253,6 +253,17 @@ TEST_CASE("hemi points: what is not right is said, with its place", "[cli][point
     CHECK(run_hemi({"points", directory.path("points.csv"), "--points", scene}).err_has("needs a scene"));
 }
 
+TEST_CASE("hemi points -q: the table alone", "[cli][points]") {
+    const Directory directory;
+    const Outcome run = run_hemi(on_cpu({"points", directory.write("street.json", street()), "--points",
+                                         directory.write("points.csv", "x,y,z\n1,0,1\n"), "-q"}));
+    REQUIRE(run.status == 0);
+    CHECK(run.err.empty());
+    CHECK(run.out.starts_with("x "));
+    CHECK(run.out_has("sky"));
+    CHECK(std::count(run.out.begin(), run.out.end(), '\n') == 2);
+}
+
 TEST_CASE("hemi points: inside of a body it warns", "[cli][points]") {
     const Directory directory;
     Json scene = street();

@@ -108,6 +108,7 @@ TEST_CASE("Nastran reader: what is wrong is named with its line, its value and w
         {square + "GRID,1,,0.,0.,1.\n", {":5: node 1 is in line 1, too, in another place"}},
         {"GRID,1,,0.,abc,0.\n", {":1: GRID: \"abc\"; must be a finite number"}},
         {"GRID,1,,0.,1.+400,0.\n", {":1: GRID: \"1.+400\"; must be a finite number"}},
+        {"GRID,1,,0.,1.+1.+1.+1.+1.+1.+1.+1.+1.+1.+1.+1.+,0.\n", {":1: GRID: \"1.+1.+"}},
         {"GRID,1,,0.,nan,0.\n", {":1: GRID: \"nan\"; must be a finite number"}},
         {"GRID,0,,0.,0.,0.\n", {":1: GRID: node \"0\"; must be a whole number above 0"}},
         {"GRID,1,3,0.,0.,0.\n", {":1: GRID in the coordinate system \"3\" (CP); must be 0"}},

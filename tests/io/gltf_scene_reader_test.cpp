@@ -354,6 +354,7 @@ TEST_CASE("glTF reader: what is not used is told", "[io]") {
     document["animations"] = Json::array();
     document["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_unlit"};
     document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    document["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 0.9;
     document["materials"][0]["alphaMode"] = "BLEND";
     document["meshes"][0]["primitives"][0]["targets"] = Json::array();
     document["meshes"][0]["primitives"].push_back({{"mode", 1}, {"attributes", {{"POSITION", 0}}}});
@@ -361,11 +362,12 @@ TEST_CASE("glTF reader: what is not used is told", "[io]") {
     REQUIRE(read(folder, document, &diagnostics).surfaces.size() == 2);
     for (const char* part : {"room.gltf: not used: KHR_materials_transmission, skins, animations",
                              "1 primitive of points or lines left out", "morph targets are not used",
-                             "textures are not used; baseColorFactor", "transparency is not used"}) {
+                             "textures are not used; baseColorFactor", "transparency is not used",
+                             "metals mirror light, and are taken as diffuse"}) {
         INFO(part);
         REQUIRE(has_warning(diagnostics, part));
     }
-    REQUIRE(diagnostics.warnings().size() == 5);
+    REQUIRE(diagnostics.warnings().size() == 6);
 }
 
 TEST_CASE("glTF reader: what is wrong is named with its place, its value and what would be right", "[io]") {

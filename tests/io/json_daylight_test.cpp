@@ -127,6 +127,15 @@ TEST_CASE("JSON: a sun has a place and a light", "[io][daylight]") {
     CHECK_FALSE(read(directory, json, &diagnostics).sun);
     REQUIRE(diagnostics.warnings().size() == 1);
     CHECK_THAT(diagnostics.warnings()[0], Contains("below the horizon"));
+    // By angles likewise; a direction is what it is, such as that of a lamp in a laboratory.
+    Diagnostics others;
+    json["sun"] = {{"azimuth", 180}, {"elevation", -30}, {"normal_irradiance", 900}};
+    CHECK_FALSE(read(directory, json, &others).sun);
+    json["sun"] = {{"direction", {0, 1, -1}}, {"normal_irradiance", 900}};
+    CHECK(read(directory, json, &others).sun);
+    REQUIRE(others.warnings().size() == 2);
+    CHECK_THAT(others.warnings()[0], Contains("30 degrees below the horizon and gives no light"));
+    CHECK_THAT(others.warnings()[1], Contains("from below the horizon"));
 
     // One number for bands is shared out as by a black body of 5772 K: 98 % below 3 µm.
     json["bands"] = {3};

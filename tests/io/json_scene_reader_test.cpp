@@ -234,6 +234,23 @@ TEST_CASE("JSON reader: syntax errors carry line and column", "[io]") {
     REQUIRE(place("") == Place{1, 1});
     REQUIRE(place("{\"hemi\":\n 1e999}").first == 2);
     REQUIRE(place("{\"a\": \"\xFF\"}").first == 1);
+    // In words of its own, not those of the library that reads it.
+    const auto message = [&](const std::string& text) {
+        return message_of<ParseError>([&] { (void)read(folder, text); });
+    };
+    require_parts(message("{\"hemi\": nan}"), {":1:", "unexpected \"", "no sound JSON"});
+    require_parts(message("{\"hemi\": 1"), {"the text ends here"});
+    require_parts(message("{\"hemi\": 1e999}"), {"1e999; no number can be as large"});
+}
+
+TEST_CASE("JSON reader: a surface is in the group that it names, else in the one of its name", "[io]") {
+    const Folder folder;
+    const Scene read_back =
+        read(folder, scene(square_with(R"("name": "a")") + "," + square_with(R"("name": "b", "group": "a")") +
+                           "," + square_with(R"("group": "c")")));
+    REQUIRE(read_back.groups == std::vector<std::string>{"a", "c"});
+    REQUIRE(read_back.surfaces[1].group == 0);
+    REQUIRE(read_back.surfaces[2].group == 1);
 }
 
 TEST_CASE("JSON reader: what is wrong is named with its place, its value and what would be right", "[io]") {
@@ -255,7 +272,7 @@ TEST_CASE("JSON reader: what is wrong is named with its place, its value and wha
         {scene(square_with(R"("patchs": 3)")),
          {"surfaces[0]: unknown key \"patchs\"; did you mean \"patches\"?"}},
         {scene(square_with(R"("zzzzzz": 3)")),
-         {"surfaces[0]: unknown key \"zzzzzz\"; there is name, material"}},
+         {"surfaces[0]: unknown key \"zzzzzz\"; there is name, group, material"}},
         {scene(R"({"material": "white"})"), {"surfaces[0]: neither \"polygon\" nor \"mesh\""}},
         {scene(square_with(R"("mesh": "cube.obj")")), {"surfaces[0]: both \"polygon\" and \"mesh\""}},
         {scene(square_with(R"("transform": {})")), {"surfaces[0]: \"transform\" belongs to a mesh"}},

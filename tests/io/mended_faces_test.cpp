@@ -248,6 +248,15 @@ TEST_CASE("readers: comments in JSON, byte order marks, and UTF-16 by its name",
                 "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
                 "endfacet\nendsolid\n")
             .surfaces.size() == 1);
+    CHECK(read(folder, "a.ply",
+               mark + "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+              .surfaces.size() == 1);
+    CHECK(read(folder, "a.vtk",
+               mark + "# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
+                      "0 0 0 1 0 0 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n")
+              .surfaces.size() == 1);
     for (const std::string name : {"a.json", "a.obj", "a.vs3", "a.msh"}) {
         require_parts(message_of<InputError>([&] { read(folder, name, std::string("\xFF\xFE{\0", 4)); }),
                       {name, "text in UTF-16; save it as UTF-8"});

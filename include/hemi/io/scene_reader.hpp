@@ -34,10 +34,11 @@ struct SceneReaderOptions {
     /// glTF: closed bodies of double-sided faces are taken as one-sided where one of their sides meets
     /// nothing, see make_bodies_one_sided(); not those with faces of two_sided_groups.
     bool close_bodies = true;
-    std::string zone{};         ///< .epJSON: the zone that is read; empty: the only one
-    bool adiabatic = false;     ///< allow reflectances of 1 in .json, where heat is solved for
-    std::optional<UpAxis> up{}; ///< axis upwards, in place of the file's
-    SymmetryOptions symmetry{}; ///< what the scene repeats itself by
+    std::string zone{};           ///< .epJSON: the zone that is read; empty: the only one
+    bool adiabatic = false;       ///< allow reflectances of 1 in .json, where heat is solved for
+    std::optional<UpAxis> up{};   ///< axis upwards, in place of the file's
+    std::optional<double> unit{}; ///< metres in a unit of lengths, in place of the file's
+    SymmetryOptions symmetry{};   ///< what the scene repeats itself by
 };
 
 /// Reads a scene by its extension: .json (hemi's own), .obj (with its .mtl), .gltf and .glb, .vs3 (View3D),

@@ -150,21 +150,24 @@ struct HeatSchedule {
     /// Line l, column c at [l·columns + c]: temperatures, K; of groups with a heat flux that, W/m²; of groups
     /// with a power that, W.
     std::vector<double> values;
-    std::vector<std::string> labels; ///< of lines, for messages; none: they have their numbers only
+    std::vector<std::string> labels;   ///< of lines, for messages; none: they have their numbers only
+    std::vector<std::size_t> places{}; ///< of lines in their file, for messages; none: counted from 1
 };
 /// What a column of a schedule gives.
 enum class HeatQuantity { temperature, heat_flux, power };
-/// Looks through a schedule before any work is done with it.
+/// Looks through a schedule before any work is done with it. Warns of columns that look like °C.
 /// @param groups    names
 /// @param group_of  N, of every patch
 /// @param problem   of the same patches
 /// @param schedule  no values need be there yet
+/// @param observer  gets warnings
 /// @return what every column gives
 /// @throws InvalidArgument, InputError as solve_heat_series() for names and values
 [[nodiscard]] std::vector<HeatQuantity> check_heat_schedule(const std::vector<std::string>& groups,
                                                             std::span<const std::uint32_t> group_of,
                                                             const HeatProblem& problem,
-                                                            const HeatSchedule& schedule);
+                                                            const HeatSchedule& schedule,
+                                                            Observer& observer = no_observer());
 /// What comes of a schedule, line by line. Arrays of lines·groups hold group g of line l at [l·groups + g].
 struct HeatSeries {
     std::uint32_t groups = 0;              ///< their number

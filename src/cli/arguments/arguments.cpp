@@ -201,6 +201,7 @@ void add_solver(CLI::App& app, SolverSettings& solver) {
 void add_solve(CLI::App& app, SolveArguments& a) {
     a.rows.error_of = ErrorOf::vertices;
     add_scene(app, a.scene);
+    add_unit(app, a.scene);
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
     add_repair(app, a.rows.factors.repair);
@@ -348,6 +349,7 @@ void add_rows_of_heat(CLI::App& app, SceneOptions& scene, RowOptions& rows, Fact
 void add_heat(CLI::App& app, HeatArguments& a) {
     add_rows_of_heat(app, a.scene, a.rows, a.input);
     add_heat_options(app, a.heat, true);
+    add_unit(app, a.scene);
     add_heat_output(app, a);
     add_common(app, a.common);
     app.footer("Examples:\n"
@@ -358,10 +360,12 @@ void add_heat(CLI::App& app, HeatArguments& a) {
 void add_exchange(CLI::App& app, ExchangeArguments& a) {
     add_rows_of_heat(app, a.scene, a.rows, a.input);
     add_heat_options(app, a.heat, false);
+    add_unit(app, a.scene);
     add_exchange_output(app, a);
     add_common(app, a.common);
     app.footer("Examples:\n"
-               "  hemi exchange scenes/furnace-hot.json\n"
+               "  hemi exchange scenes/furnace.json\n"
+               "  hemi exchange scenes/furnace-hot.json --emissivity load=0.7\n"
                "  hemi exchange room.obj --emissivity walls=0.9 --min 1e-3 -o room.csv");
 }
 
@@ -381,6 +385,7 @@ void add_solved_scene(CLI::App& app, A& a) {
 void add_points(CLI::App& app, PointsArguments& a) {
     add_solved_scene(app, a);
     add_heat_options(app, a.heat, true);
+    add_unit(app, a.scene);
     add_point_options(app, a);
     add_common(app, a.common);
 }
@@ -419,6 +424,7 @@ void add_diff(CLI::App& app, DiffArguments& a) {
 #ifdef HEMI_WITH_VIEWER
 void add_view(CLI::App& app, ViewArguments& a) {
     add_scene(app, a.scene, "SCENE|RESULT", ".hres");
+    add_unit(app, a.scene);
     a.rows.error_of = ErrorOf::vertices;
     add_rows(app, a.rows);
     add_repair(app, a.rows.factors.repair);

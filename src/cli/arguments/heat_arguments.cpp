@@ -4,7 +4,6 @@
 #include "cli/arguments/options.hpp"
 #include "cli/arguments/picture_arguments.hpp"
 #include "hemi/core/black_body.hpp"
-#include "hemi/core/length_unit.hpp"
 
 namespace hemi::cli {
 
@@ -80,8 +79,6 @@ void add_heat_options(CLI::App& app, HeatOptions& heat, bool conditions) {
                  conditions
                      ? "the same from a table: columns group, emissivity, temperature, heat_flux, power"
                      : "the same from a table: columns group, emissivity");
-    options.choice<LengthUnit>("--unit", "UNIT", "unit of the scene's lengths: m, cm, mm, in or ft",
-                               [&heat](LengthUnit unit) { heat.unit = metres(unit); });
 }
 
 CLI::Option* add_factor_input(CLI::App& app, FactorInput& input) {
@@ -101,7 +98,7 @@ void add_heat_output(CLI::App& app, HeatArguments& a) {
     Options output(app, "Output");
     auto* file = output.path("-o,--output", "FILE", a.output,
                              "temperature, fluxes, irradiation and radiosity of every patch, for ParaView: "
-                             ".vtp; or a picture: .png");
+                             ".vtp; or a picture: .png; with --series what comes of its lines: .csv");
     output.path("--fluxes", "FILE.csv", a.fluxes, "the same as a table; - for stdout");
     output.path("--result", "FILE.hres", a.result,
                 "the whole solution, for info, render, diff, view and points");

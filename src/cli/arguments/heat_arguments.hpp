@@ -22,7 +22,6 @@ struct HeatOptions {
     std::vector<std::pair<std::string, double>> power;     ///< W
     std::optional<std::filesystem::path> table;            ///< .csv with the same by group
     std::optional<double> environment;                     ///< temperature, K
-    std::optional<double> unit;                            ///< metres in a scene unit
 };
 
 /// Rows from a file in place of computed ones.

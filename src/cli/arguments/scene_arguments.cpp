@@ -3,6 +3,7 @@
 #include "cli/arguments/arguments.hpp"
 #include "cli/arguments/options.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/length_unit.hpp"
 #include "hemi/io/scene_reader.hpp"
 
 #include <fmt/format.h>
@@ -129,6 +130,12 @@ void add_scene_options(CLI::App& app, SceneOptions& scene) {
 
 void add_up(CLI::App& app, SceneOptions& scene, const std::string& help) {
     Options(app, "Scene").choice<UpAxis>("--up", "y|z", help, [&scene](UpAxis up) { scene.reader.up = up; });
+}
+
+void add_unit(CLI::App& app, SceneOptions& scene) {
+    Options(app, "Scene")
+        .choice<LengthUnit>("--unit", "UNIT", "unit of the scene's lengths: m, cm, mm, in or ft",
+                            [&scene](LengthUnit unit) { scene.reader.unit = metres(unit); });
 }
 
 void check_files(const SceneOptions& scene) {

@@ -15,6 +15,9 @@ void add_scene_options(CLI::App& app, SceneOptions& scene);
 /// `--up`, of scenes without a picture.
 void add_up(CLI::App& app, SceneOptions& scene, const std::string& help);
 
+/// `--unit`
+void add_unit(CLI::App& app, SceneOptions& scene);
+
 /// Several files make up one scene, of meshes alone.
 /// @throws InvalidArgument for others among them
 void check_files(const SceneOptions& scene);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace hemi::cli {
 
@@ -126,11 +127,34 @@ Report heat_report(const FormFactors& factors, const HeatProblem& problem, const
     return report;
 }
 
-Report heat_balance_report(const HeatSolution& solution) {
+Report heat_balance_report(const FormFactors& factors, const HeatProblem& problem,
+                           const HeatSolution& solution) {
     Report report;
-    report.add("balance",
-               fmt::format("{:.3g} W, {:.2g} of all net powers", solution.balance, solution.relative_balance),
-               {{"balance", {{"residual", solution.balance}, {"relative", solution.relative_balance}}}});
+    double emitted = 0.0;
+    double absorbed = 0.0;
+    for (std::size_t i = 0; i < solution.buried.size(); ++i) {
+        const double area = solution.buried[i] != 0 ? 0.0 : factors.areas[i] * problem.unit * problem.unit;
+        emitted += area > 0.0 ? area * solution.emitted[i] : 0.0;
+        absorbed += area > 0.0 ? area * solution.absorbed[i] : 0.0;
+    }
+    const std::vector<double> backs = power_to_backs(factors, solution);
+    const double met = std::accumulate(backs.begin(), backs.end(), 0.0);
+    report.add(
+        "balance",
+        fmt::format("emitted {} W, absorbed {} W, from the environment {} W; {:.3g} W left over, {:.2g} "
+                    "of all net powers{}",
+                    number_text(emitted), number_text(absorbed), number_text(solution.environment_power),
+                    solution.balance, solution.relative_balance,
+                    met > 0.0
+                        ? fmt::format("; {:.2g} % of what leaves meets backs and comes back", 100.0 * met)
+                        : std::string()),
+        {{"balance",
+          {{"residual", solution.balance},
+           {"relative", solution.relative_balance},
+           {"emitted", emitted},
+           {"absorbed", absorbed},
+           {"environment", solution.environment_power},
+           {"backs", met}}}});
     report.add("solver",
                fmt::format("conjugate gradients, {}, residual {:.3g}",
                            plural(solution.iterations, "iteration", "iterations"), solution.residual),
@@ -152,6 +176,42 @@ Report heat_balance_report(const HeatSolution& solution) {
     }
     report.json["buried"] = buried;
     return report;
+}
+
+std::vector<double> power_to_backs(const FormFactors& factors, const HeatSolution& solution) {
+    std::vector<double> shares(factors.groups.size(), 0.0);
+    double all = 0.0;
+    for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
+        if (solution.buried[i] != 0) {
+            continue;
+        }
+        double leaving = 0.0;
+        for (std::size_t k = 0; k < solution.bands; ++k) {
+            leaving += factors.areas[i] * solution.radiosity[std::size_t{i} * solution.bands + k];
+        }
+        all += leaving;
+        shares[factors.group_of[i]] += leaving * factors.matrix.row(i).blocked;
+    }
+    for (double& share : shares) {
+        share = all > 0.0 ? share / all : 0.0;
+    }
+    return shares;
+}
+
+void report_met_backs(const std::vector<double>& shares, const std::vector<std::string>& groups,
+                      const Terminal& terminal) {
+    constexpr double worth_telling = 1e-3;
+    const double met = std::accumulate(shares.begin(), shares.end(), 0.0);
+    if (met <= worth_telling) {
+        return;
+    }
+    const auto worst =
+        static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin());
+    terminal.warn(
+        fmt::format("{:.2g} % of the radiation meets backs of one-sided surfaces, most of it from {}, "
+                    "and counts as coming back; \"two_sided\", or --two-sided GROUP, gives them a "
+                    "radiation of their own",
+                    100.0 * met, groups[worst]));
 }
 
 Report series_report(std::span<const std::string> names, std::span<const std::string> labels,

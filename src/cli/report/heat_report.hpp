@@ -20,7 +20,24 @@ namespace hemi::cli {
                                  const HeatSolution& solution, std::span<const double> patch_size_errors);
 
 /// Lines and keys on the balance, the solver and buried patches.
-[[nodiscard]] Report heat_balance_report(const HeatSolution& solution);
+/// @param factors   rows of the patches
+/// @param problem   what was solved
+/// @param solution  of it
+[[nodiscard]] Report heat_balance_report(const FormFactors& factors, const HeatProblem& problem,
+                                         const HeatSolution& solution);
+
+/// Share of what leaves every group that meets backs of one-sided surfaces, of all that leaves; heat counts
+/// it as coming back. One value a group.
+/// @param factors   rows of the patches
+/// @param solution  of their heat
+[[nodiscard]] std::vector<double> power_to_backs(const FormFactors& factors, const HeatSolution& solution);
+
+/// Warns where more than 0.1 % of the radiation meets backs.
+/// @param shares    see power_to_backs()
+/// @param groups    their names
+/// @param terminal  gets the warning
+void report_met_backs(const std::vector<double>& shares, const std::vector<std::string>& groups,
+                      const Terminal& terminal);
 
 /// Table of the lines of the schedule; key "series".
 /// @param names   of the groups

@@ -41,13 +41,14 @@ public:
         return true;
     }
 
-    bool parse_error(std::size_t position, const std::string&, const Json::exception& error) override {
+    bool parse_error(std::size_t position, const std::string& token, const Json::exception& error) override {
         const std::string_view before =
             text_.substr(0, std::min(position > 0 ? position - 1 : 0, text_.size()));
         const auto line = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1;
         const std::size_t line_start =
             before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-        throw ParseError(file_, line, before.size() - line_start + 1, reason(error.what()));
+        throw ParseError(file_, line, before.size() - line_start + 1,
+                         reason(token, error, position > text_.size()));
     }
 
 private:
@@ -98,14 +99,14 @@ private:
     static std::string last_key(const Json& object) { return std::prev(object.end()).key(); }
 
     /// The library's message without its own error number and position.
-    static std::string reason(std::string message) {
-        const std::size_t number = message.find("] ");
-        message.erase(0, number == std::string::npos ? 0 : number + 2);
-        if (message.starts_with("parse error")) {
-            const std::size_t position = message.find(": ");
-            message.erase(0, position == std::string::npos ? 0 : position + 2);
+    static std::string reason(const std::string& token, const Json::exception& error, bool at_end) {
+        constexpr int number_overflow = 406;
+        if (error.id == number_overflow) {
+            return fmt::format("{}; no number can be as large", token);
         }
-        return to_utf8(message);
+        return at_end || token.empty()
+                   ? "the text ends here; no sound JSON does"
+                   : fmt::format("unexpected {}; this is no sound JSON", in_quotes(to_utf8(token)));
     }
 
     std::string_view text_;

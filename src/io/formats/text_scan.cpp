@@ -49,11 +49,17 @@ bool is_utf8(std::string_view text) {
 
 } // namespace
 
-std::string read_text(const std::filesystem::path& path) {
+std::string read_unmarked(const std::filesystem::path& path) {
     std::string text = read_file(path);
     if (text.starts_with("\xEF\xBB\xBF")) {
         text.erase(0, 3);
-    } else if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    }
+    return text;
+}
+
+std::string read_text(const std::filesystem::path& path) {
+    std::string text = read_unmarked(path);
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
         throw InputError(fmt::format("{}: text in UTF-16; save it as UTF-8", path.string()));
     }
     return text;

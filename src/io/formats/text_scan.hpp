@@ -15,6 +15,10 @@ namespace hemi::io {
 /// @throws InputError as read_file(), and for text in UTF-16
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
+/// A file of text and, maybe, raw numbers, without the byte order mark that UTF-8 may begin with.
+/// @throws InputError as read_file()
+[[nodiscard]] std::string read_unmarked(const std::filesystem::path& path);
+
 /// The lines of a text, ended by LF, CRLF or CR; the last one may lack its end.
 class Lines {
 public:

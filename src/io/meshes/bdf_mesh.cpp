@@ -277,9 +277,10 @@ private:
 
     /// A number as Fortran writes it, also without the E of its exponent.
     [[nodiscard]] static std::optional<double> parse_real(std::string_view word) {
-        std::array<char, 40> text{};
+        constexpr std::size_t longest = 40;
+        std::array<char, 2 * longest> text{}; // every sign may get an e before it
         std::size_t size = 0;
-        if (word.size() + 1 > text.size()) {
+        if (word.size() > longest) {
             return std::nullopt;
         }
         for (std::size_t k = 0; k < word.size(); ++k) {

@@ -207,7 +207,7 @@ private:
 class PlyReader {
 public:
     PlyReader(const std::filesystem::path& path, const SceneReaderOptions& options, Diagnostics& diagnostics)
-        : file_(path.string()), bytes_(read_file(path)), header_(read_ply_header(bytes_, file_)),
+        : file_(path.string()), bytes_(read_unmarked(path)), header_(read_ply_header(bytes_, file_)),
           diagnostics_(diagnostics), faces_(path, options) {}
 
     FaceMesh read() {

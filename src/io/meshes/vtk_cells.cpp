@@ -134,7 +134,7 @@ FaceMesh VtkFaces::finish(Diagnostics& diagnostics) {
 
 FaceMesh read_vtk_mesh(const std::filesystem::path& path, const SceneReaderOptions& options,
                        Diagnostics& diagnostics) {
-    const std::string bytes = read_file(path);
+    const std::string bytes = read_unmarked(path);
     return bytes.starts_with("# vtk") ? read_vtk_legacy(path, bytes, options, diagnostics)
                                       : read_vtk_xml(path, bytes, options, diagnostics);
 }

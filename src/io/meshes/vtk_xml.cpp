@@ -69,7 +69,7 @@ private:
                 bytes_.substr(0, static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0)));
             throw ParseError(file_,
                              static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1, 0,
-                             fmt::format("no sound XML: {}", parsed.description()));
+                             "no sound XML: it is broken off or damaged here");
         }
     }
 

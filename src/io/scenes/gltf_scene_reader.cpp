@@ -401,6 +401,10 @@ private:
                 material.reflectance = colours(colour, 4, 1.0);
                 transparent_ = transparent_ || colour.element(3).number() < 1.0;
             }
+            constexpr double half = 0.5;
+            if (pbr.has("metallicFactor") && pbr.member("metallicFactor").number() > half) {
+                metals_.insert(material.name);
+            }
         }
         for (double& value : material.reflectance) {
             if (value > most_reflectance) {
@@ -498,6 +502,10 @@ private:
         if (transparent_) {
             warn("transparency is not used; every surface is opaque");
         }
+        if (!metals_.empty()) {
+            warn(fmt::format("metals mirror light, and are taken as diffuse in their base colours: {}",
+                             fmt::join(metals_, ", ")));
+        }
         if (!limited_.empty()) {
             warn(
                 fmt::format("reflectance {} instead of the base colour's 1 in {} (no surface reflects all it "
@@ -520,6 +528,7 @@ private:
     std::unordered_map<std::string, std::uint32_t> groups_;
     std::vector<std::uint32_t> indices_; // kept between primitives for their memory
     std::set<std::string> limited_;
+    std::set<std::string> metals_;
     std::size_t counted_ = 0; ///< primitives and triangles, as often as nodes place them
     std::size_t without_faces_ = 0;
     bool quantized_; ///< positions may be integers

@@ -114,6 +114,7 @@ Scene read_scenes(std::span<const std::filesystem::path> paths, const SceneReade
         joined.add(path, read_scene(path, as_read, diagnostics));
     }
     Scene scene = joined.finish();
+    scene.unit = options.unit;
     set_sides(scene, options, scene.name, diagnostics, joined.exported());
     set_symmetry(scene, options.symmetry);
     validate(scene);

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 
 namespace hemi::io {
@@ -135,6 +136,16 @@ void read_sun(const JsonNode& node, Scene& scene, Diagnostics& diagnostics) {
             return;
         }
         sun.direction = sky_direction(position.azimuth, position.elevation, north, scene.up);
+    }
+    const double height = glm::dot(sun.direction, upwards(scene.up));
+    if (way == "azimuth" && !(height > 0.0)) {
+        diagnostics.warn(fmt::format("{}: the sun is {} degrees below the horizon and gives no light",
+                                     node.path(),
+                                     number_text(-std::asin(height) * 180.0 / std::numbers::pi)));
+        return;
+    }
+    if (height < 0.0) {
+        diagnostics.warn(fmt::format("{}: the sun shines from below the horizon", node.path()));
     }
     scene.sun = std::move(sun);
 }

@@ -263,8 +263,9 @@ private:
     }
 
     void read_surface(const JsonNode& node, std::size_t index, JsonMaterials& materials) {
-        node.check_keys({"name", "material", "polygon", "holes", "mesh", "transform", "patches", "two_sided",
-                         "flip", "temperature", "heat_flux", "power", "isothermal", "luminous_flux"});
+        node.check_keys({"name", "group", "material", "polygon", "holes", "mesh", "transform", "patches",
+                         "two_sided", "flip", "temperature", "heat_flux", "power", "isothermal",
+                         "luminous_flux"});
         if (node.has("polygon") == node.has("mesh")) {
             node.fail(node.has("mesh") ? "both \"polygon\" and \"mesh\"; must have one of them"
                                        : "neither \"polygon\" nor \"mesh\"; must have one of them");
@@ -323,7 +324,7 @@ private:
         }
         surface.vertex_count = outline.size() == 3 ? 3 : 4;
         check_grid(node, surface);
-        surface.group = group(name);
+        surface.group = group(node.has("group") ? node.member("group").text() : name);
         for (const PolygonPiece& piece : mender_.pieces()) {
             Surface part = surface;
             part.vertices = piece.points;
@@ -379,8 +380,9 @@ private:
     }
 
     std::vector<std::uint32_t> mesh_groups(const JsonNode& node, const FaceMesh& mesh) {
-        if (node.has("name")) {
-            return std::vector<std::uint32_t>(mesh.groups.size(), group(node.member("name").text()));
+        if (node.has("group") || node.has("name")) {
+            const std::string name = node.member(node.has("group") ? "group" : "name").text();
+            return std::vector<std::uint32_t>(mesh.groups.size(), group(name));
         }
         std::vector<std::uint32_t> indices;
         for (const std::string& name : mesh.groups) {
@@ -452,6 +454,7 @@ private:
         if (root_.has("unit")) {
             scene_.unit = read_unit(root_.member("unit"));
         }
+        scene_.unit = options_.unit ? options_.unit : scene_.unit; // lumens go by it
         if (root_.has("symmetry")) {
             scene_.symmetry = read_symmetry(root_.member("symmetry"));
         }

@@ -68,6 +68,7 @@ Scene read_scene(const std::filesystem::path& path, const SceneReaderOptions& op
     }
     Scene scene = reader->read(path, options, diagnostics);
     scene.up = options.up.value_or(scene.up);
+    scene.unit = options.unit ? options.unit : scene.unit;
     set_symmetry(scene, options.symmetry);
     try {
         validate(scene);
