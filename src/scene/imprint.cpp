@@ -4,7 +4,9 @@
 #include "core/parallel_for.hpp"
 #include "core/splitmix.hpp"
 #include "hemi/core/error.hpp"
+#include "scene/cavities.hpp"
 #include "scene/convex_polygon.hpp"
+#include "scene/cut_face.hpp"
 #include "scene/joined_faces.hpp"
 #include "scene/rectangles.hpp"
 #include "scene/surroundings.hpp"
@@ -22,38 +24,8 @@ namespace hemi {
 
 namespace {
 
-constexpr std::uint32_t no_face = 0xFFFFFFFFu;
 /// What is buried is found from the outside inwards; nothing that people build is deeper.
 constexpr int max_rounds = 8;
-
-/// What a face touches.
-struct Contacts {
-    std::vector<Segment> cuts;           ///< within the face
-    std::vector<std::uint32_t> coplanar; ///< faces that lie over it in its plane
-    std::uint32_t other = no_face;       ///< one of those that cut it
-};
-
-/// A piece of a face, and the sides of it that are not covered.
-struct Piece {
-    Polygon corners;
-    std::uint32_t cell = 0; ///< of the face's grid
-    bool whole = true;      ///< all of that cell
-    bool front = true;
-    bool back = true;
-    /// A one-sided face lies over it in its plane that looks the other way, and its own face is one-sided.
-    bool faced = false;
-
-    [[nodiscard]] bool is_left() const { return front || back; }
-};
-
-/// A face that is cut, or looked at for what is covered of it.
-struct CutFace {
-    Contacts contacts;
-    std::vector<Piece> pieces;
-    std::uint32_t covered_by = no_face; ///< a face in its plane
-    bool split = false;                 ///< into more than its cells
-    bool buried = false;                ///< parts of it see backs alone
-};
 
 class Imprinter {
 public:
@@ -255,6 +227,7 @@ private:
                     cut_[f].covered_by = before && !piece.is_left() ? other : cut_[f].covered_by;
                 }
             }
+            piece.covered = !piece.is_left();
         }
     }
 
@@ -287,41 +260,60 @@ private:
     [[nodiscard]] Surroundings surroundings() const {
         std::vector<Occluder> occluders;
         for (std::uint32_t f = 0; f < cut_.size(); ++f) {
+            const bool sheet = scene_.surfaces[f].two_sided;
             if (cut_[f].pieces.empty()) {
-                occluders.push_back(
-                    {face(f), normal(f), f, Occluder::whole, true, scene_.surfaces[f].two_sided});
+                occluders.push_back({face(f), normal(f), f, Occluder::whole, true, sheet, sheet});
             }
             for (std::uint32_t k = 0; k < cut_[f].pieces.size(); ++k) {
                 const Piece& piece = cut_[f].pieces[k];
-                if (piece.is_left()) {
-                    occluders.push_back({piece.corners, normal(f), f, k, piece.front, piece.back});
+                if (!piece.covered) { // what is buried hides the rest as before
+                    occluders.push_back({piece.corners, normal(f), f, k, piece.front, piece.back, sheet});
                 }
             }
         }
         return {std::move(occluders), tolerance_, scene_.symmetry};
     }
 
-    /// A side that sees backs in at least half of all directions, and in the others pieces alone.
-    struct Enclosed {
-        PieceSide side;
-        std::vector<PieceSide> sees;
+    /// What is found of a face by looking.
+    struct Found {
+        bool buried = false;                ///< sides that see backs alone
+        std::vector<EnclosedSide> enclosed; ///< sides
+        std::vector<std::uint32_t> wholes;  ///< faces that stand in bodies, with sides of this one
     };
 
-    /// Takes away sides that see backs alone, or backs and such sides.
+    /// Takes away sides that see backs alone, or in a cavity of a body backs and such sides.
     /// @return whether there were any
     bool bury() {
         const Surroundings around = surroundings();
-        std::vector<std::uint8_t> changed(cut_.size(), 0);
-        std::vector<std::vector<Enclosed>> enclosed(cut_.size());
-        for_each_face([&](std::uint32_t f) { changed[f] = bury(f, around, enclosed[f]) ? 1 : 0; });
-        const bool cavities = bury_cavities(enclosed);
-        return cavities || std::find(changed.begin(), changed.end(), 1) != changed.end();
+        std::vector<Found> found(cut_.size());
+        for_each_face([&](std::uint32_t f) { found[f] = bury(f, around); });
+        std::vector<EnclosedSide> enclosed;
+        bool changed = false;
+        for (Found& of_face : found) {
+            changed = changed || of_face.buried;
+            std::move(of_face.enclosed.begin(), of_face.enclosed.end(), std::back_inserter(enclosed));
+        }
+        for (const PieceSide& side : sides_in_bodies(enclosed, cut_)) {
+            Piece& piece = cut_[side.face].pieces[side.piece];
+            (side.back ? piece.back : piece.front) = false;
+            cut_[side.face].buried = changed = true;
+        }
+        for (const Found& of_face : found) {
+            for (const std::uint32_t whole : of_face.wholes) {
+                if (cut_[whole].pieces.empty()) {
+                    cut_[whole] = in_cells(whole);
+                    changed = true;
+                }
+            }
+        }
+        return changed;
     }
 
-    bool bury(std::uint32_t f, const Surroundings& around, std::vector<Enclosed>& enclosed) {
+    Found bury(std::uint32_t f, const Surroundings& around) {
         CutFace& face = cut_[f];
+        Found found;
         if (face.pieces.empty()) {
-            return false;
+            return found;
         }
         const std::vector<Vec3> before = hemisphere(normal(f));
         const std::vector<Vec3> behind = hemisphere(-normal(f));
@@ -334,12 +326,14 @@ private:
             if (sight.only_backs()) {
                 return false;
             }
-            if (!sight.open && sight.backs >= static_cast<int>(sight.sides.size())) {
-                enclosed.push_back({{f, k, back}, std::move(sight.sides)});
+            if (!sight.open && sight.wholes.empty()) {
+                found.enclosed.push_back(
+                    {{f, k, back}, glm::length(area_vector(face.pieces[k].corners)), std::move(sight)});
+            } else if (!sight.open && 2 * sight.inside >= sight.directions()) {
+                found.wholes.insert(found.wholes.end(), sight.wholes.begin(), sight.wholes.end());
             }
             return true;
         };
-        bool any_changed = false;
         for (std::uint32_t k = 0; k < face.pieces.size(); ++k) {
             Piece& piece = face.pieces[k];
             bool front = piece.front && stays(k, false);
@@ -347,38 +341,12 @@ private:
             if (front && piece.faced && look(k, true).only_backs()) {
                 front = false; // face to face with the body behind
             }
-            any_changed = any_changed || front != piece.front || back != piece.back;
+            found.buried = found.buried || front != piece.front || back != piece.back;
             piece.front = front;
             piece.back = back;
         }
-        face.buried = face.buried || any_changed;
-        return any_changed;
-    }
-
-    /// Takes away sides in cavities: those that see, besides backs, only one another. The inside of a post
-    /// has the backs of its faces around, and above and below what it stands between.
-    bool bury_cavities(const std::vector<std::vector<Enclosed>>& enclosed) {
-        std::map<PieceSide, std::span<const PieceSide>> left;
-        for (const auto& sides : enclosed) {
-            for (const Enclosed& one : sides) {
-                left.emplace(one.side, one.sees);
-            }
-        }
-        const auto side_of = [this](const PieceSide& side) -> bool& {
-            Piece& piece = cut_[side.face].pieces[side.piece];
-            return side.back ? piece.back : piece.front;
-        };
-        const auto sees_others = [&](const auto& one) {
-            return std::any_of(one.second.begin(), one.second.end(),
-                               [&](const PieceSide& seen) { return side_of(seen) && !left.contains(seen); });
-        };
-        while (std::erase_if(left, sees_others) > 0) {
-        }
-        for (const auto& [side, sees] : left) {
-            side_of(side) = false;
-            cut_[side.face].buried = true;
-        }
-        return !left.empty();
+        face.buried = face.buried || found.buried;
+        return found;
     }
 
     /// Faces that share a corner with one that is buried in part may be buried whole.

@@ -13,12 +13,31 @@ namespace hemi {
 namespace {
 
 constexpr int directions = 64;
+/// After so many that are not inside of bodies, what sees whole faces is taken to be outside.
+constexpr int few = 4;
 
-std::vector<Bounds> boxes(std::span<const Occluder> occluders) {
+/// Where a ray passes through the surface of a body.
+struct Crossing {
+    double distance;
+    bool leaves;
+};
+
+/// Whether the ray leaves more bodies somewhere than it has entered up to there: then it begins in one.
+bool is_inside(std::vector<Crossing>& crossings) {
+    std::sort(crossings.begin(), crossings.end(),
+              [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
+    int bodies = 0;
+    return std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
+        bodies += crossing.leaves ? -1 : 1;
+        return bodies < 0;
+    });
+}
+
+std::vector<Bounds> boxes(std::span<const Occluder> occluders, double slack) {
     std::vector<Bounds> result;
     result.reserve(occluders.size());
     for (const Occluder& occluder : occluders) {
-        result.push_back(bounds_of(occluder.corners));
+        result.push_back(bounds_of(occluder.corners, slack));
     }
     return result;
 }
@@ -69,32 +88,50 @@ std::vector<Vec3> hemisphere(const Vec3& normal) {
 
 Surroundings::Surroundings(std::vector<Occluder> occluders, double slack,
                            const std::optional<Symmetry>& symmetry)
-    : occluders_(with_images(std::move(occluders), symmetry, image_corners_)), tree_(boxes(occluders_)),
+    : occluders_(with_images(std::move(occluders), symmetry, image_corners_)), tree_(boxes(occluders_, slack)),
       slack_(slack) {}
 
 Sight Surroundings::look(std::uint32_t face, const Vec3& eye, std::span<const Vec3> rays) const {
     Sight sight;
+    std::vector<Crossing> bodies;
     for (const Vec3& ray : rays) {
         double nearest = std::numeric_limits<double>::infinity();
         const Occluder* seen = nullptr;
+        bodies.clear();
         tree_.along(eye, ray, [&](std::uint32_t index) {
             const Occluder& other = occluders_[index];
-            const double distance =
-                glm::dot(other.corners[0] - eye, other.normal) / glm::dot(other.normal, ray);
-            if ((other.face != face || other.image) && distance > 0.0 && distance < nearest &&
-                contains(other.corners, other.normal, eye + distance * ray, slack_)) {
+            const double along = glm::dot(other.normal, ray);
+            const double distance = glm::dot(other.corners[0] - eye, other.normal) / along;
+            if ((other.face == face && !other.image) || !(distance > 0.0) ||
+                !contains(other.corners, other.normal, eye + distance * ray, slack_)) {
+                return;
+            }
+            if (distance < nearest) {
                 nearest = distance;
                 seen = &other;
             }
+            if (!other.sheet) {
+                // Of faces in one plane a body is entered first: what stands there is not left by the other.
+                bodies.push_back({along > 0.0 ? distance : distance + 2.0 * slack_ / along, along > 0.0});
+            }
         });
-        const bool from_behind = seen != nullptr && glm::dot(seen->normal, ray) > 0.0;
-        if (seen != nullptr && !(from_behind ? seen->back : seen->front)) {
-            ++sight.backs;
-        } else if (seen == nullptr || seen->piece == Occluder::whole) {
+        if (seen == nullptr) {
             sight.open = true;
             break;
-        } else {
+        }
+        sight.inside += is_inside(bodies) ? 1 : 0;
+        const bool from_behind = glm::dot(seen->normal, ray) > 0.0;
+        if (!(from_behind ? seen->back : seen->front)) {
+            ++sight.backs;
+        } else if (seen->piece != Occluder::whole) {
             sight.sides.push_back({seen->face, seen->piece, from_behind});
+        } else {
+            sight.wholes.push_back(seen->face);
+            const int outside = sight.directions() - sight.inside;
+            if (outside > few && outside > 3 * sight.inside) {
+                sight.open = true;
+                break;
+            }
         }
     }
     return sight;

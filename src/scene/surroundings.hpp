@@ -31,16 +31,25 @@ struct Occluder {
     std::uint32_t piece; ///< or `whole`
     bool front;          ///< radiates from its front
     bool back;
+    bool sheet;         ///< its face is two-sided: it bounds no body
     bool image = false; ///< in an image of the scene: hides what the face itself sees, too
 };
 
 /// What a point beside a face sees.
 struct Sight {
-    bool open = false;            ///< nothing in some direction, or a whole face: no more was looked at
-    int backs = 0;                ///< in so many directions it sees what does not radiate
-    std::vector<PieceSide> sides; ///< in the others sides of pieces, which do: one for every direction
+    /// Nothing in some direction, or whole faces that bodies do not hide: no more was looked at.
+    bool open = false;
+    int backs = 0;                     ///< in so many directions it sees what does not radiate
+    std::vector<PieceSide> sides;      ///< in others sides of pieces, which do: one for every direction
+    std::vector<std::uint32_t> wholes; ///< in the others whole faces, which do
+    /// In so many directions a body is left that was not entered before: what looks is inside that body.
+    /// Sheets are looked through.
+    int inside = 0;
 
-    [[nodiscard]] bool only_backs() const { return !open && sides.empty(); }
+    [[nodiscard]] bool only_backs() const { return !open && sides.empty() && wholes.empty(); }
+    [[nodiscard]] int directions() const {
+        return backs + static_cast<int>(sides.size()) + static_cast<int>(wholes.size());
+    }
 };
 
 /// Directions over a hemisphere about `normal`, evenly spread: 64.
