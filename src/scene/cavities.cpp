@@ -92,7 +92,7 @@ private:
     std::vector<std::vector<std::uint32_t>> beside_;
 };
 
-/// Faces with sides in closed cavities, and with pieces that have none there.
+/// Faces with sides that may be in closed cavities, and with pieces that have none there.
 std::set<std::uint32_t> reaching_out(std::span<const EnclosedSide> sides, std::span<const CutFace> faces,
                                      const Sights& sights) {
     std::set<std::uint32_t> result;
@@ -104,8 +104,7 @@ std::set<std::uint32_t> reaching_out(std::span<const EnclosedSide> sides, std::s
         }
         for (std::uint32_t k = 0; k < faces[face].pieces.size(); ++k) {
             const Piece& piece = faces[face].pieces[k];
-            if (piece.front && piece.back && !sights.is_closed({face, k, false}) &&
-                !sights.is_closed({face, k, true})) {
+            if (piece.is_left() && !sights.is_closed({face, k, false}) && !sights.is_closed({face, k, true})) {
                 result.insert(face);
                 break;
             }
@@ -118,7 +117,7 @@ std::set<std::uint32_t> reaching_out(std::span<const EnclosedSide> sides, std::s
 
 std::vector<PieceSide> sides_in_bodies(std::span<const EnclosedSide> sides, std::span<const CutFace> faces) {
     const Sights sights(sides, faces);
-    const std::set<std::uint32_t> sheets = reaching_out(sides, faces, sights);
+    const std::set<std::uint32_t> outside = reaching_out(sides, faces, sights);
     std::vector<PieceSide> result;
     for (const std::vector<std::uint32_t>& cavity : sights.cavities()) {
         double all = 0.0;
@@ -128,7 +127,7 @@ std::vector<PieceSide> sides_in_bodies(std::span<const EnclosedSide> sides, std:
         for (const std::uint32_t k : cavity) {
             const EnclosedSide& one = sides[k];
             const auto count = std::count_if(one.sight.sides.begin(), one.sight.sides.end(),
-                                             [&](const PieceSide& seen) { return !sheets.contains(seen.face); });
+                                             [&](const PieceSide& seen) { return !outside.contains(seen.face); });
             all += one.area * one.sight.directions();
             inside += one.area * one.sight.inside;
             backs += one.area * one.sight.backs;

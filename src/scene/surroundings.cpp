@@ -119,6 +119,9 @@ Sight Surroundings::look(std::uint32_t face, const Vec3& eye, std::span<const Ve
             sight.open = true;
             break;
         }
+        if (!contains(seen->corners, seen->normal, eye + nearest * ray, -slack_)) {
+            continue; // at its border, where it may be behind what it touches
+        }
         sight.inside += is_inside(bodies) ? 1 : 0;
         const bool from_behind = glm::dot(seen->normal, ray) > 0.0;
         if (!(from_behind ? seen->back : seen->front)) {

@@ -35,7 +35,7 @@ struct Occluder {
     bool image = false; ///< in an image of the scene: hides what the face itself sees, too
 };
 
-/// What a point beside a face sees.
+/// What a point beside a face sees, but for directions in which it sees borders.
 struct Sight {
     /// Nothing in some direction, or whole faces that bodies do not hide: no more was looked at.
     bool open = false;
@@ -46,7 +46,7 @@ struct Sight {
     /// Sheets are looked through.
     int inside = 0;
 
-    [[nodiscard]] bool only_backs() const { return !open && sides.empty() && wholes.empty(); }
+    [[nodiscard]] bool only_backs() const { return !open && backs > 0 && backs == directions(); }
     [[nodiscard]] int directions() const {
         return backs + static_cast<int>(sides.size()) + static_cast<int>(wholes.size());
     }
