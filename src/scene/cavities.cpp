@@ -104,7 +104,8 @@ std::set<std::uint32_t> reaching_out(std::span<const EnclosedSide> sides, std::s
         }
         for (std::uint32_t k = 0; k < faces[face].pieces.size(); ++k) {
             const Piece& piece = faces[face].pieces[k];
-            if (piece.is_left() && !sights.is_closed({face, k, false}) && !sights.is_closed({face, k, true})) {
+            if (piece.is_left() && !sights.is_closed({face, k, false}) &&
+                !sights.is_closed({face, k, true})) {
                 result.insert(face);
                 break;
             }
@@ -123,17 +124,19 @@ std::vector<PieceSide> sides_in_bodies(std::span<const EnclosedSide> sides, std:
         double all = 0.0;
         double inside = 0.0;
         double backs = 0.0;
-        double fronts = 0.0;
+        double passing = 0.0;
         for (const std::uint32_t k : cavity) {
             const EnclosedSide& one = sides[k];
-            const auto count = std::count_if(one.sight.sides.begin(), one.sight.sides.end(),
-                                             [&](const PieceSide& seen) { return !outside.contains(seen.face); });
+            const auto count =
+                std::count_if(one.sight.sides.begin(), one.sight.sides.end(),
+                              [&](const PieceSide& seen) { return outside.contains(seen.face); });
             all += one.area * one.sight.directions();
             inside += one.area * one.sight.inside;
             backs += one.area * one.sight.backs;
-            fronts += one.area * static_cast<double>(count);
+            passing += one.area * static_cast<double>(count);
         }
-        if (inside >= 0.4 * all && backs >= 0.125 * (backs + fronts)) {
+        const bool lets_light_go = backs >= 0.125 * (all - passing) || backs + passing >= 0.5 * all;
+        if (inside >= 0.4 * all && lets_light_go) {
             for (const std::uint32_t k : cavity) {
                 result.push_back(sides[k].side);
             }

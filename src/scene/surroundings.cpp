@@ -88,8 +88,8 @@ std::vector<Vec3> hemisphere(const Vec3& normal) {
 
 Surroundings::Surroundings(std::vector<Occluder> occluders, double slack,
                            const std::optional<Symmetry>& symmetry)
-    : occluders_(with_images(std::move(occluders), symmetry, image_corners_)), tree_(boxes(occluders_, slack)),
-      slack_(slack) {}
+    : occluders_(with_images(std::move(occluders), symmetry, image_corners_)),
+      tree_(boxes(occluders_, slack)), slack_(slack) {}
 
 Sight Surroundings::look(std::uint32_t face, const Vec3& eye, std::span<const Vec3> rays) const {
     Sight sight;
