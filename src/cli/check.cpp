@@ -58,7 +58,8 @@ ExitStatus run(const CheckArguments& arguments, const Terminal& terminal) {
     const double limit = arguments.rows.max_row_error;
     const Diagnosis diagnosis = diagnose(factors, loaded ? &loaded->mesh : nullptr, limit);
     if (arguments.common.json || !terminal.quiet()) {
-        const Report mended = loaded ? imprint_report(*loaded) : Report{"", {{"imprint", nullptr}}};
+        const Report mended =
+            loaded ? imprint_report(*loaded, terminal.verbose()) : Report{"", {{"imprint", nullptr}}};
         show(diagnosis_report(diagnosis, factors, names, limit, repair_seconds, mended),
              arguments.common.json);
     }

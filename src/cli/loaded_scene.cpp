@@ -87,6 +87,30 @@ void warn_of_overlaps(const Imprint& cut, const Scene& as_read, const Terminal& 
          "faces are cut, where others lie on them in their planes");
 }
 
+/// Where patches are those of the user, who is told one value of each. Patches of a size can be made smaller.
+void warn_of_divided_patches(const Imprint& cut, const Scene& as_read, const Subdivision& subdivision,
+                             const Terminal& terminal) {
+    std::size_t count = 0;
+    const Imprint::Divided* first = nullptr;
+    for (const Imprint::Divided& divided : cut.divided) {
+        const bool by_size = subdivision.patch_size || (as_read.patch_size && !subdivision.patches_per_face &&
+                                                        !as_read.surfaces[divided.face].patches);
+        if (!by_size) {
+            first = count++ == 0 ? &divided : first;
+        }
+    }
+    if (first == nullptr) {
+        return;
+    }
+    const std::vector<std::uint32_t> numbers = face_numbers(as_read.surfaces);
+    const auto group = [&](std::uint32_t face) { return as_read.groups[as_read.surfaces[face].group]; };
+    terminal.warn(fmt::format("{} on both sides of a sheet, and what is told of each is a mean over both: "
+                              "patch {} of {} by face {} of {}{}; "
+                              "patches that end at the sheet tell the sides apart",
+                              plural(count, "patch lies", "patches lie"), first->patch, group(first->face),
+                              numbers[first->sheet], group(first->sheet), count > 1 ? ", ..." : ""));
+}
+
 void warn_of_turned_faces(const Scene& scene, const Terminal& terminal) {
     const std::vector<std::uint32_t> turned = turned_against_others(scene);
     if (!turned.empty()) {
@@ -171,6 +195,7 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
     std::optional<SceneAsRead> as_read;
     if (auto cut = imprint(scene, subdivision, options.imprint)) {
         warn_of_overlaps(*cut, scene, terminal);
+        warn_of_divided_patches(*cut, scene, subdivision, terminal);
         std::vector<Surface> surfaces = surfaces_with_grids(mesh);
         PatchMesh whole = mesh.whole_faces().mesh;
         mesh = PatchMesh(cut->scene);

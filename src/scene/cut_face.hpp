@@ -12,6 +12,7 @@ inline constexpr std::uint32_t no_face = 0xFFFFFFFFu;
 /// What a face touches.
 struct Contacts {
     std::vector<Segment> cuts;           ///< within the face
+    std::vector<std::uint32_t> cut_by;   ///< of each, which face
     std::vector<std::uint32_t> coplanar; ///< faces that lie over it in its plane
     std::uint32_t other = no_face;       ///< one of those that cut it
 };

@@ -112,6 +112,7 @@ private:
         const auto add = [&](const Vec3& from, const Vec3& to) {
             if (const auto segment = within(face(f), normal(f), {from, to}, tolerance_)) {
                 contacts.cuts.push_back(*segment);
+                contacts.cut_by.push_back(other);
             }
         };
         if (above == 0 && below == 0) {
@@ -411,13 +412,17 @@ private:
             }
         }
         const bool gone = cells.empty() && pieces.empty();
-        if (face.covered_by != no_face) {
+        const bool covered = std::all_of(face.pieces.begin(), face.pieces.end(),
+                                         [](const Piece& piece) { return piece.covered; });
+        if (gone && !covered) {
+            result.findings.push_back({Imprint::What::buried, f, no_face}); // by a body, of many faces
+        } else if (face.covered_by != no_face) {
             result.findings.push_back(
                 {gone ? Imprint::What::duplicate : Imprint::What::overlapped, f, face.covered_by});
         } else {
-            result.findings.push_back(
-                {gone ? Imprint::What::buried : Imprint::What::cut, f, face.contacts.other});
+            result.findings.push_back({Imprint::What::cut, f, face.contacts.other});
         }
+        find_divided(f, result);
         while (!cells.empty()) {
             const Rectangle rest = take_rectangle(cells);
             result.scene.surfaces.push_back(rectangle(f, rest));
@@ -430,6 +435,65 @@ private:
                 add_parts(f, std::span(&piece->cell, 1), piece->front, piece->back, result);
             }
         }
+    }
+
+    /// Finds patches with parts on both sides of sheets.
+    void find_divided(std::uint32_t f, Imprint& result) const {
+        const CutFace& face = cut_[f];
+        const Contacts& contacts = face.contacts;
+        std::vector<std::size_t> sheets;
+        for (std::size_t k = 0; k < contacts.cuts.size(); ++k) {
+            const bool coplanar =
+                std::binary_search(contacts.coplanar.begin(), contacts.coplanar.end(), contacts.cut_by[k]);
+            if (scene_.surfaces[contacts.cut_by[k]].two_sided && !coplanar) {
+                sheets.push_back(k);
+            }
+        }
+        for (std::size_t first = 0; first < face.pieces.size() && !sheets.empty();) {
+            std::size_t end = first; // pieces of one cell follow one another
+            while (end < face.pieces.size() && face.pieces[end].cell == face.pieces[first].cell) {
+                ++end;
+            }
+            const std::span<const Piece> parts(&face.pieces[first], end - first);
+            for (const bool back : {false, true}) {
+                const auto sheet = std::find_if(sheets.begin(), sheets.end(), [&](std::size_t k) {
+                    return divides(f, contacts.cuts[k], parts, back);
+                });
+                if (sheet != sheets.end()) {
+                    const std::uint32_t side = back ? mesh_.patches_per_side(f) : 0;
+                    result.divided.push_back(
+                        {mesh_.first_patch(f) + side + parts[0].cell, f, contacts.cut_by[*sheet]});
+                }
+            }
+            first = end;
+        }
+    }
+
+    /// Whether a segment passes through half of a cell at least, and parts of one side are left on both of
+    /// its own.
+    [[nodiscard]] bool divides(std::uint32_t f, const Segment& segment, std::span<const Piece> parts,
+                               bool back) const {
+        const Vec3 direction = glm::normalize(segment.to - segment.from);
+        const Vec3 left = glm::cross(normal(f), direction);
+        bool before = false;
+        bool behind = false;
+        for (const Piece& part : parts) {
+            if (back ? part.back : part.front) {
+                const double off = glm::dot(area_centroid(part.corners) - segment.from, left);
+                before = before || off > tolerance_;
+                behind = behind || off < -tolerance_;
+            }
+        }
+        if (!before || !behind) {
+            return false;
+        }
+        const PatchCorners cell = mesh_.part_corners(f, {0, 0, parts[0].cell});
+        const auto length = [&](const Segment& line) {
+            const auto inside = within(cell.polygon(), normal(f), line, tolerance_);
+            return inside ? glm::distance(inside->from, inside->to) : 0.0;
+        };
+        const Vec3 far = mesh_.bounds().diagonal() * direction;
+        return 2.0 * length(segment) >= length({segment.from - far, segment.to + far});
     }
 
     /// Says which patches those of a new surface are parts of: cells of face `f`, of its sides that are left.
@@ -518,6 +582,11 @@ std::optional<Imprint> imprint_contacts(const Scene& scene, const Subdivision& s
     for (std::uint32_t& face : result->face_of) {
         face = joined.face_of[face];
     }
+    for (Imprint::Divided& divided : result->divided) {
+        divided.patch = before[divided.patch];
+        divided.face = joined.face_of[divided.face];
+        divided.sheet = joined.face_of[divided.sheet];
+    }
     for (Imprint::Finding& finding : result->findings) {
         finding.face = joined.face_of[finding.face];
         finding.other = finding.other == no_face ? no_face : joined.face_of[finding.other];
@@ -527,6 +596,14 @@ std::optional<Imprint> imprint_contacts(const Scene& scene, const Subdivision& s
     std::stable_sort(result->findings.begin(), result->findings.end(),
                      [](const auto& one, const auto& other) { return one.face < other.face; });
     return result;
+}
+
+/// The first surface of the face that a surface is of.
+std::uint32_t first_piece(const Scene& scene, std::uint32_t surface) {
+    while (surface > 0 && scene.surfaces[surface].continues) {
+        --surface;
+    }
+    return surface;
 }
 
 /// What was done to whole faces, where it was done to surfaces, ascending: a face is left out where all its
@@ -586,6 +663,16 @@ std::optional<Imprint> imprint(const Scene& scene, const Subdivision& subdivisio
     for (std::uint32_t& patch : result->parts.patch_of) {
         patch = whole.patch_of[patch];
     }
+    for (Imprint::Divided& divided : result->divided) {
+        divided.patch = whole.patch_of[divided.patch];
+        divided.face = first_piece(scene, divided.face);
+        divided.sheet = first_piece(scene, divided.sheet);
+    }
+    std::sort(result->divided.begin(), result->divided.end(),
+              [](const auto& one, const auto& other) { return one.patch < other.patch; });
+    const auto same = [](const auto& one, const auto& other) { return one.patch == other.patch; };
+    result->divided.erase(std::unique(result->divided.begin(), result->divided.end(), same),
+                          result->divided.end());
     for (std::uint32_t i = 0; i < whole.mesh.size(); ++i) {
         result->parts.group_of.push_back(whole.mesh.group(i));
     }

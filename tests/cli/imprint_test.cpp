@@ -208,6 +208,7 @@ TEST_CASE("imprint: a group of which nothing is left is blocked, and its means a
     CHECK(table["environment"][6] == 0.0);
     CHECK(table["factors"][6] == Json::array({0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
     CHECK(run_hemi({"factors", hff, "--by-group", "--json"}).json()["blocked"][6] == 1.0);
+    CHECK_FALSE(run_hemi({"factors", hff, "--by-group"}).out_has("1.000000"));
     const Json solution = run_hemi(on_cpu({"solve", scene, "--factors", hff, "--json"})).json();
     CHECK(solution["radiosity"][6][0].is_null());
     CHECK(solution["radiosity"][7][0].is_number());
@@ -217,4 +218,51 @@ TEST_CASE("imprint: a group of which nothing is left is blocked, and its means a
     CHECK(row["environment"] == 0.0);
     CHECK(row["blocked"] == 1.0);
     CHECK(row["entries"].empty());
+}
+
+TEST_CASE("imprint: a warning names patches of the user that a sheet divides", "[cli]") {
+    const Directory directory;
+    Json room = cube(2);
+    room["surfaces"].push_back({{"name", "screen"},
+                                {"material", "white"},
+                                {"two_sided", true},
+                                {"polygon", Json::parse("[[0.6,0,0],[0.6,1,0],[0.6,1,1],[0.6,0,1]]")}});
+    const std::string scene = directory.write("screen.json", room);
+    const Outcome run = run_hemi(on_cpu({"info", scene}));
+    CHECK(run.status == 0);
+    CHECK(run.err_has("8 patches lie on both sides of a sheet")); // of floor, ceiling and two walls
+    CHECK(run.err_has("of floor by face 6 of screen"));
+    // Patches of a size are no one's.
+    CHECK_FALSE(run_hemi(on_cpu({"info", scene, "--patch-size", "0.5"})).err_has("sheet"));
+    // At their edges there is nothing to divide.
+    room["surfaces"].back()["polygon"] = Json::parse("[[0.5,0,0],[0.5,1,0],[0.5,1,1],[0.5,0,1]]");
+    CHECK_FALSE(run_hemi(on_cpu({"info", directory.write("edge.json", room)})).err_has("sheet"));
+}
+
+TEST_CASE("imprint: a foot that another one covers in part is left out by a body, and all faces are listed",
+          "[cli]") {
+    const Directory directory;
+    Json room = cube(1);
+    const auto add_box = [&room](const std::string& name, double x, double y, double size, double height) {
+        const auto add = [&](const std::vector<std::vector<double>>& polygon) {
+            room["surfaces"].push_back({{"name", name}, {"material", "white"}, {"polygon", polygon}});
+        };
+        const double a = x + size;
+        const double b = y + size;
+        add({{x, y, 0}, {x, b, 0}, {a, b, 0}, {a, y, 0}});
+        add({{x, y, height}, {a, y, height}, {a, b, height}, {x, b, height}});
+        add({{x, y, 0}, {a, y, 0}, {a, y, height}, {x, y, height}});
+        add({{a, y, 0}, {a, b, 0}, {a, b, height}, {a, y, height}});
+        add({{a, b, 0}, {x, b, 0}, {x, b, height}, {a, b, height}});
+        add({{x, b, 0}, {x, y, 0}, {x, y, height}, {x, b, height}});
+    };
+    add_box("b", 0.2, 0.2, 0.4, 0.3);
+    add_box("c", 0.45, 0.4, 0.3, 0.4);
+    const std::string scene = directory.write("boxes.json", room);
+    const Outcome brief = run_hemi(on_cpu({"info", scene}));
+    CHECK_FALSE(brief.err_has("covered by"));
+    CHECK(brief.out_has("faces are left out: they lie inside other bodies: face 6 of b, face 12 of c"));
+    CHECK(brief.out_has(", ..."));
+    const Outcome all = run_hemi(on_cpu({"info", scene, "-v"}));
+    CHECK_FALSE(all.out_has(", ..."));
 }

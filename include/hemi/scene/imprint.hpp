@@ -29,12 +29,21 @@ struct Imprint {
         std::uint32_t other; ///< for one, which other face does it; 0xFFFFFFFF: none by itself
     };
 
+    /// A patch with parts on both sides of a sheet: a two-sided face that stands on it or passes through it,
+    /// along half of it at least.
+    struct Divided {
+        std::uint32_t patch; ///< as in PatchParts
+        std::uint32_t face;  ///< that it is of, and
+        std::uint32_t sheet; ///< that divides it, as in Finding
+    };
+
     Scene scene;                        ///< every surface has its own subdivision
     std::vector<std::uint32_t> face_of; ///< of its surfaces, those of the scene as it was; ascending
     /// Which patches of the scene as it was those of this one are parts of: of PatchMesh(scene,
     /// subdivision).whole_faces() as imprint() got them, and PatchMesh(this->scene).
     PatchParts parts;
     std::vector<Finding> findings; ///< a face at most once, ascending
+    std::vector<Divided> divided;  ///< what is told of one is a mean over both sides; ascending
     double covered = 0.0;          ///< area that is left out, scene units squared
 };
 

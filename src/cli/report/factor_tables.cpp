@@ -105,6 +105,9 @@ std::string group_factors_text(const std::vector<std::string>& names, const Grou
     if (groups.groups > max_columns) {
         Table table({"from", "to", "F"}, 2);
         for (std::uint32_t g = 0; g < groups.groups; ++g) {
+            if (groups.areas[g] == 0.0) { // left out
+                continue;
+            }
             for (std::uint32_t h = 0; h < groups.groups; ++h) {
                 const double factor = groups.factors[std::size_t{g} * groups.groups + h];
                 if (factor > 0.0) {
@@ -126,6 +129,12 @@ std::string group_factors_text(const std::vector<std::string>& names, const Grou
     Table table(header);
     for (std::uint32_t g = 0; g < groups.groups; ++g) {
         std::vector<std::string> line{names[g]};
+        if (groups.areas[g] == 0.0) { // left out
+            line.resize(header.size() - 1, "-");
+            line.push_back(number_text(0.0));
+            table.add(line);
+            continue;
+        }
         for (std::uint32_t h = 0; h < groups.groups; ++h) {
             line.push_back(fmt::format("{:.6f}", groups.factors[std::size_t{g} * groups.groups + h]));
         }

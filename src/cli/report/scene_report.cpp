@@ -136,7 +136,7 @@ Report scene_size_report(const LoadedScene& loaded) {
     return report;
 }
 
-Report imprint_report(const LoadedScene& loaded) {
+Report imprint_report(const LoadedScene& loaded, bool all) {
     Report report;
     report.json["imprint"] = nullptr;
     if (!loaded.as_read) {
@@ -174,6 +174,7 @@ Report imprint_report(const LoadedScene& loaded) {
     } else {
         report.add("faces touch", fmt::format("{}; area {} is covered", parts, number_text(as_read.covered)));
     }
+    constexpr std::size_t few = 3;
     Json list = Json::array();
     for (const Kind& kind : kinds) {
         std::string examples;
@@ -182,7 +183,7 @@ Report imprint_report(const LoadedScene& loaded) {
             if (finding.what != kind.what) {
                 continue;
             }
-            if (++count <= 3) {
+            if (++count <= few || all) {
                 examples += fmt::format("{}{}", count == 1 ? ": " : ", ", name(finding.face));
                 examples +=
                     is_known(finding.other) ? fmt::format(" {} {}", kind.other, name(finding.other)) : "";
@@ -193,9 +194,9 @@ Report imprint_report(const LoadedScene& loaded) {
                  {"other", is_known(finding.other) ? Json(numbers[finding.other]) : Json(nullptr)}});
         }
         if (count > 0) {
-            report.add("",
-                       fmt::format("{} {}{}{}", plural(count, "face", "faces"),
-                                   count == 1 ? kind.one : kind.many, examples, count > 3 ? ", ..." : ""));
+            report.add("", fmt::format("{} {}{}{}", plural(count, "face", "faces"),
+                                       count == 1 ? kind.one : kind.many, examples,
+                                       count > few && !all ? ", ..." : ""));
         }
     }
     report.json["imprint"] = {{"parts", loaded.mesh.size()}, {"covered", as_read.covered}, {"faces", list}};

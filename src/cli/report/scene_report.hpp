@@ -13,7 +13,8 @@ namespace hemi::cli {
 /// One line on its size.
 [[nodiscard]] Report scene_size_report(const LoadedScene& loaded);
 /// What was done to faces that touch; nothing where they do not.
-[[nodiscard]] Report imprint_report(const LoadedScene& loaded);
+/// @param all  text names all faces, else three of a kind
+[[nodiscard]] Report imprint_report(const LoadedScene& loaded, bool all);
 /// Contents of a scene. `more` is added before the tables of groups and materials, the end of the text.
 /// @param areas  what is left of the mesh's patches
 [[nodiscard]] Report contents_report(const Scene& scene, const PatchMesh& mesh, std::span<const double> areas,
