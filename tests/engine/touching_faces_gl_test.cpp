@@ -51,3 +51,24 @@ TEST_CASE("mark_touching_faces_buried: back-to-back sheets in the open keep thei
     mark_touching_faces_buried(factors, find_touching_faces(factors, mesh), Enclosure::automatic);
     CHECK(factors.row(0).environment == environment);
 }
+
+TEST_CASE("find_touching_faces: what lies back to back with the walls of a room looks out of it",
+          "[engine][gl][every-device]") {
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(2.0, 2.0, 1.0), 2);
+    add_block(scene, "outside", Vec3(0.0), Vec3(2.0, 2.0, 1.0), 2);
+    add_block(scene, "block", Vec3(0.6, 0.6, 0.0), Vec3(0.9, 0.9, 0.5), 1);
+    add_polygon(scene, "rug", {Vec3(1.5, 0, 0), Vec3(1.5, 1, 0), Vec3(2, 1, 0), Vec3(2, 0, 0)}); // face down
+    const PatchMesh mesh(scene);
+    FormFactorMatrix factors = rows_of(mesh);
+    const auto contacts = find_touching_faces(factors, mesh);
+    REQUIRE(contacts.size() == 1);
+    CHECK(mesh.groups()[mesh.group(contacts[0])] == "block");
+    mark_touching_faces_buried(factors, contacts, Enclosure::automatic);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const std::string& group = mesh.groups()[mesh.group(i)];
+        if (group == "outside" || group == "rug") {
+            CHECK(factors.row(i).environment == Approx(1.0));
+        }
+    }
+}

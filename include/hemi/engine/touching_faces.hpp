@@ -9,8 +9,9 @@
 
 namespace hemi {
 
-/// Patches with a known row that sees nothing at all and that lie face to face against another surface (see
-/// patches_in_contact), ascending.
+/// Patches with a known row that sees nothing at all and that are pressed face to face against another
+/// surface (see patches_in_contact) by the body that they are of, or by the other side of their own sheet,
+/// ascending. What lies back to back with a wall, a lamp outside of a room, is none of them.
 [[nodiscard]] std::vector<std::uint32_t> find_touching_faces(const FormFactorMatrix& factors,
                                                              const PatchMesh& mesh);
 
