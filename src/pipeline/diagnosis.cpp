@@ -15,7 +15,8 @@ namespace hemi {
 
 namespace {
 
-// Not declared and leaking: nearly closed if so few rows leak, or if so little is lost altogether.
+// Not declared and leaking: nearly closed if so few rows leak, or if so little is lost altogether and most do
+// not: a long duct loses little as well, but through all of its walls.
 constexpr double max_leaking_rows = 0.05;
 constexpr double max_lost_share = 0.001;
 // A reversed surface sends back about its own area in back-face shares; a roof that nothing can see sends
@@ -47,7 +48,8 @@ EnclosureVerdict judge_enclosure(const FormFactors& file, const RowSums& sums) {
         (file.enclosure == Enclosure::automatic && sums.leaking == 0)) {
         return EnclosureVerdict::closed;
     }
-    const bool nearly = sums.leaking < max_leaking_rows * sums.known || lost_share(file) < max_lost_share;
+    const bool few = sums.leaking < max_leaking_rows * sums.known;
+    const bool nearly = few || (2 * sums.leaking <= sums.known && lost_share(file) < max_lost_share);
     return file.enclosure == Enclosure::automatic && nearly ? EnclosureVerdict::nearly_closed
                                                             : EnclosureVerdict::open;
 }

@@ -2,7 +2,7 @@
 
 #include "core/parallel_for.hpp"
 #include "display/smooth_surfaces.hpp"
-#include "engine/visibility_weighted/factor_assembly.hpp"
+#include "engine/environment_verdict.hpp"
 #include "hemi/core/black_body.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/scene/image_mesh.hpp"

@@ -2,13 +2,14 @@
 
 #include "core/parallel_for.hpp"
 #include "engine/clusters/cluster_tree.hpp"
-#include "engine/visibility_weighted/factor_assembly.hpp"
+#include "engine/environment_verdict.hpp"
 #include "engine/visibility_weighted/pair_visibility.hpp"
 #include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/matrix/repair.hpp"
+#include "scene/enclosed_space.hpp"
 
 #include <fmt/format.h>
 
@@ -18,6 +19,7 @@
 #include <memory>
 #include <mutex>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -38,6 +40,7 @@ struct ClusteredRow {
     std::vector<Entry> far;  ///< clusters, ascending
     double environment = 0.0;
     double blocked = 0.0;
+    bool hides = false; ///< whether it sees nothing of some patch that faces it
 
     [[nodiscard]] std::size_t bytes() const {
         return sizeof(ClusteredRow) + (near.capacity() + far.capacity()) * sizeof(Entry);
@@ -68,7 +71,7 @@ public:
     [[nodiscard]] ClusteredRow make(const SeenRow& seen) {
         stand_at(seen.patch);
         sums_.assign(parts_.size(), {});
-        ClusteredRow row{{}, {}, seen.environment, seen.blocked};
+        ClusteredRow row{{}, {}, seen.environment, seen.blocked, false};
         double shares = 0.0;
         for (std::size_t k = 0; k < seen.columns.size(); ++k) {
             const std::uint32_t j = seen.columns[k];
@@ -81,6 +84,8 @@ public:
             shares += share;
             if (share > 0.0) {
                 add(row, part, j, share, seen.texels[k] == visibility_clear);
+            } else {
+                row.hides = true;
             }
         }
         const double mean = seen.columns.empty() ? 1.0 : shares / static_cast<double>(seen.columns.size());
@@ -345,7 +350,7 @@ public:
     RowBalancer(std::vector<ClusteredRow>& rows, FormFactorMatrix& near, const PatchMesh& mesh,
                 ExchangeRule rule, bool open)
         : rows_(rows), near_(near), mesh_(mesh), open_(open) {
-        settings_.unoccluded_error = rule == ExchangeRule::exact ? 3e-5 : settings_.unoccluded_error;
+        settings_.unoccluded_error = unoccluded_error(rule);
     }
 
     void run() {
@@ -425,6 +430,91 @@ private:
     bool open_;
 };
 
+/// What rows know of the environment.
+class Evidence {
+public:
+    /// All must outlive this.
+    Evidence(const std::vector<ClusteredRow>& rows, const FormFactorMatrix& near, const PatchMesh& mesh,
+             const SourceClusters& clusters, ExchangeRule rule, Enclosure enclosure)
+        : rows_(rows), near_(near), mesh_(mesh), clusters_(clusters), rule_(rule) {
+        if (enclosure == Enclosure::automatic) {
+            space_.emplace(mesh);
+        }
+    }
+
+    [[nodiscard]] EnvironmentEvidence of_row(std::uint32_t i) const {
+        const ClusteredRow& row = rows_[i];
+        if (space_ && space_->encloses(i)) {
+            return {.texels = row.environment, .enclosed = true};
+        }
+        return of_row(i, rule_, [](const Entry& entry) { return entry.value; });
+    }
+
+    /// The same with factors by the exact rule.
+    [[nodiscard]] EnvironmentEvidence exactly(std::uint32_t i) const {
+        const ExchangeAreas exact(mesh_, ExchangeRule::exact);
+        return of_row(i, ExchangeRule::exact, [&](const Entry& entry) {
+            double exchange = 0.0;
+            if (entry.column < mesh_.size()) {
+                exchange = exact(i, entry.column);
+            } else {
+                for (const std::uint32_t j : clusters_.patches(entry.column - mesh_.size())) {
+                    exchange += j != i ? exact(i, j) : 0.0;
+                }
+            }
+            const double visibility = static_cast<double>(entry.visibility) / visibility_clear;
+            return static_cast<float>(exchange * visibility / mesh_.areas()[i]);
+        });
+    }
+
+private:
+    template <class Value>
+    [[nodiscard]] EnvironmentEvidence of_row(std::uint32_t i, ExchangeRule rule, const Value& value) const {
+        std::vector<std::uint32_t> columns;
+        std::vector<float> values;
+        std::vector<std::uint8_t> visibility;
+        const auto add = [&](const Entry& entry) {
+            columns.push_back(entry.column);
+            values.push_back(value(entry));
+            visibility.push_back(entry.visibility);
+        };
+        const RowView near = near_.row(i);
+        for (std::size_t k = 0; k < near.columns.size(); ++k) {
+            add({near.columns[k], near.values[k], near.visibility[k]});
+        }
+        const ClusteredRow& row = rows_[i];
+        std::for_each(row.far.begin(), row.far.end(), add);
+        return evidence_of({columns, values, visibility, row.environment, row.blocked}, row.hides, rule);
+    }
+
+    const std::vector<ClusteredRow>& rows_;
+    const FormFactorMatrix& near_;
+    const PatchMesh& mesh_;
+    const SourceClusters& clusters_;
+    ExchangeRule rule_;
+    std::optional<EnclosedSpace> space_;
+};
+
+/// Sets the environment's share of all rows, which texels measured, to what the scene and the factors say.
+/// @return whether the scene is open
+bool settle_environment(std::vector<ClusteredRow>& rows, const Evidence& evidence,
+                        std::span<const std::uint32_t> patches, Enclosure enclosure) {
+    if (enclosure == Enclosure::closed) {
+        return false;
+    }
+    std::vector<EnvironmentEvidence> known(patches.size());
+    parallel_for(patches.size(), 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            known[k] = evidence.of_row(patches[k]);
+        }
+    });
+    const bool open = is_open(known, enclosure, [&](std::size_t k) { return evidence.exactly(patches[k]); });
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+        rows[patches[k]].environment = environment_share(known[k], enclosure, open);
+    }
+    return open;
+}
+
 /// Factor by which the near factors of a row are changed where nothing else balances it: no far ones are
 /// there, or not enough. The row's pairs are then reciprocal only as far as visibility is known.
 double last_change(const ClusteredRow& row, double near_sum) {
@@ -478,11 +568,10 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
         });
         rows = collector.finish();
     }
-    const bool open = std::any_of(rows.begin(), rows.end(), [enclosure](const ClusteredRow& row) {
-        return sees_environment(row.environment, enclosure);
-    });
     FormFactorMatrix near = near_pairs(rows, patches, mesh);
     (void)repair(near, mesh.areas(), Repair::reciprocity);
+    const Evidence evidence(rows, near, mesh, *tree.clusters(), settings.rule, enclosure);
+    const bool open = settle_environment(rows, evidence, patches, enclosure);
     RowBalancer(rows, near, mesh, settings.rule, open).run();
     FormFactorMatrix matrix(
         mesh.size(), std::make_shared<SourceClusters>(tree.clusters()->with_weights(seen_areas(rows, mesh))));

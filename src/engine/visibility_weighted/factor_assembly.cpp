@@ -1,10 +1,14 @@
 #include "engine/visibility_weighted/factor_assembly.hpp"
 
 #include "core/parallel_for.hpp"
+#include "engine/environment_verdict.hpp"
+#include "engine/visibility_weighted/facing_test.hpp"
 #include "hemi/core/error.hpp"
+#include "scene/enclosed_space.hpp"
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,16 +16,6 @@
 namespace hemi {
 
 namespace {
-
-/// With Enclosure::automatic a scene is closed if no row sees more of the environment than this. A little
-/// above the weight of the heaviest texel of 4 hemicubes of 64² texels (4 / (pi 64²) / 4 = 8e-5): a single
-/// one may slip through where the edges of two walls meet.
-constexpr double max_leak = 1e-4;
-
-bool is_open(std::span<const double> environment, Enclosure enclosure) {
-    return std::any_of(environment.begin(), environment.end(),
-                       [enclosure](double share) { return sees_environment(share, enclosure); });
-}
 
 std::uint64_t count_seen(std::span<const PairVisibility> pairs) {
     std::uint32_t count = 0;
@@ -124,25 +118,19 @@ private:
     std::vector<std::uint64_t> next_; ///< where the next entry of a row goes below the diagonal, in its block
 };
 
-/// Drops entries that are zero after all, and sets the environment share of an open scene's rows to what is
-/// left of 1: F0 knows that better than hemicubes do.
-void finish(RowBlock& block, bool open) {
+/// Drops entries that are zero after all.
+void drop_zeros(RowBlock& block) {
     std::uint64_t kept = 0;
     for (std::uint32_t local = 0; local < block.rows(); ++local) {
         const std::uint64_t begin = block.begin[local];
         block.begin[local] = kept;
-        double sum = 0.0;
         for (std::uint64_t entry = begin; entry < block.begin[local + 1]; ++entry) {
             if (block.values[entry] > 0.0f) {
                 block.columns[kept] = block.columns[entry];
                 block.values[kept] = block.values[entry];
                 block.visibility[kept] = block.visibility[entry];
-                sum += static_cast<double>(block.values[entry]);
                 ++kept;
             }
-        }
-        if (open && block.environment[local] > 0.0) {
-            block.environment[local] = std::max(0.0, 1.0 - block.blocked[local] - sum);
         }
     }
     block.begin.back() = kept;
@@ -293,9 +281,8 @@ private:
 };
 
 /// Factors of patches and all images of others.
-FormFactorMatrix assemble_folded(const PairTable& pairs, const ImageMesh& images, ExchangeRule rule,
-                                 bool open, const Progress& progress) {
-    const ExchangeAreas exchange_areas(images.mesh(), rule);
+FormFactorMatrix assemble_folded(const PairTable& pairs, const ImageMesh& images,
+                                 const ExchangeAreas& exchange_areas, const Progress& progress) {
     FormFactorMatrix matrix(images.size());
     std::vector<RowBlock> blocks(matrix.blocks().begin(), matrix.blocks().end());
     FoldedFiller filler(pairs, images, exchange_areas, blocks);
@@ -309,7 +296,7 @@ FormFactorMatrix assemble_folded(const PairTable& pairs, const ImageMesh& images
                 }
             }
         });
-        finish(block, open);
+        drop_zeros(block);
         matrix.set_block(std::move(block));
         if (progress && !progress(end, images.size())) {
             throw Cancelled();
@@ -318,21 +305,10 @@ FormFactorMatrix assemble_folded(const PairTable& pairs, const ImageMesh& images
     return matrix;
 }
 
-} // namespace
-
-bool sees_environment(double share, Enclosure enclosure) {
-    return enclosure == Enclosure::open || (enclosure == Enclosure::automatic && share > max_leak);
-}
-
-FormFactorMatrix assemble_factors(const PairTable& pairs, const ImageMesh& images, ExchangeRule rule,
-                                  Enclosure enclosure, const Progress& progress) {
-    if (images.any()) {
-        return assemble_folded(pairs, images, rule, is_open(pairs.environment, enclosure), progress);
-    }
-    const PatchMesh& mesh = images.mesh();
+/// Factors of the patches of a scene without images.
+FormFactorMatrix assemble_pairs(const PairTable& pairs, const PatchMesh& mesh,
+                                const ExchangeAreas& exchange_areas, const Progress& progress) {
     const std::uint32_t size = mesh.size();
-    const ExchangeAreas exchange_areas(mesh, rule);
-    const bool open = is_open(pairs.environment, enclosure);
     FormFactorMatrix matrix(size);
     std::vector<RowBlock> blocks = empty_blocks(pairs, matrix);
     PairFiller filler(pairs, mesh, exchange_areas, blocks);
@@ -348,12 +324,104 @@ FormFactorMatrix assemble_factors(const PairTable& pairs, const ImageMesh& image
                             first + static_cast<std::uint32_t>(upto));
             }
         });
-        finish(block, open);
+        drop_zeros(block);
         matrix.set_block(std::move(block));
         if (progress && !progress(end, size)) {
             throw Cancelled();
         }
     }
+    return matrix;
+}
+
+/// What all rows know of the environment.
+class Evidence {
+public:
+    /// All must outlive this.
+    Evidence(const PairTable& pairs, const ImageMesh& images, ExchangeRule rule, Enclosure enclosure)
+        : pairs_(pairs), mesh_(images.mesh()), rule_(rule), facing_(mesh_) {
+        if (enclosure == Enclosure::automatic) {
+            space_.emplace(mesh_);
+        }
+    }
+
+    /// @param k  of a patch that has a row
+    [[nodiscard]] EnvironmentEvidence of_row(const FormFactorMatrix& matrix, std::size_t k) const {
+        const std::uint32_t i = pairs_.index.patches()[k];
+        if (space_ && space_->encloses(i)) {
+            return {.texels = pairs_.environment[k], .enclosed = true};
+        }
+        return evidence_of(matrix.row(i), hides(k), rule_);
+    }
+
+    /// The same with factors by the exact rule.
+    [[nodiscard]] EnvironmentEvidence exactly(const FormFactorMatrix& matrix, std::size_t k) const {
+        const std::uint32_t i = pairs_.index.patches()[k];
+        const ExchangeAreas exact(mesh_, ExchangeRule::exact);
+        double sum = 0.0;
+        for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
+            if (const PairVisibility pair = pairs_.visibility[k][j]; j != i && !pair.is_hidden()) {
+                sum += exact(i, j) / mesh_.areas()[i] * pair.value();
+            }
+        }
+        EnvironmentEvidence evidence = of_row(matrix, k);
+        evidence.error +=
+            (unoccluded_error(ExchangeRule::exact) - unoccluded_error(rule_)) * matrix.row(i).sum();
+        evidence.remainder = 1.0 - pairs_.blocked[k] - sum;
+        return evidence;
+    }
+
+private:
+    /// Whether a row faces a patch that it sees nothing of.
+    [[nodiscard]] bool hides(std::size_t k) const {
+        const std::uint32_t i = pairs_.index.patches()[k];
+        for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
+            if (pairs_.visibility[k][j].is_hidden() && j != i && facing_(i, j)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    const PairTable& pairs_;
+    const PatchMesh& mesh_;
+    ExchangeRule rule_;
+    FacingTest facing_;
+    std::optional<EnclosedSpace> space_;
+};
+
+/// Sets the environment's share of all rows, which texels measured, to what the scene and the factors say.
+void settle_environment(FormFactorMatrix& matrix, const PairTable& pairs, const ImageMesh& images,
+                        ExchangeRule rule, Enclosure enclosure) {
+    if (enclosure == Enclosure::closed) {
+        return;
+    }
+    const Evidence evidence(pairs, images, rule, enclosure);
+    std::vector<EnvironmentEvidence> rows(pairs.index.rows());
+    parallel_for(rows.size(), 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            rows[k] = evidence.of_row(matrix, k);
+        }
+    });
+    const bool open = is_open(rows, enclosure, [&](std::size_t k) { return evidence.exactly(matrix, k); });
+    std::vector<RowBlock> blocks = matrix.take_blocks();
+    for (RowBlock& block : blocks) {
+        for (std::uint32_t local = 0; local < block.rows(); ++local) {
+            if (const std::uint32_t k = pairs.index.row_of(block.first_row + local); k != RowIndex::no_row) {
+                block.environment[local] = environment_share(rows[k], enclosure, open);
+            }
+        }
+        matrix.set_block(std::move(block));
+    }
+}
+
+} // namespace
+
+FormFactorMatrix assemble_factors(const PairTable& pairs, const ImageMesh& images, ExchangeRule rule,
+                                  Enclosure enclosure, const Progress& progress) {
+    const ExchangeAreas exchange_areas(images.mesh(), rule);
+    FormFactorMatrix matrix = images.any() ? assemble_folded(pairs, images, exchange_areas, progress)
+                                           : assemble_pairs(pairs, images.mesh(), exchange_areas, progress);
+    settle_environment(matrix, pairs, images, rule, enclosure);
     return matrix;
 }
 

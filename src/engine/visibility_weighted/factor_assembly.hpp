@@ -8,10 +8,6 @@
 
 namespace hemi {
 
-/// Whether a row that measures so much of the environment really sees it, and not only what slips through
-/// where two walls meet.
-[[nodiscard]] bool sees_environment(double share, Enclosure enclosure);
-
 /// F(i, j) = X0(i, j) V(i, j) / A_i for all pairs of the table, X0(i, j) = A_i F0(i, j) being the unoccluded
 /// exchange area, and the balance of every row. Last phase of compute_visibility_weighted(), which says what
 /// the balance is.

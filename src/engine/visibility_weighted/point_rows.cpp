@@ -1,19 +1,21 @@
 #include "hemi/engine/point_rows.hpp"
 
 #include "core/parallel_for.hpp"
+#include "engine/environment_verdict.hpp"
 #include "engine/image_rows.hpp"
 #include "engine/rays/shadow_rays.hpp"
 #include "engine/visibility_weighted/coplanar_neighbours.hpp"
-#include "engine/visibility_weighted/factor_assembly.hpp"
 #include "engine/visibility_weighted/visibility_sample.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/scene/image_mesh.hpp"
+#include "scene/enclosed_space.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -51,6 +53,7 @@ struct SampledPoint {
     std::vector<VisibilitySample> samples; ///< N
     double environment = 0.0;
     double blocked = 0.0;
+    bool hides = false; ///< whether it sees nothing of some patch that faces it
 };
 
 /// A row of factors.
@@ -67,8 +70,11 @@ public:
               const VisibilityWeightedSettings& settings, Enclosure enclosure,
               std::span<const double> weights, DirectionMeasure measure)
         : images_(images), points_(points), rays_a_pair_(settings.shadow_rays), enclosure_(enclosure),
-          weights_(weights), spheres_(measure == DirectionMeasure::solid_angle),
+          weights_(weights), spheres_(measure == DirectionMeasure::solid_angle), rule_(settings.rule),
           areas_(images.mesh(), settings.rule), neighbours_(images.mesh()) {
+        if (enclosure == Enclosure::automatic) {
+            space_.emplace(images.mesh());
+        }
         if (rays_a_pair_ > 0) {
             rays_.emplace(images.mesh());
         }
@@ -94,8 +100,8 @@ public:
             if (!known) {
                 sample = neighbours_.stand_in(sampled.samples, j);
             }
-            Entry entry{j, unoccluded, sample.known() ? sample.share() : assumed};
             const bool clear = known && sample.is_clear();
+            Entry entry{j, unoccluded, sample.known() ? sample.share() : assumed, clear};
             if (rays_ && !(clear && weights_.empty())) {
                 const double texels = known ? sample.weight() : 0.0;
                 const double share = clear ? clear_doubt : 1.0;
@@ -114,6 +120,7 @@ private:
         std::uint32_t column;
         double unoccluded;
         double visibility;
+        bool clear; ///< by texels
     };
     /// An entry whose visibility is not certain.
     struct Doubt {
@@ -167,17 +174,25 @@ private:
 
     [[nodiscard]] PointRow close(const std::vector<Entry>& entries, const SampledPoint& sampled) const {
         double sum = 0.0;
+        double partly_hidden = 0.0;
         for (const Entry& entry : entries) {
             sum += entry.unoccluded * entry.visibility;
+            partly_hidden += entry.clear ? 0.0 : entry.unoccluded;
         }
+        const SurfacePoint& point = points_[sampled.index];
+        const bool unknown = sampled.hides || sampled.blocked > 0.0;
+        const EnvironmentEvidence evidence{
+            .texels = sampled.environment,
+            .remainder = 1.0 - sampled.blocked - sum,
+            .error = unknown ? std::numeric_limits<double>::infinity()
+                             : unoccluded_error(rule_) * sum + partly_hidden,
+            .enclosed = space_ && space_->contains_in_front(point.position, point.normal, 0.0)};
+        const bool open = is_open({&evidence, 1}, enclosure_);
         PointRow row;
-        row.environment = sampled.environment;
-        double scale = 1.0;
-        if (sampled.environment > 0.0 && sees_environment(sampled.environment, enclosure_)) {
-            row.environment = std::max(0.0, 1.0 - sampled.blocked - sum);
-        } else if (sum > 0.0) {
-            scale = (1.0 - sampled.environment - sampled.blocked) / sum;
-        }
+        row.environment = environment_share(evidence, enclosure_, open);
+        // What the environment has is what the factors leave, or else they are scaled for it.
+        const bool scaled = sum > 0.0 && !(open && row.environment > 0.0);
+        const double scale = scaled ? (1.0 - row.environment - sampled.blocked) / sum : 1.0;
         for (const Entry& entry : entries) {
             const auto value = static_cast<float>(scale * entry.unoccluded * entry.visibility);
             if (value > 0.0f) {
@@ -194,8 +209,10 @@ private:
     Enclosure enclosure_;
     std::span<const double> weights_;
     bool spheres_;
+    ExchangeRule rule_;
     ExchangeAreas areas_;
     CoplanarNeighbours neighbours_;
+    std::optional<EnclosedSpace> space_;
     std::optional<ShadowRays> rays_;
 };
 
@@ -243,6 +260,7 @@ void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
         }
         sampled.environment = row.environment;
         sampled.blocked = row.blocked;
+        sampled.hides = std::find(row.shares.begin(), row.shares.end(), 0.0F) != row.shares.end();
         if (batch.size() == batch_rows) {
             finish_batch();
         }
