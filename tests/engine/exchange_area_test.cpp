@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <vector>
 
@@ -329,6 +330,23 @@ TEST_CASE("ExchangeAreas: turned plates a hair apart exchange what their quarter
             CHECK(area_of_pair(unit_floor, roof, rule) == Approx(sum).epsilon(accuracy(rule, 2e-7, 1e-11)));
         }
     }
+}
+
+TEST_CASE("ExchangeAreas: slivers along edges that are a hair apart and a hair off parallel",
+          "[engine][accuracy]") {
+    const Corners sliver{{0, 0, 0}, {1, 2e-8, 1e-8}, {1.2, 1.2e-7, -1e-8}, {0.2, 1e-7, -2e-8}};
+    const Corners wall{{-0.1, -3e-8, 1e-7}, {-0.1, -2e-8, 1}, {1.2, 1e-8, 1}, {1.2, -4e-8, 6e-8}};
+    const Vec3 base = 0.7 * wall[0] + 0.3 * wall[3];
+    const Vec3 top = 0.7 * wall[1] + 0.3 * wall[2];
+    const std::clock_t start = std::clock();
+    for (const ExchangeRule rule : both) {
+        const double whole = area_of_pair(sliver, wall, rule);
+        const double parts = area_of_pair(sliver, {wall[0], wall[1], top, base}, rule) +
+                             area_of_pair(sliver, {base, top, wall[2], wall[3]}, rule);
+        CHECK(whole == Approx(by_points(sliver, wall, 300)).epsilon(1e-4));
+        CHECK(parts == Approx(whole).epsilon(accuracy(rule, 1e-5, 1e-8)));
+    }
+    CHECK(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC < 1.0); // not in pieces of 1e-7
 }
 
 TEST_CASE("ExchangeAreas: unoccluded exact cases are met, whatever their scale", "[engine][accuracy]") {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -114,15 +115,44 @@ double gauss_integral(const Edge& outer, const Edge& inner, std::size_t order) {
     return 0.5 * outer.length * sum;
 }
 
+/// Logarithm of the sum of the half axes of the largest ellipse about an edge, with its ends as foci, in
+/// which log_integral() is analytic as a function of the complex place along it. It is not where the place
+/// meets an end of the inner edge, or its line: of two edges that are near each other and nearly parallel
+/// that may be far from where they are nearest.
+double analytic_reach(const Edge& outer, const Edge& inner) {
+    const double half = 0.5 * outer.length;
+    const Vec3 middle = 0.5 * (outer.start + outer.end);
+    const auto reach_to = [](double along, double beside) {
+        return std::acosh(std::complex<double>(along, beside)).real();
+    };
+    double reach = std::numeric_limits<double>::infinity();
+    for (const Vec3& end : {inner.start, inner.end}) {
+        const Vec3 way = (end - middle) / half;
+        reach = std::min(
+            reach, reach_to(glm::dot(way, outer.direction), glm::length(glm::cross(way, outer.direction))));
+    }
+    // Height above the inner line, as a vector, is linear along the outer edge.
+    const Vec3 height = glm::cross((middle - inner.start) / half, inner.direction);
+    const Vec3 slope = glm::cross(outer.direction, inner.direction);
+    if (const double squared = glm::dot(slope, slope); squared > 0.0) {
+        reach = std::min(reach, reach_to(-glm::dot(height, slope) / squared,
+                                         glm::length(glm::cross(height, slope)) / squared));
+    }
+    return reach;
+}
+
 /// Gauss rules over pieces of the outer edge. As a function of the outer point, the inner integral is
-/// analytic in an ellipse about the piece that just reaches the inner edge; a rule of n points then converges
-/// as (sum of its half axes)^-2n.
+/// analytic in an ellipse about the piece that just reaches the inner edge, and maybe a larger one; a rule of
+/// n points then converges as (sum of its half axes)^-2n.
 double graded_integral(const Edge& outer, const Edge& inner, double tolerance) {
     constexpr double order_max = 12.0;
     const double half = 0.5 * outer.length;
     const double gap = closest_approach(outer, inner).distance / half;
     const double digits = -0.5 * std::log(tolerance);
-    const double order = std::ceil(digits / std::asinh(gap));
+    double order = std::ceil(digits / std::asinh(gap));
+    if (order > order_max) {
+        order = std::min(order, std::ceil(digits / analytic_reach(outer, inner)));
+    }
     // What is left at a singular point shrinks with the square of the piece.
     if (order <= order_max || tolerance >= 0.1) {
         return gauss_integral(outer, inner, static_cast<std::size_t>(std::clamp(order, 2.0, order_max)));

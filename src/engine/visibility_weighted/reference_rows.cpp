@@ -1,5 +1,6 @@
 #include "hemi/engine/reference_rows.hpp"
 
+#include "hemi/core/interrupt.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
 
 #include <algorithm>
@@ -57,8 +58,12 @@ std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows
 
 FormFactorMatrix compute_reference(VisibilityProvider& visibility, const PatchMesh& mesh,
                                    std::span<const std::uint32_t> patches, const Progress& progress) {
+    const Progress stop = [](std::size_t, std::size_t) {
+        stop_if_interrupted();
+        return true;
+    };
     return compute_visibility_weighted(visibility, mesh, patches, {ExchangeRule::exact, 0},
-                                       Enclosure::automatic, progress);
+                                       Enclosure::automatic, progress, stop, stop);
 }
 
 } // namespace hemi
