@@ -32,9 +32,9 @@ struct ClusterSettings {
 /// so that they are reciprocal. What is far is found one way, and stands together in clusters of patches that
 /// look about the same way (SourceClusters): a row has some hundred entries more or less however many patches
 /// there are. Patches that no texel covers are as visible as the others of their cluster. Rows balance: where
-/// they see the environment of an open scene, it gets what is left of 1; else all factors are changed as
-/// little as makes up for it, by their variances (Repair::closure, of the near pairs); of rows without
-/// anything far that may be one way only.
+/// they see the environment of an open scene (as compute_visibility_weighted() has it), it gets what is left
+/// of 1; else all factors are changed as little as makes up for it, by their variances (Repair::closure, of
+/// the near pairs); of rows without anything far that may be one way only.
 /// @param visibility   computes rows of visibility
 /// @param mesh         its N patches
 /// @param patches      whose rows are wanted, ascending; all others stay unknown

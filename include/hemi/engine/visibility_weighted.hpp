@@ -56,8 +56,11 @@ struct VisibilityWeightedSettings {
 ///
 /// Balance: where a row sees nothing of the environment, e is 0 and b what was measured, and the sum is what
 /// comes out, for repair() to close. Where it does, e is what the sum and b leave of 1, since F0 knows that
-/// better than hemicubes do; but in a closed scene (`enclosure`, or automatic and no row sees more than 1e-4
-/// of it), e stays what was measured: a leak.
+/// better than hemicubes do; but in a closed scene e stays what was measured, a leak, as far as the sum
+/// allows it. With Enclosure::automatic rows of patches inside a closed body of faces have e = 0, and the
+/// scene is closed if no other row leaves more of 1 than the error of F0 (known by the exact rule for the
+/// four rows that leave most), and texels measure at most 1e-4 where something is hidden, so that the sum
+/// does not say.
 ///
 /// Memory: for every pair of one of `patches` with any patch 4 bytes until pairs are combined, then 2; and
 /// the matrix.
