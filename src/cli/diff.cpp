@@ -69,7 +69,7 @@ ExitStatus run(const DiffArguments& arguments, const Terminal& terminal) {
                                       fmt::format("difference of {}", to_word(*arguments.picture.quantity)));
     }
     Report report = diff_report(found, first.mesh.groups(), to_word(*arguments.picture.quantity),
-                                arguments.picture.channel);
+                                arguments.picture.channel, first.result.scene.unit.value_or(1.0));
     report.json["first"] = arguments.first.string();
     report.json["second"] = arguments.second.string();
     report.text = picture.text + report.text;

@@ -131,7 +131,8 @@ Picture draw_false_colours(const PatchMesh& mesh, const FalseColours& shown, con
     PictureMesh drawn = painted(make_picture_mesh(mesh, surfaces, 1, dark, {}, {0, 0, 0}),
                                 value_colours(shown.values, scale, mesh));
     if (scale.lines) {
-        put_iso_values(drawn, mesh, surfaces, shown.values, scale);
+        put_iso_values(drawn, mesh, shown.across_materials ? SmoothSurfaces(mesh, true) : surfaces,
+                       shown.values, scale);
     }
     drawn = with_images(std::move(drawn), mesh);
     if (dots != nullptr) {

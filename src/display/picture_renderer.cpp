@@ -259,7 +259,8 @@ void PictureRenderer::upload(const PictureMesh& mesh) {
     glNamedBufferData(vertices_.get(), static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
                       vertices.data(), GL_STATIC_DRAW);
     groups_ = mesh.groups;
-    upload_indices({});
+    selected_.reset(); // the next picture says which groups it shows
+    gl::check_errors("uploading the picture's mesh");
     origin_ = mesh.origin;
     environment_ = mesh.environment;
     diagonal_ = mesh.bounds.diagonal() > 0.0 ? mesh.bounds.diagonal() : 1.0;
@@ -283,7 +284,7 @@ void PictureRenderer::upload_indices(const std::vector<Visibility>& groups) {
     indices.insert(indices.end(), outlined.begin(), outlined.end());
     glNamedBufferData(indices_.get(), static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)),
                       indices.data(), GL_STATIC_DRAW);
-    gl::check_errors("uploading the picture's mesh");
+    gl::check_errors("uploading the picture's patches");
     selected_ = groups;
 }
 

@@ -91,11 +91,11 @@ private:
     gl::VertexArray no_vertices_;
     gl::Buffer vertices_;
     gl::Buffer indices_;
-    std::vector<std::uint8_t> corner_counts_; ///< of every patch
-    std::vector<std::uint32_t> groups_;       ///< likewise; empty: not known
-    std::vector<Visibility> selected_;        ///< what indices are of
-    GLsizei index_count_ = 0;                 ///< of patches that are shown, which come first
-    GLsizei outline_count_ = 0;               ///< of patches that are outlined
+    std::vector<std::uint8_t> corner_counts_;         ///< of every patch
+    std::vector<std::uint32_t> groups_;               ///< likewise; empty: not known
+    std::optional<std::vector<Visibility>> selected_; ///< what indices are of; none: of another mesh
+    GLsizei index_count_ = 0;                         ///< of patches that are shown, which come first
+    GLsizei outline_count_ = 0;                       ///< of patches that are outlined
     Vec3 origin_{0.0};
     double diagonal_ = 1.0;
     std::array<float, 3> environment_{};

@@ -26,7 +26,8 @@ struct Edge {
 
 } // namespace
 
-SmoothSurfaces::SmoothSurfaces(const PatchMesh& mesh) {
+SmoothSurfaces::SmoothSurfaces(const PatchMesh& mesh, bool across_materials)
+    : across_materials_(across_materials) {
     looks_.reserve(mesh.size());
     for (std::uint32_t patch = 0; patch < mesh.size(); ++patch) {
         looks_.push_back({mesh.normal(patch), mesh.material(patch), mesh.group(patch)});
@@ -41,7 +42,7 @@ bool SmoothSurfaces::continues(std::uint32_t a, std::uint32_t b) const {
     static const double limit = std::cos(crease_angle * std::numbers::pi / 180.0);
     const Appearance& one = looks_[a];
     const Appearance& other = looks_[b];
-    return one.material == other.material && one.group == other.group &&
+    return (across_materials_ || (one.material == other.material && one.group == other.group)) &&
            glm::dot(one.normal, other.normal) >= limit;
 }
 

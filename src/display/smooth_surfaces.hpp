@@ -17,7 +17,8 @@ public:
     /// Corners nearer to each other than this share of the scene's diagonal are one vertex.
     static constexpr double weld_tolerance = 1e-7;
 
-    explicit SmoothSurfaces(const PatchMesh& mesh);
+    /// @param across_materials  whether surfaces go on where another material or group begins
+    explicit SmoothSurfaces(const PatchMesh& mesh, bool across_materials = false);
 
     [[nodiscard]] std::uint32_t vertex_count() const noexcept {
         return static_cast<std::uint32_t>(vertices_.size());
@@ -43,8 +44,8 @@ public:
     /// All of them, those of long edges first: ends that hang themselves come before what hangs between them.
     [[nodiscard]] std::span<const Hanging> hanging() const { return hanging_; }
 
-    /// Whether light runs smoothly from one patch to the other where they meet: same material, same group,
-    /// normals within the crease angle.
+    /// Whether light runs smoothly from one patch to the other where they meet: same material and group, or
+    /// across these; normals within the crease angle.
     [[nodiscard]] bool continues(std::uint32_t a, std::uint32_t b) const;
     /// The same of two patches at vertex `v`, where something may stand between them: a sheet on a floor has
     /// light on one of its sides and shadow on the other.
@@ -75,6 +76,7 @@ private:
     std::vector<std::uint8_t> sectors_;
     std::vector<Hanging> hanging_;
     double tolerance_ = 0.0;
+    bool across_materials_;
 };
 
 } // namespace hemi

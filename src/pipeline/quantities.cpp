@@ -248,7 +248,10 @@ FalseColours patch_quantity(Quantity quantity, const Scene& scene, const PatchMe
             title + of, flux};
         break;
     case Quantity::area:
-        shown = {{mesh.areas().begin(), mesh.areas().end()}, title, "units²"};
+        shown = {{mesh.areas().begin(), mesh.areas().end()}, title, "m²"};
+        for (double& value : shown.values) {
+            value *= std::pow(scene.unit.value_or(1.0), 2.0);
+        }
         break;
     case Quantity::temperature:
     case Quantity::net_flux:
@@ -268,6 +271,9 @@ FalseColours patch_quantity(Quantity quantity, const Scene& scene, const PatchMe
             shown.values[i] = none;
         }
     }
+    // What arrives runs on where the material changes; what is reflected of it does not.
+    shown.across_materials =
+        quantity == Quantity::irradiance || quantity == Quantity::direct || quantity == Quantity::environment;
     if (quantity == Quantity::radiosity || quantity == Quantity::irradiance) {
         shown.range = range_about_one(shown.values);
     }

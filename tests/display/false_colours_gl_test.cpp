@@ -193,6 +193,30 @@ TEST_CASE("False colours: iso-lines lie where the interpolated value is round, o
     }
     CHECK(all.size() >= 9);
     CHECK(ColourScale{0.0, 10.0, false, ColourMap::viridis, 0, true}.levels().size() == 9);
+    // Of two surfaces in one plane they run on where the values do; else every surface ends by itself.
+    test::SceneBuilder halves;
+    halves.floor("left", -1.0, -1.0, 0.0, 1.0, {5, 2});
+    halves.floor("right", 0.0, -1.0, 1.0, 1.0, {5, 2});
+    FalseColours apart = shown;
+    apart.bands = 2;
+    apart.values.clear();
+    for (int k = 0; k < 20; ++k) {
+        apart.values.push_back(k % 5 + 0.5 + (k < 10 ? 0.0 : 5.0));
+    }
+    const auto line_at_middle = [&](bool across) {
+        apart.across_materials = across;
+        apart.iso_lines = true;
+        const Picture with = draw_false_colours(halves.mesh(), apart, camera, settings, "osmesa");
+        apart.iso_lines = false;
+        const Picture bare = draw_false_colours(halves.mesh(), apart, camera, settings, "osmesa");
+        std::size_t columns = 0;
+        for (std::uint32_t x = 90; x < 110; ++x) {
+            columns += pixel(with, x, 70) != pixel(bare, x, 70) ? 1 : 0;
+        }
+        return columns;
+    };
+    CHECK(line_at_middle(false) == 0);
+    CHECK(line_at_middle(true) > 0);
     shown.values[4] = std::numeric_limits<double>::quiet_NaN(); // lends nothing, has no line
     CHECK_NOTHROW(dark_columns());
 }

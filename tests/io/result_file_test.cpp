@@ -28,6 +28,7 @@ io::ResultFile sample() {
     scene.enclosure = Enclosure::open;
     scene.environment = {0.1, 0.2};
     scene.up = UpAxis::y;
+    scene.unit = 1e-3;
     scene.sun = Sun{{0.0, 0.6, 0.8}, {700.0, 90.0}, 0.53};
     scene.camera = Camera{{0, -3, 1}, {0, 0, 0.1}, {0, 0.1, 1}, 33.3};
     const std::size_t patches = PatchMesh(scene).size();
@@ -86,6 +87,7 @@ TEST_CASE("HRES: what is written is read back bit for bit", "[io]") {
     REQUIRE(a.scene.enclosure == b.scene.enclosure);
     REQUIRE(a.scene.environment == b.scene.environment);
     REQUIRE(b.scene.up == UpAxis::y);
+    REQUIRE(b.scene.unit == 1e-3);
     REQUIRE(a.scene.sun == b.scene.sun);
     REQUIRE(a.scene.camera->eye == b.scene.camera->eye);
     REQUIRE(a.scene.camera->target == b.scene.camera->target);

@@ -46,7 +46,7 @@ struct Known {
 } // namespace
 
 TEST_CASE("quantities: values of patches, of one channel or all", "[pipeline]") {
-    const Known known;
+    Known known;
     CHECK(known.shown(Quantity::radiosity, "green").values == std::vector<double>{2, 5, 9});
     CHECK(known.shown(Quantity::radiosity, "sum").values == std::vector<double>{6, 15, 27});
     CHECK(known.shown(Quantity::irradiance).values[1] == Approx(76.0 / 3.0));
@@ -56,6 +56,12 @@ TEST_CASE("quantities: values of patches, of one channel or all", "[pipeline]") 
     CHECK(known.shown(Quantity::reflectance, "red").values == std::vector<double>{0.5, 0.5, 0});
     CHECK(known.shown(Quantity::emissivity, "red").values == std::vector<double>{0.5, 0.5, 1});
     CHECK(known.shown(Quantity::area).values == std::vector<double>{0.5, 0.5, 1.0});
+    CHECK(known.shown(Quantity::area).unit == "m²");
+    known.scene.unit = 0.5; // metres
+    CHECK(known.shown(Quantity::area).values == std::vector<double>{0.125, 0.125, 0.25});
+    // What arrives runs on across materials, and iso-lines with it; what leaves does not.
+    CHECK(known.shown(Quantity::irradiance).across_materials);
+    CHECK_FALSE(known.shown(Quantity::radiosity).across_materials);
     // The lamp's row was not computed.
     for (const Quantity share : {Quantity::environment, Quantity::blocked, Quantity::row_error}) {
         const std::vector<double> values = known.shown(share).values;

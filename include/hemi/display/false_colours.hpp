@@ -26,6 +26,9 @@ struct FalseColours {
     std::uint32_t bands = 0;
     /// Lines of equal values, interpolated between patches: where bands end, else at round values.
     bool iso_lines = false;
+    /// Whether the values run on smoothly where one material or group ends and another begins in the same
+    /// plane, and iso-lines with them.
+    bool across_materials = false;
 };
 
 struct Dots;

@@ -27,7 +27,7 @@ enum class Quantity {
     error,            ///< estimated, of the radiosity, W/m²
     error_factors,    ///< the part of it that comes from the form factors
     error_patch_size, ///< the part that comes from the patches' size
-    area,             ///< scene units squared
+    area,             ///< m²
     temperature,      ///< K, where heat was solved for
     net_flux,         ///< of radiation, leaving positive, W/m², likewise
 };

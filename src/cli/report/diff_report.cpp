@@ -31,7 +31,7 @@ std::string pairing_text(const SolutionDifference& found) {
 } // namespace
 
 Report diff_report(const SolutionDifference& found, std::span<const std::string> names,
-                   std::string_view quantity, const std::string& channel) {
+                   std::string_view quantity, const std::string& channel, double metres) {
     Report report;
     report.add("patches", pairing_text(found),
                {{"patches", found.partner.size()},
@@ -41,7 +41,7 @@ Report diff_report(const SolutionDifference& found, std::span<const std::string>
     const std::string unit = found.first.unit.empty() ? std::string() : fmt::format(" {}", found.first.unit);
     report.add("quantity", fmt::format("{}{}; differences are second less first", found.first.title, unit),
                {{"quantity", quantity}, {"channel", channel}, {"unit", found.first.unit}});
-    Table table({"group", "area", fmt::format("first{}", unit), fmt::format("second{}", unit),
+    Table table({"group", "area m²", fmt::format("first{}", unit), fmt::format("second{}", unit),
                  fmt::format("difference{}", unit), "%", fmt::format("rms{}", unit),
                  fmt::format("largest{}", unit)});
     report.json["groups"] = Json::array();
@@ -53,9 +53,9 @@ Report diff_report(const SolutionDifference& found, std::span<const std::string>
     for (std::size_t g = 0; g < found.groups.size(); ++g) {
         const GroupDifference& group = found.groups[g];
         const bool total = g + 1 == found.groups.size();
-        table.add({total ? std::string("(all)") : names[g], number_text(group.area), value_text(group.first),
-                   value_text(group.second), value_text(group.difference), percent_text(group),
-                   value_text(group.rms), value_text(group.largest)});
+        table.add({total ? std::string("(all)") : names[g], number_text(metres * metres * group.area),
+                   value_text(group.first), value_text(group.second), value_text(group.difference),
+                   percent_text(group), value_text(group.rms), value_text(group.largest)});
         if (total) {
             report.json["all"] = {{"area", group.area},
                                   {"first", value_json(group.first)},

@@ -13,7 +13,8 @@ namespace hemi::cli {
 /// @param names     of the groups of the first solution
 /// @param quantity  its word
 /// @param channel   of it
+/// @param metres    of the first scene's unit
 [[nodiscard]] Report diff_report(const SolutionDifference& found, std::span<const std::string> names,
-                                 std::string_view quantity, const std::string& channel);
+                                 std::string_view quantity, const std::string& channel, double metres);
 
 } // namespace hemi::cli

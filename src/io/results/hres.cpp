@@ -84,6 +84,9 @@ Json header(const ResultFile& result, const PatchMesh& mesh, const std::optional
     if (scene.photometric) {
         head["photometric"] = true;
     }
+    if (scene.unit) {
+        head["unit"] = *scene.unit;
+    }
     if (scene.sun) {
         head["sun"] = {{"direction", point(scene.sun->direction)}, {"irradiance", scene.sun->irradiance}};
         if (scene.sun->diameter > 0.0) {
@@ -256,6 +259,9 @@ Sizes read_header(const JsonNode& head, ResultFile& result) {
         scene.thermal = Thermal{values, {}, std::nullopt};
     }
     scene.photometric = head.has("photometric") && head.member("photometric").boolean();
+    if (head.has("unit")) {
+        scene.unit = head.member("unit").positive();
+    }
     if (head.has("sun")) {
         const JsonNode sun = head.member("sun");
         scene.sun = Sun{sun.member("direction").point(), sun.member("irradiance").numbers(),
