@@ -18,7 +18,7 @@ namespace {
 
 Report scene_info(const InfoArguments& arguments, const Terminal& terminal) {
     const LoadedScene loaded = load_scene(arguments.scene, terminal);
-    const FactorCost cost = measure_cost(loaded.mesh, arguments.rows.factors);
+    const FactorCost cost = measure_cost(loaded.mesh, arguments.rows.factors, true);
     Report more = imprint_report(loaded, terminal.verbose());
     more.add(cost_report(cost, loaded.mesh));
     Report report = contents_report(

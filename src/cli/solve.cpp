@@ -11,6 +11,7 @@
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/pipeline/accuracy.hpp"
+#include "hemi/pipeline/cost.hpp"
 #include "hemi/pipeline/light_balance.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/vertex_gather.hpp"
@@ -177,14 +178,7 @@ std::vector<Phase> phases_of(const SolveArguments& arguments, const LoadedScene&
     const FactorSettings& settings = arguments.rows.factors;
     const bool weighted =
         settings.method == Method::hemicube && plan_rows(settings, loaded.mesh.size()).weighted.has_value();
-    std::vector<Phase> phases;
-    if (weighted) {
-        phases = {Phase::visibility, Phase::pairs};
-    }
-    phases.push_back(Phase::form_factors);
-    if (settings.repair.value_or(weighted ? Repair::closure : Repair::none) == Repair::closure) {
-        phases.push_back(Phase::closure);
-    }
+    std::vector<Phase> phases = factor_phases(loaded.mesh, settings);
     phases.push_back(Phase::radiosity);
     if (gathers(arguments) &&
         (arguments.gather == Gather::on ||

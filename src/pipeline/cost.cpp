@@ -1,10 +1,20 @@
 #include "hemi/pipeline/cost.hpp"
 
+#include "engine/visibility_weighted/factor_assembly.hpp"
+#include "engine/visibility_weighted/pair_combination.hpp"
+#include "engine/visibility_weighted/visibility_table.hpp"
+#include "hemi/core/stopwatch.hpp"
+#include "hemi/engine/clustered_rows.hpp"
+#include "hemi/engine/visibility_weighted.hpp"
+#include "hemi/matrix/repair.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "pipeline/row_computation.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <thread>
+#include <utility>
 
 namespace hemi {
 
@@ -16,6 +26,15 @@ constexpr double most_seconds = 1.0; // for them
 unsigned usable_cores(const FactorSettings& settings) {
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     return settings.engine.jobs > 0 ? std::min(cores, settings.engine.jobs) : cores;
+}
+
+/// So many patches, spread evenly.
+std::vector<std::uint32_t> spread(std::uint32_t samples, std::uint32_t patches) {
+    std::vector<std::uint32_t> chosen;
+    for (std::uint32_t k = 0; k < std::min(samples, patches); ++k) {
+        chosen.push_back(static_cast<std::uint32_t>(std::uint64_t{k} * patches / std::min(samples, patches)));
+    }
+    return chosen;
 }
 
 /// @param estimate  what up to so many sampled rows show
@@ -36,9 +55,130 @@ FactorCost measure(const Estimate& estimate, std::uint32_t patches, const Factor
     return cost;
 }
 
+/// What single stages take for some rows, the least of several times: others may have been at work as well.
+struct StageTimes {
+    double pairs = std::numeric_limits<double>::infinity();
+    double factors = std::numeric_limits<double>::infinity();
+    double closure = std::numeric_limits<double>::infinity(); ///< an iteration and an entry
+};
+
+StageTimes time_stages(VisibilityProvider& provider, const ImageMesh& images,
+                       std::span<const std::uint32_t> patches, const VisibilityWeightedSettings& settings) {
+    constexpr int times = 3;
+    constexpr double other_passes = 3.0; // over the entries, besides iterations
+    const VisibilityTable table = sample_visibility(provider, patches, images.mesh().size(), {});
+    StageTimes least;
+    const auto lower = [](double& least_time, double time) { least_time = std::min(least_time, time); };
+    for (int k = 0; k < times; ++k) {
+        VisibilityTable samples = table;
+        const Stopwatch combining;
+        const PairTable pairs = combine_pairs(std::move(samples), images, settings.shadow_rays, {});
+        lower(least.pairs, combining.seconds());
+        const Stopwatch assembling;
+        FormFactorMatrix matrix = assemble_factors(pairs, images, settings.rule, Enclosure::automatic, {});
+        lower(least.factors, assembling.seconds());
+        if (k == 0 || matrix.entries() == 0) {
+            continue; // memory that is touched for the first time
+        }
+        const Stopwatch closing;
+        const std::span<const double> areas = images.mesh().areas();
+        const RepairReport report = repair(matrix, areas.first(images.size()), Repair::closure);
+        lower(least.closure, closing.seconds() / (static_cast<double>(matrix.entries()) *
+                                                  (report.iterations + other_passes)));
+    }
+    return least;
+}
+
+/// Stages after the visibility of all rows, from a few rows and from more: what is made once does not count.
+void add_stages(FactorCost& cost, VisibilityProvider& provider, const PatchMesh& mesh, const RowPlan& plan,
+                const FactorSettings& settings) {
+    constexpr double usual_passes = 40.0; // of closing rows; rooms take 20 to 50
+    const ImageMesh images(mesh);
+    const std::vector<std::uint32_t> more = spread(cost.sampled_rows, mesh.size());
+    const std::vector<std::uint32_t> few = spread(std::max(1u, cost.sampled_rows / 4), mesh.size());
+    const bool all = few.size() == more.size();
+    const StageTimes first = time_stages(provider, images, few, *plan.weighted);
+    const StageTimes last = all ? first : time_stages(provider, images, more, *plan.weighted);
+    // A pair of two rows is looked at once, one with a patch without a row as well.
+    const auto pairs = [&images](std::size_t rows) {
+        const auto count = static_cast<double>(rows);
+        return count * (images.mesh().size() - 0.5 * count);
+    };
+    const double share = pairs(mesh.size()) / (pairs(more.size()) - (all ? 0.0 : pairs(few.size())));
+    const auto whole = [&](double StageTimes::*of) {
+        return std::max(0.0, last.*of - (all ? 0.0 : first.*of)) * share;
+    };
+    cost.stages.push_back({Phase::pairs, whole(&StageTimes::pairs)});
+    cost.stages.push_back({Phase::form_factors, whole(&StageTimes::factors)});
+    if (settings.repair.value_or(Repair::closure) == Repair::closure) {
+        const double entries = cost.entries_per_row * mesh.size();
+        cost.stages.push_back(
+            {Phase::closure, std::isfinite(last.closure) ? last.closure * entries * usual_passes : 0.0});
+    }
+}
+
+/// Rows with far patches in clusters, from a few rows and from more.
+void measure_clusters(FactorCost& cost, const PatchMesh& mesh, const FactorSettings& settings) {
+    const RowPlan plan = plan_clustered_rows(settings, mesh.size());
+    const auto provider = make_visibility_provider(mesh, plan.hemicube, settings);
+    ClusterSettings clusters;
+    clusters.rule = plan.weighted ? plan.weighted->rule : clusters.rule;
+    clusters.opening = cluster_opening(settings.cluster_error);
+    const auto time = [&](std::uint32_t samples) {
+        const std::vector<std::uint32_t> rows = spread(samples, mesh.size());
+        const Stopwatch watch;
+        FormFactorMatrix matrix = compute_clustered(*provider, mesh, rows, clusters, Enclosure::automatic);
+        return std::pair(watch.seconds(),
+                         static_cast<double>(matrix.entries()) / static_cast<double>(rows.size()));
+    };
+    const std::uint32_t few = std::max(1u, cost.sampled_rows / 4);
+    const double first = time(few).first;
+    const auto [last, entries] = time(cost.sampled_rows);
+    cost.clusters = true;
+    cost.entries_per_row = entries;
+    cost.memory = matrix_memory(entries, mesh.size(), mesh.size());
+    cost.seconds = few < cost.sampled_rows
+                       ? std::max(0.0, last - first) / (cost.sampled_rows - few) * mesh.size()
+                       : last / cost.sampled_rows * mesh.size();
+    cost.stages = {{Phase::visibility, cost.seconds}};
+}
+
 } // namespace
 
-FactorCost measure_cost(const PatchMesh& mesh, const FactorSettings& settings) {
+double FactorCost::all_seconds() const {
+    double sum = 0.0;
+    for (const StageCost& stage : stages) {
+        sum += stage.seconds;
+    }
+    return sum;
+}
+
+bool needs_clusters(const PatchMesh& mesh, const FactorSettings& settings, double entries_per_row) {
+    if (settings.method != Method::hemicube || settings.preset == Preset::plain || mesh.symmetry()) {
+        return false;
+    }
+    return settings.clusters == Clusters::on ||
+           (settings.clusters == Clusters::automatic &&
+            visibility_weighted_memory(entries_per_row, mesh.size(), mesh.size()) > memory_limit(settings));
+}
+
+std::vector<Phase> factor_phases(const PatchMesh& mesh, const FactorSettings& settings) {
+    const bool weighted = settings.method == Method::hemicube && settings.preset != Preset::plain;
+    if (weighted && needs_clusters(mesh, settings)) { // whose rows come at once, and balance
+        return {Phase::visibility};
+    }
+    std::vector<Phase> phases;
+    if (weighted) {
+        phases = {Phase::visibility, Phase::pairs};
+    }
+    phases.push_back(Phase::form_factors);
+    if (settings.repair.value_or(weighted ? Repair::closure : Repair::none) == Repair::closure) {
+        phases.push_back(Phase::closure);
+    }
+    return phases;
+}
+
+FactorCost measure_cost(const PatchMesh& mesh, const FactorSettings& settings, bool all_stages) {
     const RowPlan plan = plan_rows(settings, mesh.size());
     const auto patches = all_patches(mesh.size());
     const auto measure_on = [&](auto& provider, const auto& estimate) {
@@ -47,14 +187,23 @@ FactorCost measure_cost(const PatchMesh& mesh, const FactorSettings& settings) {
         cost.renderer = provider.renderer();
         return cost;
     };
+    FactorCost cost;
     if (settings.method == Method::hemicube && plan.weighted) {
-        return measure_on(
-            *make_visibility_provider(mesh, plan.hemicube, settings),
-            [&mesh](VisibilityProvider& provider, std::span<const std::uint32_t> of, std::uint32_t samples) {
-                return estimate_pairs(provider, mesh, of, samples);
-            });
+        const auto provider = make_visibility_provider(mesh, plan.hemicube, settings);
+        cost = measure_on(*provider,
+                          [&mesh](VisibilityProvider& rows, std::span<const std::uint32_t> of,
+                                  std::uint32_t samples) { return estimate_pairs(rows, mesh, of, samples); });
+        cost.stages = {{Phase::visibility, cost.seconds}};
+        if (all_stages && needs_clusters(mesh, settings, cost.entries_per_row)) {
+            measure_clusters(cost, mesh, settings);
+        } else if (all_stages) {
+            add_stages(cost, *provider, mesh, plan, settings);
+        }
+        return cost;
     }
-    return measure_on(*make_row_provider(mesh, settings), estimate_matrix);
+    cost = measure_on(*make_row_provider(mesh, settings), estimate_matrix);
+    cost.stages = {{Phase::form_factors, cost.seconds}};
+    return cost;
 }
 
 } // namespace hemi

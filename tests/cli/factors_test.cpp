@@ -211,6 +211,26 @@ TEST_CASE("info: what a scene holds and what it would cost", "[cli]") {
     CHECK(info["estimate"]["entries_per_row"] > 10);
     CHECK(info["estimate"]["memory"] > 0);
     CHECK(info["estimate"]["seconds"] > 0);
+    CHECK(info["estimate"]["clusters"] == false);
+    double sum = 0.0;
+    for (const char* stage : {"visibility", "combining pairs", "form factors", "closing rows"}) {
+        INFO(stage);
+        REQUIRE(info["estimate"]["stages"].contains(stage));
+        CHECK(info["estimate"]["stages"][stage] >= 0.0);
+        sum += info["estimate"]["stages"][stage].get<double>();
+    }
+    CHECK(info["estimate"]["seconds"] == sum);
+    CHECK(text.out_has("combining pairs"));
+    // Where pairs do not fit, far patches are seen in clusters, in one stage.
+    const Json clusters = run_hemi({"info", path, "--json", "--max-memory", "20K"}).json()["estimate"];
+    CHECK(clusters["clusters"] == true);
+    CHECK(clusters["stages"].size() == 1);
+    CHECK(clusters["seconds"] == clusters["stages"]["visibility"]);
+    CHECK(run_hemi({"info", path, "--json", "--max-memory", "20K", "--clusters", "off"})
+              .json()["estimate"]["clusters"] == false);
+    const Json plain = run_hemi({"info", path, "--json", "--preset", "plain"}).json()["estimate"];
+    CHECK(plain["stages"].size() == 1);
+    CHECK(plain["stages"].contains("form factors"));
 }
 
 TEST_CASE("info: rows are measured on the device and by the method that are named", "[cli]") {

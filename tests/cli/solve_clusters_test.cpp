@@ -16,7 +16,9 @@ TEST_CASE("solve: far patches are seen in clusters where it is asked for, or whe
         words.insert(words.end(), more.begin(), more.end());
         return run_hemi(words);
     };
-    const Json pairs = solve({}).json();
+    const Outcome with_pairs = solve({"--verbose"});
+    CHECK_THAT(with_pairs.err, Contains("1/5 visibility") && Contains("2/5 combining pairs"));
+    const Json pairs = with_pairs.json();
     CHECK(pairs["clusters"] == false);
     CHECK(pairs["reciprocity"].is_object());
     const auto check_clusters = [&](const Json& run) {
@@ -31,7 +33,9 @@ TEST_CASE("solve: far patches are seen in clusters where it is asked for, or whe
             }
         }
     };
-    check_clusters(solve({"--clusters", "on", "--cluster-error", "0.5%"}).json());
+    const Outcome clusters = solve({"--clusters", "on", "--cluster-error", "0.5%", "--verbose"});
+    CHECK_THAT(clusters.err, Contains("1/2 visibility") && !Contains("combining pairs"));
+    check_clusters(clusters.json());
 
     const Outcome little = solve({"--max-memory", "14M", "--verbose"});
     INFO(little.err);

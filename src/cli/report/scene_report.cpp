@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace hemi::cli {
@@ -82,7 +83,8 @@ Report symmetry_report(const Scene& scene, const PatchMesh& mesh) {
 }
 
 Report groups_report(const Scene& scene, const PatchMesh& mesh, std::span<const double> areas) {
-    Table table({"group", "surfaces", "patches", "area"});
+    const double square_metres = std::pow(scene.unit.value_or(1.0), 2.0);
+    Table table({"group", "surfaces", "patches", "area m²"});
     Json list = Json::array();
     std::vector<std::uint32_t> surfaces(mesh.groups().size(), 0);
     std::size_t all = 0;
@@ -96,12 +98,13 @@ Report groups_report(const Scene& scene, const PatchMesh& mesh, std::span<const 
     for (std::size_t g = 0; g < sizes.size(); ++g) {
         const auto& [patches, group_area] = sizes[g];
         const std::string& name = mesh.groups()[g];
-        table.add({name, count_text(surfaces[g]), count_text(patches), number_text(group_area)});
+        table.add(
+            {name, count_text(surfaces[g]), count_text(patches), number_text(square_metres * group_area)});
         list.push_back(
             {{"name", name}, {"surfaces", surfaces[g]}, {"patches", patches}, {"area", group_area}});
         area += group_area;
     }
-    table.add({"(all)", count_text(all), count_text(mesh.size()), number_text(area)});
+    table.add({"(all)", count_text(all), count_text(mesh.size()), number_text(square_metres * area)});
     return {fmt::format("\n{}", table.text()), {{"groups", list}}};
 }
 
@@ -172,7 +175,9 @@ Report imprint_report(const LoadedScene& loaded, bool all) {
     if (as_read.findings.empty()) {
         report.add("parts", fmt::format("{}, which are plane and convex", parts));
     } else {
-        report.add("faces touch", fmt::format("{}; area {} is covered", parts, number_text(as_read.covered)));
+        const double square_metres = std::pow(loaded.scene.unit.value_or(1.0), 2.0);
+        report.add("faces touch",
+                   fmt::format("{}; {} m² are covered", parts, number_text(square_metres * as_read.covered)));
     }
     constexpr std::size_t few = 3;
     Json list = Json::array();
@@ -249,16 +254,29 @@ Report cost_report(const FactorCost& cost, const PatchMesh& mesh) {
     Report report;
     report.add("memory", fmt::format("about {} for {} rows of {:.0f} entries", memory_text(cost.memory),
                                      count_text(mesh.size()), cost.entries_per_row));
-    report.add("time", fmt::format("about {} for the rows (measured on {}, {}, {})",
-                                   seconds_text(cost.seconds), plural(cost.sampled_rows, "row", "rows"),
-                                   cost.renderer, plural(cost.cores, "core", "cores")));
+    std::vector<std::string> stages;
+    Json seconds = Json::object();
+    for (const StageCost& stage : cost.stages) {
+        stages.push_back(fmt::format("{} {}", to_word(stage.phase), seconds_text(stage.seconds)));
+        seconds[std::string(to_word(stage.phase))] = stage.seconds;
+    }
+    report.add("time", fmt::format("about {} for form factors{} (measured on {}, {}, {})",
+                                   seconds_text(cost.all_seconds()),
+                                   cost.clusters ? ", far patches seen in clusters" : "",
+                                   plural(cost.sampled_rows, "row", "rows"), cost.renderer,
+                                   plural(cost.cores, "core", "cores")));
+    if (stages.size() > 1) {
+        report.add("", fmt::format("{}", fmt::join(stages, ", ")));
+    }
     report.json["estimate"] = {{"measured", true},
                                {"rows", cost.sampled_rows},
                                {"renderer", cost.renderer},
                                {"cores", cost.cores},
                                {"entries_per_row", cost.entries_per_row},
                                {"memory", cost.memory},
-                               {"seconds", cost.seconds}};
+                               {"clusters", cost.clusters},
+                               {"stages", std::move(seconds)},
+                               {"seconds", cost.all_seconds()}};
     return report;
 }
 
