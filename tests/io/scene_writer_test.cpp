@@ -66,3 +66,37 @@ TEST_CASE("write_scene_camera: refuses what is no JSON scene, and leaves it alon
                     InvalidArgument);
     CHECK_THROWS_AS(io::write_scene_camera("/nowhere/scene.json", camera()), InputError);
 }
+
+TEST_CASE("write_scene_materials: replaces values of materials and nothing else", "[io]") {
+    const std::string before = R"({"hemi": 1, "channels": ["a", "b"],
+  "materials": {"m": {"reflectance" :)";
+    const std::string middle = R"(}, "lamp": {"reflectance": 0.25})";
+    const std::string after = "},\n  " + surfaces + "}\n";
+    const Folder folder;
+    const auto path = folder.write("scene.json", before + "[0.5,  0.5]" + middle + after);
+    const std::vector<io::MaterialValues> values{{"m", {0.125, 0.75}, {}}, {"lamp", {}, {3.5, 3.5}}};
+    io::write_scene_materials(path, values, std::vector{1.0, 2.0});
+    const std::string text = io::read_file(path);
+    CHECK(text.substr(0, before.size()) == before);
+    CHECK(text.find("\"lamp\": {\"reflectance\": 0.25, \"exitance\": 3.5}") != std::string::npos);
+    Diagnostics diagnostics;
+    const Scene scene = io::read_scene(path, {}, diagnostics);
+    REQUIRE(scene.materials.size() == 2);
+    for (const Material& material : scene.materials) {
+        const bool lamp = material.name == "lamp";
+        CHECK(material.reflectance == (lamp ? std::vector{0.25, 0.25} : std::vector{0.125, 0.75}));
+        CHECK(material.exitance == (lamp ? std::vector{3.5, 3.5} : std::vector{0.0, 0.0}));
+    }
+    CHECK(scene.environment == std::vector{1.0, 2.0});
+    io::write_scene_materials(path, {}, std::vector{4.0, 4.0}); // in place of that
+    CHECK(io::read_scene(path, {}, diagnostics).environment == std::vector{4.0, 4.0});
+
+    const std::string kept = io::read_file(path);
+    const std::vector<io::MaterialValues> unknown{{"gold", {0.5, 0.5}, {}}};
+    CHECK_THROWS_AS(io::write_scene_materials(path, unknown, {}), InvalidArgument);
+    CHECK(io::read_file(path) == kept);
+    const auto warm = folder.write("warm.json", R"({"hemi": 1, "materials": {"m": {"emissivity": 0.5}}, )" +
+                                                    surfaces + "}");
+    CHECK_THROWS_AS(io::write_scene_materials(warm, std::vector<io::MaterialValues>{{"m", {0.5}, {}}}, {}),
+                    InvalidArgument);
+}

@@ -5,7 +5,9 @@
 #include "io/formats/json_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -40,9 +42,13 @@ std::size_t after_value(std::string_view text, std::size_t at) {
     return last + 1;
 }
 
-/// First and one after the last byte of a member's value in the outermost object of a sound JSON text.
-std::optional<std::pair<std::size_t, std::size_t>> find_member(std::string_view text, std::string_view key) {
-    std::size_t at = text.find('{') + 1;
+/// First and one after the last byte of a value.
+using Place = std::pair<std::size_t, std::size_t>;
+
+/// A member's value in an object of a sound JSON text.
+/// @param object  where that begins
+std::optional<Place> find_member(std::string_view text, std::size_t object, std::string_view key) {
+    std::size_t at = object + 1;
     while (true) {
         at = text.find_first_not_of(blanks, at);
         if (text[at] == '}') {
@@ -57,7 +63,7 @@ std::optional<std::pair<std::size_t, std::size_t>> find_member(std::string_view 
         const std::size_t first = text.find_first_not_of(blanks, text.find(':', key_end) + 1);
         const std::size_t end = after_value(text, first);
         if (name == key) {
-            return std::pair(first, end);
+            return Place(first, end);
         }
         at = end;
     }
@@ -70,26 +76,93 @@ std::string camera_text(const Camera& camera) {
                        camera.orthographic ? R"(, "orthographic": true)" : "");
 }
 
-} // namespace
+std::string values_text(std::span<const double> values) {
+    const bool grey = std::all_of(values.begin(), values.end(),
+                                  [&values](double value) { return value == values.front(); });
+    return grey ? fmt::format("{}", values.front()) : fmt::format("[{}]", fmt::join(values, ", "));
+}
 
-void write_scene_camera(const std::filesystem::path& path, const Camera& camera) {
+/// Puts a member into an object, in place of one of that name or behind all else.
+/// @param object  where it begins
+/// @param before  between the last member and a new one
+void put_member(std::string& text, std::size_t object, std::string_view key, const std::string& value,
+                std::string_view before) {
+    if (const auto found = find_member(text, object, key)) {
+        text.replace(found->first, found->second - found->first, value);
+        return;
+    }
+    const std::size_t end = after_value(text, object); // one after its brace
+    const std::size_t last = text.find_last_not_of(blanks, end - 2);
+    const bool empty = last == object;
+    text.insert(last + 1, fmt::format("{}\"{}\": {}", empty ? "" : before, key, value));
+}
+
+/// @param what  it takes
+std::string read_scene(const std::filesystem::path& path, std::string_view what) {
     if (path.extension() != ".json") {
-        throw InvalidArgument(fmt::format("{}: only a JSON scene takes a camera", path.string()));
+        throw InvalidArgument(fmt::format("{}: only a JSON scene takes {}", path.string(), what));
     }
     std::string text = read_file(path);
     const Json scene = parse_json(text, path.string());
     if (!scene.is_object() || scene.empty()) {
         throw InputError(fmt::format("{}: not a scene", path.string()));
     }
-    if (const auto found = find_member(text, "camera")) {
-        text.replace(found->first, found->second - found->first, camera_text(camera));
-    } else {
-        const std::size_t last = text.find_last_not_of(blanks, text.rfind('}') - 1);
-        text.insert(last + 1, ",\n  \"camera\": " + camera_text(camera));
-    }
+    return text;
+}
+
+void write(const std::filesystem::path& path, std::string_view text) {
     OutputFile file(path);
     file.write(text);
     file.commit();
+}
+
+} // namespace
+
+void write_scene_camera(const std::filesystem::path& path, const Camera& camera) {
+    std::string text = read_scene(path, "a camera");
+    put_member(text, text.find('{'), "camera", camera_text(camera), ",\n  ");
+    write(path, text);
+}
+
+void write_scene_materials(const std::filesystem::path& path, std::span<const MaterialValues> materials,
+                           std::span<const double> environment) {
+    std::string text = read_scene(path, "materials");
+    const std::size_t scene = text.find('{');
+    for (const MaterialValues& material : materials) {
+        const auto object_of = [&] { // moves while members are put
+            const auto all = find_member(text, scene, "materials");
+            return all && text[all->first] == '{' ? find_member(text, all->first, material.name)
+                                                  : std::nullopt;
+        };
+        const auto found = object_of();
+        if (!found || text[found->first] != '{') {
+            throw InvalidArgument(fmt::format(
+                "{}: no material \"{}\"; it is not one of the file's own, so save the result instead",
+                path.string(), material.name));
+        }
+        if (!material.reflectance.empty() && find_member(text, found->first, "emissivity")) {
+            throw InvalidArgument(fmt::format("{}: materials.{}: has an emissivity, from which its "
+                                              "reflectance follows; change that in the file",
+                                              path.string(), material.name));
+        }
+        if (!material.reflectance.empty()) {
+            put_member(text, object_of()->first, "reflectance", values_text(material.reflectance), ", ");
+        }
+        if (!material.exitance.empty()) {
+            put_member(text, object_of()->first, "exitance", values_text(material.exitance), ", ");
+        }
+    }
+    if (!environment.empty()) {
+        const auto found = find_member(text, scene, "environment");
+        if (found && text[found->first] == '{') {
+            put_member(text, found->first, "exitance", values_text(environment), ", ");
+        } else {
+            put_member(text, scene, "environment",
+                       fmt::format(R"({{"exitance": {}}})", values_text(environment)), ",\n  ");
+        }
+    }
+    (void)parse_json(text, path.string()); // what is not sound is not written
+    write(path, text);
 }
 
 } // namespace hemi::io
