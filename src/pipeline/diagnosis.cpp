@@ -121,8 +121,11 @@ void examine_columns(Diagnosis& diagnosis, const FormFactors& file, const PatchM
         back_face_area += file.areas[finding.patch] * finding.share;
     }
     std::map<std::uint32_t, ReversedGroup> reversed;
+    const auto is_reversed = [back_face_area](const Unit& unit) {
+        return unit.suspect && unit.patches > 0 && back_face_area > reversed_above * unit.area;
+    };
     for (const Unit& unit : units) {
-        if (unit.suspect && unit.patches > 0 && back_face_area > reversed_above * unit.area) {
+        if (is_reversed(unit)) {
             ReversedGroup& group = reversed[unit.group];
             group.group = unit.group;
             group.surfaces += mesh != nullptr ? 1 : 0;
@@ -131,6 +134,11 @@ void examine_columns(Diagnosis& diagnosis, const FormFactors& file, const PatchM
     }
     for (const auto& [index, group] : reversed) {
         diagnosis.reversed.push_back(group);
+    }
+    for (std::uint32_t i = 0; i < factors.size() && !reversed.empty(); ++i) {
+        if (is_reversed(units[mesh != nullptr ? mesh->surface_of()[i] : file.group_of[i]])) {
+            diagnosis.turned.push_back(i);
+        }
     }
 }
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 
 namespace hemi {
 
@@ -46,27 +47,6 @@ std::uint32_t nearest_patch(const PatchMesh& mesh, const Vec3& point, const Vec3
     return found;
 }
 
-void pair_patches(const PatchMesh& first, const PatchMesh& second, SolutionDifference& result) {
-    result.partner.resize(first.size());
-    if (first.size() == second.size() && first.geometry_hash() == second.geometry_hash()) {
-        std::iota(result.partner.begin(), result.partner.end(), 0U);
-        return;
-    }
-    result.pairing = Pairing::nearest;
-    const PatchLocator locator(second);
-    for (std::uint32_t i = 0; i < first.size(); ++i) {
-        const Vec3& centre = first.centres()[i];
-        if (const auto there = locator.find({centre, first.normal(i)})) {
-            result.partner[i] = *there;
-            continue;
-        }
-        result.partner[i] = nearest_patch(second, centre, first.normal(i));
-        result.farthest =
-            std::max(result.farthest, glm::distance(second.centres()[result.partner[i]], centre));
-        ++result.off;
-    }
-}
-
 /// Sums over patches, then what comes of them.
 void add(GroupDifference& group, double area, double first, double second) {
     const double difference = second - first;
@@ -91,9 +71,37 @@ void finish(GroupDifference& group) {
 
 } // namespace
 
+PatchPairs pair_patches(const PatchMesh& first, const PatchMesh& second) {
+    PatchPairs pairs;
+    pairs.partner.resize(first.size());
+    if (first.size() == second.size() && first.geometry_hash() == second.geometry_hash()) {
+        std::iota(pairs.partner.begin(), pairs.partner.end(), 0U);
+        return pairs;
+    }
+    pairs.pairing = Pairing::nearest;
+    const PatchLocator locator(second);
+    for (std::uint32_t i = 0; i < first.size(); ++i) {
+        const Vec3& centre = first.centres()[i];
+        if (const auto there = locator.find({centre, first.normal(i)})) {
+            pairs.partner[i] = *there;
+            continue;
+        }
+        pairs.partner[i] = nearest_patch(second, centre, first.normal(i));
+        pairs.farthest = std::max(pairs.farthest, glm::distance(second.centres()[pairs.partner[i]], centre));
+        ++pairs.off;
+    }
+    return pairs;
+}
+
 SolutionDifference compare_solutions(const SolutionOf& first, const SolutionOf& second, Quantity quantity,
                                      const std::string& channel) {
+    return compare_solutions(first, second, pair_patches(first.mesh, second.mesh), quantity, channel);
+}
+
+SolutionDifference compare_solutions(const SolutionOf& first, const SolutionOf& second, PatchPairs pairs,
+                                     Quantity quantity, const std::string& channel) {
     SolutionDifference result;
+    static_cast<PatchPairs&>(result) = std::move(pairs);
     result.first = quantity_of("first", first, quantity, channel);
     const FalseColours other = quantity_of("second", second, quantity, channel);
     if (result.first.unit != other.unit) {
@@ -101,7 +109,6 @@ SolutionDifference compare_solutions(const SolutionOf& first, const SolutionOf& 
                                           "compared",
                                           result.first.unit, other.unit));
     }
-    pair_patches(first.mesh, second.mesh, result);
     const std::size_t channels = first.scene.channels.size();
     const std::span<const double> exitance = first.solution.exitance;
     result.groups.resize(first.mesh.groups().size() + 1);
@@ -128,6 +135,7 @@ FalseColours difference_colours(const SolutionDifference& difference) {
     FalseColours shown{difference.difference, fmt::format("Difference: {}", difference.first.title),
                        difference.first.unit};
     shown.map = ColourMap::cool_warm;
+    shown.across_materials = difference.first.across_materials;
     if (difference.largest_lit > 0.0) {
         shown.range = {-difference.largest_lit, difference.largest_lit};
     }

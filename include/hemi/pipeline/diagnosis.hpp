@@ -76,6 +76,7 @@ struct Diagnosis {
     std::vector<PatchFinding> close; ///< a surface is close above: share is the gap in patch sizes
     std::vector<PatchFinding> never_visible; ///< no patch sees them, though they are not buried
     std::vector<ReversedGroup> reversed;     ///< normals point the wrong way
+    std::vector<std::uint32_t> turned;       ///< patches of these surfaces, ascending
     std::vector<std::string> failures;       ///< what is out of tolerance, a clause each; empty: nothing
 };
 /// Looks for what is wrong with prepared form factors.

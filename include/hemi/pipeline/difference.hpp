@@ -33,6 +33,19 @@ struct Names<Pairing> {
                                                     {Pairing::nearest, "nearest"}};
 };
 
+/// Which patch of a second mesh belongs to each of a first one.
+struct PatchPairs {
+    Pairing pairing = Pairing::same_patches; ///< how patches were paired
+    std::uint32_t off = 0;                   ///< patches of the first that lie on none of the second
+    double farthest = 0.0;                   ///< of these, the largest distance between centres, scene units
+    std::vector<std::uint32_t> partner;      ///< patch of the second, N
+};
+/// Pairs the patches of two solutions, see compare_solutions().
+/// @param first   N patches
+/// @param second  where partners are looked for
+/// @throws InvalidArgument where no patch of the second looks the way of one of the first
+[[nodiscard]] PatchPairs pair_patches(const PatchMesh& first, const PatchMesh& second);
+
 /// A quantity of a group in two solutions, over its patches that have a value in both. Means are by area; not
 /// a number where no patch has.
 struct GroupDifference {
@@ -45,15 +58,11 @@ struct GroupDifference {
 };
 
 /// Two solutions, patch by patch of the first.
-struct SolutionDifference {
-    Pairing pairing = Pairing::same_patches; ///< how patches were paired
-    std::uint32_t off = 0;                   ///< patches of the first that lie on none of the second
-    double farthest = 0.0;                   ///< of these, the largest distance between centres, scene units
-    std::vector<std::uint32_t> partner;      ///< patch of the second, N
-    FalseColours first;                      ///< the quantity of the first, N
-    std::vector<double> second;              ///< of the second, at the patches of the first, N
-    std::vector<double> difference;          ///< second - first, N; not a number where either is
-    double largest_lit = 0.0; ///< largest magnitude of these on patches of the first that do not shine
+struct SolutionDifference : PatchPairs {
+    FalseColours first;             ///< the quantity of the first, N
+    std::vector<double> second;     ///< of the second, at the patches of the first, N
+    std::vector<double> difference; ///< second - first, N; not a number where either is
+    double largest_lit = 0.0;       ///< largest magnitude of these on patches of the first that do not shine
     std::vector<GroupDifference> groups; ///< of every group of the first; a last one of all patches
 };
 
@@ -69,6 +78,16 @@ struct SolutionDifference {
 ///   looks the way of one of the first
 [[nodiscard]] SolutionDifference compare_solutions(const SolutionOf& first, const SolutionOf& second,
                                                    Quantity quantity, const std::string& channel = "mean");
+/// The same with patches that were paired before.
+/// @param first     counts as the reference
+/// @param second    may be of another scene
+/// @param pairs     of their meshes
+/// @param quantity  that both have
+/// @param channel   as in patch_quantity(), of both
+/// @throws InvalidArgument as patch_quantity(), naming which; where units differ
+[[nodiscard]] SolutionDifference compare_solutions(const SolutionOf& first, const SolutionOf& second,
+                                                   PatchPairs pairs, Quantity quantity,
+                                                   const std::string& channel);
 
 /// The difference in false colours: of the cool-warm map, zero in its middle, by a scale for patches that do
 /// not shine by themselves, where there are such.
