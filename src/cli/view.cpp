@@ -97,6 +97,15 @@ public:
     ViewSource(const ViewArguments& arguments, const Terminal& terminal)
         : arguments_(arguments), terminal_(terminal) {}
 
+    [[nodiscard]] viewer::ViewerInput open(const viewer::FilesToOpen& files) const {
+        viewer::ViewerInput input = open(files.file, files.factors);
+        if (!files.compared.empty()) {
+            input.compared = compared(files.compared, *input.mesh);
+        }
+        return input;
+    }
+
+private:
     /// @param factors  stored rows of the scene; empty: none
     [[nodiscard]] viewer::ViewerInput open(const std::filesystem::path& path,
                                            const std::filesystem::path& factors) const {
@@ -114,7 +123,18 @@ public:
                                           path.string(), io::scene_extensions()));
     }
 
-private:
+    /// @param mesh  that is shown
+    [[nodiscard]] static std::shared_ptr<const viewer::Compared> compared(const std::filesystem::path& path,
+                                                                          const PatchMesh& mesh) {
+        io::ResultFile result = io::read_hres(path);
+        auto other = std::make_shared<const PatchMesh>(result.scene, result.subdivision);
+        io::complete_solution(result, *other);
+        PatchPairs pairs = pair_patches(mesh, *other);
+        return std::make_shared<const viewer::Compared>(
+            viewer::Compared{path, std::make_shared<const Scene>(std::move(result.scene)), std::move(other),
+                             std::move(result.solution), std::move(pairs)});
+    }
+
     /// All that does not depend on where the solution comes from.
     [[nodiscard]] viewer::ViewerInput describe(const std::filesystem::path& path,
                                                std::shared_ptr<const Scene> scene,
@@ -130,6 +150,7 @@ private:
         input.camera = choose_camera(*scene, *mesh, options);
         input.picture = picture_settings(options);
         input.automatic_exposure = !options.exposure;
+        input.max_row_error = arguments_.rows.max_row_error;
         input.solution = std::move(solution);
         if (input.solution.exitance.empty()) {
             input.solution.exitance = patch_values(*mesh, scene->materials, &Material::exitance);
@@ -285,10 +306,11 @@ ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
     viewer::ViewerSettings settings;
     settings.controls = arguments.controls;
     settings.script = arguments.script;
-    settings.open = [&source](const std::filesystem::path& file, const std::filesystem::path& factors) {
-        return source.open(file, factors);
-    };
-    viewer::ViewerInput input = source.open(path, arguments.factors.value_or(std::filesystem::path()));
+    settings.open = [&source](const viewer::FilesToOpen& files) { return source.open(files); };
+    const bool compares = extension_of(path) == ".hres" && !arguments.scene.also.empty();
+    viewer::ViewerInput input =
+        source.open({path, arguments.factors.value_or(std::filesystem::path()),
+                     compares ? arguments.scene.also.front() : std::filesystem::path()});
     input.picture.cut = picture_cut(arguments.picture, input.mesh->groups()); // of the first scene alone
     viewer::run_viewer(std::move(input), settings);
     return ExitStatus::ok;

@@ -32,12 +32,6 @@ int scale_of_height(std::uint32_t height) {
     return std::max(1, static_cast<int>(height / scale_height));
 }
 
-std::uint8_t srgb_of(float linear) {
-    const float srgb =
-        linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
-    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(srgb, 0.0F, 1.0F)));
-}
-
 /// A piece of a text: what the font has, or a raised letter in place of what it has not.
 struct Run {
     std::string text;
@@ -133,6 +127,12 @@ std::vector<double> every_few(const std::vector<double>& values, std::size_t eve
 }
 
 } // namespace
+
+std::uint8_t srgb_of(float linear) {
+    const float srgb =
+        linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
+    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(srgb, 0.0F, 1.0F)));
+}
 
 std::string level_text(double level, const std::vector<double>& marks) {
     constexpr int most_decimals = 6;
@@ -249,6 +249,34 @@ bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view ti
         canvas.fill(place(mark), bar_bottom, place(mark) + s, bar_bottom + 3 * s, ink);
         const std::string words = words_of(mark);
         canvas.text(text_left(mark), bar_bottom + 5 * s, words);
+    }
+    return true;
+}
+
+bool draw_key(Picture& picture, std::string_view title, std::span<const KeyLine> lines) {
+    Canvas canvas(picture);
+    const int s = canvas.scale();
+    const int pad = legend_pad * s;
+    const int step = line_height * s;
+    const int left = legend_margin * s;
+    const int box_height = 2 * pad + step * static_cast<int>(lines.size() + 1);
+    const int top = static_cast<int>(picture.height) - left - box_height;
+    int box_width = canvas.width_of(title) + 2 * pad;
+    for (const KeyLine& line : lines) {
+        box_width = std::max(box_width, canvas.width_of(line.words) + step + 2 * pad);
+    }
+    if (picture.width < least_width || picture.height < least_height || top < 0 ||
+        box_width > static_cast<int>(picture.width) - 2 * left) {
+        return false;
+    }
+    canvas.fill(left, top, left + box_width, top + box_height, ground);
+    canvas.text(left + pad, top + pad, title);
+    int at = top + pad + step;
+    for (const KeyLine& line : lines) {
+        canvas.fill(left + pad, at, left + pad + 8 * s, at + 8 * s,
+                    {srgb_of(line.colour[0]), srgb_of(line.colour[1]), srgb_of(line.colour[2])});
+        canvas.text(left + pad + step, at, line.words);
+        at += step;
     }
     return true;
 }

@@ -5,12 +5,15 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace hemi {
 
+/// A linear value by the sRGB curve, 8 bits. Source: IEC 61966-2-1.
+[[nodiscard]] std::uint8_t srgb_of(float linear);
 /// Words of one of round_marks(), with as many digits as tell it from the next.
 [[nodiscard]] std::string mark_text(double mark, const std::vector<double>& marks);
 /// Words of one of ColourScale::marks() where these are no round ones, to a tenth of the least step.
@@ -26,7 +29,16 @@ namespace hemi {
 bool draw_legend(Picture& picture, const ColourScale& scale, std::string_view title,
                  const std::array<bool, 2>& beyond = {false, false}, std::uint32_t below = 0);
 
-/// The same by itself, on white, to stand below a picture: `linear` is empty.
+/// What a colour means that stands for no number.
+struct KeyLine {
+    std::array<float, 3> colour; ///< display linear
+    std::string words;           ///< ASCII
+};
+/// Draws a title and what colours mean into the lower left of `srgb`.
+/// @return whether there was room for it
+bool draw_key(Picture& picture, std::string_view title, std::span<const KeyLine> lines);
+
+/// The same as draw_legend() by itself, on white, to stand below a picture: `linear` is empty.
 /// @param width  of the picture, pixels; a narrower one than 320 gets a legend of 320
 [[nodiscard]] Picture legend_strip(std::uint32_t width, const ColourScale& scale, std::string_view title,
                                    const std::array<bool, 2>& beyond = {false, false});

@@ -9,6 +9,7 @@
 #include "viewer/gauges.hpp"
 #include "viewer/keys.hpp"
 #include "viewer/legend_window.hpp"
+#include "viewer/material_change.hpp"
 #include "viewer/measure.hpp"
 #include "viewer/overlays.hpp"
 #include "viewer/report.hpp"
@@ -33,21 +34,14 @@ constexpr std::chrono::milliseconds rest{200};
 /// part of the time that they take.
 constexpr std::chrono::milliseconds gather_interval{100};
 constexpr int gather_part = 20;
-/// A solution that took longer is not thrown away without a word.
-constexpr std::chrono::seconds long_work{60};
 /// One step of a walk, in scene diagonals.
 constexpr double walk_share = 0.01;
-
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-    std::error_code error;
-    return a == b || std::filesystem::equivalent(a, b, error);
-}
 
 } // namespace
 
 Application::Application(ViewerInput input, const ViewerSettings& settings)
     : settings_(settings), window_(input.title(), input.picture.width, input.picture.height),
-      gui_(window_.scale()), navigator_(settings.controls, input.mesh, input.camera),
+      gui_(window_.scale(), settings.script.empty()), navigator_(settings.controls, input.mesh, input.camera),
       opener_(settings.open, Window::wake) {
     choices_.look.shading = input.picture.shading;
     choices_.look.tone_mapping = input.picture.tone_mapping;
@@ -56,58 +50,6 @@ Application::Application(ViewerInput input, const ViewerSettings& settings)
     choices_.samples = input.picture.samples;
     choices_.cut = input.picture.cut;
     exchange(std::move(input));
-}
-
-/// Another scene, or the same one after a change.
-void Application::exchange(ViewerInput input) {
-    const bool again = document_ && same_file(document_->input().file, input.file);
-    const bool same_patches =
-        document_ && document_->input().mesh->geometry_hash() == input.mesh->geometry_hash();
-    if (again) {
-        navigator_.exchange(input.mesh, input.camera);
-    } else {
-        navigator_ = Navigator(settings_.controls, input.mesh, input.camera);
-        watch_.emplace(input.file, Window::wake);
-    }
-    if (!again || !same_patches) {
-        choices_.picked.reset();
-    }
-    if (document_ && document_->input().mesh->groups() != input.mesh->groups()) {
-        choices_.cut.groups.clear();
-        choices_.group.reset();
-    }
-    if (document_ && !again) {
-        choices_.cut = {};
-        choices_.group.reset();
-        choices_.group_search.fill('\0');
-    }
-    shown_group_.reset();
-    choices_.measured.clear();
-    probe_.reset();
-    hides_backs_ = false;
-    choices_.pointed_at.reset();
-    choices_.materials = input.scene->materials;
-    choices_.conditions = input.heat ? input.heat->conditions : std::vector<HeatCondition>();
-    inset_.reset();
-    under_cursor_.reset();
-    dot_under_cursor_.reset();
-    choices_.look.dots_column =
-        document_ ? column_again(document_->input(), input, choices_.look.dots_column) : input.dots_column;
-    asks_to_close_ = asks_to_close_ && again; // finer patches of the scene answer no question
-    choices_.environment = input.environment();
-    history_.emplace(MaterialHistory::State{choices_.materials, choices_.conditions, choices_.environment});
-    document_.reset(); // whose threads end first
-    document_ = std::make_unique<Document>(std::move(input), factor_cache_, Window::wake);
-    const std::vector<std::string> channels = channel_choices(document_->input().scene->channels);
-    if (std::find(channels.begin(), channels.end(), choices_.look.channel) == channels.end()) {
-        choices_.look.channel = Look().channel;
-    }
-    saved_result_.clear();
-    shown_look_.reset();
-    message_.clear();
-    bookmarks_ = Bookmarks();
-    attempt([this] { bookmarks_ = Bookmarks(document_->input().file); });
-    settle();
 }
 
 void Application::run() {
@@ -251,6 +193,8 @@ void Application::other_key(const KeyEvent& event) {
         choices_.help = !choices_.help;
     } else if (event.key == escape_key && gui_.close_list()) {
         return;
+    } else if (event.key == escape_key && choices_.asks_to_write) {
+        choices_.asks_to_write = false;
     } else if (event.key == escape_key && asks_to_close_) {
         asks_to_close_ = false;
     } else if (event.key == escape_key && choices_.help) {
@@ -296,7 +240,7 @@ std::string Application::unsaved() const {
     const Clock::duration worked =
         worked_ + (works_since_ ? Clock::now() - *works_since_ : Clock::duration{0});
     const bool savable = document_->unsavable_reason() == nullptr;
-    if (worked > long_work && (savable || works_since_)) {
+    if (worked > long_work_ && (savable || works_since_)) {
         return fmt::format("{} of work are lost: the light is not {}.",
                            seconds_text(std::chrono::duration<double>(worked).count()),
                            savable ? "saved" : "found yet");
@@ -304,8 +248,7 @@ std::string Application::unsaved() const {
     return {};
 }
 
-template <typename Action>
-void Application::attempt(const Action& action) {
+void Application::attempt(const std::function<void()>& action) {
     try {
         action();
     } catch (const Cancelled&) {
@@ -359,6 +302,9 @@ void Application::grant_wishes() {
     if (wishes.save_camera) {
         attempt([this] { save_camera(); });
     }
+    if (wishes.save_materials) {
+        attempt([this] { save_materials(); });
+    }
     if (wishes.copy_command) {
         attempt([this] {
             const std::string command = command_line();
@@ -369,6 +315,15 @@ void Application::grant_wishes() {
     }
     if (wishes.reload) {
         open(document_->input().file);
+    }
+    if (wishes.check) {
+        document_->look_for_findings();
+    }
+    if (document_->input().compared && (wishes.open_compared || wishes.leave_compared)) {
+        open_alone(wishes.open_compared ? document_->input().compared->file : document_->input().file);
+    }
+    if (wishes.go_to_patch) {
+        go_to_patch(*wishes.go_to_patch);
     }
     if (wishes.save_and_close) {
         attempt([this] {
@@ -404,36 +359,14 @@ void Application::moved() {
     moving_ = true;
 }
 
-void Application::open(const std::filesystem::path& file) {
-    note_ = fmt::format("reading {}", file.filename().string());
-    const ViewerInput& input = document_->input();
-    if (file.extension() == ".hff") {
-        opener_.open(input.file, file);
-    } else {
-        opener_.open(file, same_file(file, input.file) ? input.factor_file : std::filesystem::path());
-    }
-}
-
-void Application::take_opened() {
-    std::optional<Opened> opened = opener_.take();
-    if (!opened) {
-        return;
-    }
-    if (!opened->input) { // what was open stays
-        note_.clear();
-        message_ = opened->problem;
-        return;
-    }
-    note_ = fmt::format("{} read", opened->file.filename().string());
-    worked_ = {};
-    works_since_.reset();
-    exchange(std::move(*opened->input));
-}
-
 void Application::update() {
     take_opened();
     if (std::optional<ViewerInput> finer = document_->take_refined()) {
         exchange(std::move(*finer));
+    }
+    if (document_->take_findings()) {
+        shown_look_.reset();
+        settle();
     }
     const Clock::time_point now = Clock::now();
     if (document_->busy()) {
@@ -469,8 +402,16 @@ void Application::settle() {
     if (why_not(choices_.look.shown, input, choices_.picked) != nullptr) {
         choices_.look.shown = {};
     }
-    if (shown_look_ && shown_look_->shown != choices_.look.shown) {
+    if (why_no_difference(choices_.look.shown, input) != nullptr &&
+        choices_.look.shown.view == View::quantity) {
+        choices_.look.difference = false;
+    }
+    if (shown_look_ &&
+        (shown_look_->shown != choices_.look.shown || shown_look_->difference != choices_.look.difference)) {
         choices_.look.range.reset(); // it was of another quantity
+    }
+    if (choices_.look.shown.view == View::findings) {
+        document_->look_for_findings();
     }
     const MaterialHistory::State wanted{choices_.materials, choices_.conditions, choices_.environment};
     document_->set_materials(wanted);
@@ -536,7 +477,8 @@ void Application::draw_hemicube() {
             window_);
     }
     inset_->look(*choices_.picked, choices_.hemicube_eye);
-    inset_->paint(choices_.hemicube_ids ? item_colours(*input.mesh) : view_.colours());
+    inset_->paint(choices_.hemicube_ids ? item_colours(*input.mesh) : view_.colours(),
+                  choices_.hemicube_ids ? std::nullopt : view_.environment_colour());
 }
 
 void Application::update_title() {
@@ -572,7 +514,9 @@ void Application::describe_panels() {
             mark_patch(mesh, *choices_.picked, navigator_.orbit(), view, true);
         }
         if (view_.field()) {
-            legend_window(*view_.field(), histogram_, view, choices_.look);
+            legend_window(*view_.field(), histogram_, view, choices_);
+        } else if (choices_.look.shown.view == View::findings) {
+            findings_legend(document_->findings(), view);
         }
         if (choices_.gauges && view[0] < size[0]) {
             gauges(*document_->input().scene, navigator_.orbit(), view, view_.field().has_value());
@@ -597,6 +541,13 @@ void Application::describe_panels() {
         asks_to_close_ = asks_to_close_ && !unsaved().empty();
         if (asks_to_close_) {
             close_question(unsaved(), document_->unsavable_reason() == nullptr, view, choices_.wishes);
+        }
+        if (choices_.asks_to_write) {
+            const std::string words = changed_materials(*document_->input().scene, choices_).words;
+            choices_.asks_to_write = !words.empty();
+            if (choices_.asks_to_write) {
+                write_question(words, document_->input().file.filename().string(), view, choices_);
+            }
         }
         bool open = true;
         if (!message_.empty()) {

@@ -69,6 +69,9 @@ public:
     void report(const std::filesystem::path& path) const;
     /// Writes the camera into the scene's file. @throws InvalidArgument where that holds none; IoError
     void save_camera();
+    /// Writes what materials and the environment were changed to into the scene's file. @throws
+    /// InvalidArgument where nothing was changed, and where the file cannot take it; IoError
+    void save_materials();
     void save_result(const std::filesystem::path& path);
     /// Writes what is shown along the line that is measured. @throws InvalidArgument where there is none
     void save_probe(const std::filesystem::path& path);
@@ -76,6 +79,12 @@ public:
     [[nodiscard]] std::string command_line() const;
     /// Pixels of the window that show the scene, from its upper left.
     [[nodiscard]] std::array<std::uint32_t, 2> view_size() const;
+    /// Work that took longer is not thrown away without a word.
+    void set_long_work(std::chrono::duration<double> time) {
+        long_work_ = std::chrono::duration_cast<std::chrono::steady_clock::duration>(time);
+    }
+    /// Picks a patch and looks at it.
+    void go_to_patch(std::uint32_t patch);
     /// What the window says of the last thing that went wrong.
     [[nodiscard]] const std::string& message() const { return message_; }
 
@@ -105,9 +114,11 @@ private:
     void grant_wishes();
     void take_opened();
     void exchange(ViewerInput input);
+    void compare_with(const ViewerInput& input, bool again);
+    /// Opens a stored solution that is compared with nothing.
+    void open_alone(const std::filesystem::path& file);
     /// Does it, and shows what went wrong in the window.
-    template <typename Action>
-    void attempt(const Action& action);
+    void attempt(const std::function<void()>& action);
     void numbered_screenshot(bool of_window);
 
     [[nodiscard]] std::uint32_t panel_pixels() const;
@@ -160,6 +171,7 @@ private:
     bool lost_ = true; ///< what the window holds is not what was drawn last
     bool closing_ = false;
     bool asks_to_close_ = false;
+    Clock::duration long_work_ = std::chrono::minutes{1};
     Clock::duration worked_{0};                    ///< on the scene that is open
     std::optional<Clock::time_point> works_since_; ///< while it does
 

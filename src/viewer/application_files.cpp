@@ -5,6 +5,7 @@
 #include "hemi/io/scene_writer.hpp"
 #include "viewer/command_line.hpp"
 #include "viewer/dots.hpp"
+#include "viewer/material_change.hpp"
 #include "viewer/report.hpp"
 
 #include <fmt/format.h>
@@ -67,6 +68,15 @@ void Application::save_camera() {
     note_ = fmt::format("camera saved into {}", document_->input().file.filename().string());
 }
 
+void Application::save_materials() {
+    const MaterialChanges changes = changed_materials(*document_->input().scene, choices_);
+    if (changes.words.empty()) {
+        throw InvalidArgument("no material is other than in the scene, nor the environment");
+    }
+    io::write_scene_materials(document_->input().file, changes.materials, changes.environment);
+    note_ = fmt::format("{}: {} written", document_->input().file.filename().string(), changes.words);
+}
+
 void Application::save_result(const std::filesystem::path& path) {
     document_->save_result(path);
     saved_result_ = path;
@@ -81,7 +91,10 @@ std::string Application::command_line() const {
     }
     const bool heat = look.shown.view == View::quantity && is_of_heat(look.shown.quantity);
     std::string command = heat ? document_->input().heat_command : document_->input().command;
-    if (!saved_result_.empty()) {
+    if (shows_difference(look)) {
+        command = fmt::format("hemi diff {} {}", quoted(document_->input().file.string()),
+                              quoted(document_->input().compared->file.string()));
+    } else if (!saved_result_.empty()) {
         command = "hemi render " + quoted(saved_result_.string());
     } else if (!document_->as_opened()) {
         throw InvalidArgument("materials or environment are no longer those of the file: save the result, "

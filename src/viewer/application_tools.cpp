@@ -124,6 +124,12 @@ void Application::keep_camera(int number) {
     note_ = fmt::format("camera {} kept in {}", number, bookmarks_.file().filename().string());
 }
 
+void Application::go_to_patch(std::uint32_t patch) {
+    choices_.picked = patch;
+    navigator_.orbit().place(camera_at(*document_->input().mesh, patch, navigator_.camera()));
+    picture_changed_ = true;
+}
+
 void Application::go_to_camera(int number) {
     if (const std::optional<Camera>& camera = bookmarks_.camera(number)) {
         navigator_.orbit().place(*camera);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 namespace hemi::viewer {
 
@@ -52,9 +53,8 @@ void offset_slider(ClipPlane& plane, const Bounds& bounds) {
         ends = {-ends[1], -ends[0]};
     }
     double at = turned ? -plane.offset : plane.offset;
-    ImGui::SetNextItemWidth(-1.0F);
-    if (ImGui::SliderScalar("##offset", ImGuiDataType_Double, &at, &ends[0], &ends[1], "at %.4g",
-                            ImGuiSliderFlags_NoInput)) {
+    if (slider("##offset", at, ends[0], ends[1], "at %.4g", -1.0F,
+               "Where the plane lies along its normal, in the scene's unit.")) {
         plane.offset = turned ? -at : at;
     }
 }
@@ -80,26 +80,27 @@ ClipPlane other_side(const ClipPlane& plane) {
 }
 
 void clip_section(const PanelContent& content, Choices& choices) {
-    if (!ImGui::CollapsingHeader("Clipping plane")) {
+    if (!heading("Clipping plane", "Cuts the picture, and what a click finds; not the light.", false)) {
         return;
     }
     const PatchMesh& mesh = *content.document.input().mesh;
     std::optional<ClipPlane>& clip = choices.cut.clip;
     const std::optional<int> axis = clip ? axis_of(*clip) : std::nullopt;
-    if (ImGui::RadioButton("none", !clip)) {
+    if (radio_button("none", !clip, "Nothing is cut.")) {
         clip.reset();
     }
     constexpr std::array<const char*, 3> names{"x", "y", "z"};
     for (int k = 0; k < 3; ++k) {
         ImGui::SameLine();
-        if (ImGui::RadioButton(names[static_cast<std::size_t>(k)], axis == k) && axis != k) {
+        const char* name = names[static_cast<std::size_t>(k)];
+        if (radio_button(name, axis == k, std::string("A plane across ") + name + ".") && axis != k) {
             clip = across(k, mesh.bounds());
         }
     }
     ImGui::SameLine();
-    ImGui::RadioButton("oblique", clip && !axis);
+    radio_button("oblique", clip && !axis, "A plane across no axis: through a patch that lies so.");
     ImGui::BeginDisabled(!choices.picked);
-    if (ImGui::Button("Through the picked patch")) {
+    if (button("Through the picked patch", "In the plane of the patch that was clicked (K).")) {
         clip = plane_of_patch(mesh, *choices.picked);
     }
     ImGui::EndDisabled();
@@ -107,7 +108,7 @@ void clip_section(const PanelContent& content, Choices& choices) {
         return;
     }
     ImGui::SameLine();
-    if (ImGui::Button("Other side")) {
+    if (button("Other side", "Shows what was cut away, and cuts what was shown (shift + K).")) {
         clip = other_side(*clip);
     }
     offset_slider(*clip, mesh.bounds());

@@ -8,12 +8,14 @@ namespace hemi::viewer {
 
 std::string quantity_options(const Look& look, const FalseColours& drawn) {
     std::string text = fmt::format(" --show {} --channel {} --map {}", to_word(look.shown.quantity),
-                                   quoted(look.channel), to_word(look.map));
+                                   quoted(look.channel), to_word(drawn.map));
     text += look.range ? fmt::format(" --range {},{}", (*drawn.range)[0], (*drawn.range)[1]) : "";
     text += drawn.logarithmic ? " --log" : "";
     text += drawn.bands > 0 ? fmt::format(" --bands {}", drawn.bands) : "";
     text += drawn.iso_lines ? " --iso-lines" : "";
-    text += look.celsius && look.shown.quantity == Quantity::temperature ? " --celsius" : "";
+    text += look.celsius && !shows_difference(look) && look.shown.quantity == Quantity::temperature
+                ? " --celsius"
+                : "";
     return text;
 }
 

@@ -145,6 +145,29 @@ std::optional<ViewerInput> Document::take_refined() {
     return next;
 }
 
+const SmoothSurfaces& Document::surfaces_across() const {
+    if (!surfaces_across_) {
+        surfaces_across_.emplace(*input_.mesh, true);
+    }
+    return *surfaces_across_;
+}
+
+void Document::look_for_findings() {
+    if (!findings_ && !finding_search_ && input_.factors) {
+        finding_search_ =
+            std::make_unique<FindingSearch>(input_.factors, input_.mesh, input_.max_row_error, wake_);
+    }
+}
+
+bool Document::take_findings() {
+    if (!finding_search_ || !finding_search_->finished()) {
+        return false;
+    }
+    findings_ = finding_search_->take();
+    finding_search_.reset();
+    return true;
+}
+
 double Document::gathered_share() const {
     return static_cast<double>(gathered_) / static_cast<double>(input_.mesh->size());
 }
@@ -280,7 +303,8 @@ void Document::take_light() {
 }
 
 bool Document::busy() const {
-    return finder_ || (input_.refiner && input_.refiner->busy()) || (relighter_ && relighter_->busy());
+    return finder_ || finding_search_ || (input_.refiner && input_.refiner->busy()) ||
+           (relighter_ && relighter_->busy());
 }
 
 void Document::cancel() {

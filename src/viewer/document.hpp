@@ -1,6 +1,7 @@
 #pragma once
 
 #include "display/smooth_surfaces.hpp"
+#include "viewer/findings.hpp"
 #include "viewer/look.hpp"
 #include "viewer/material_history.hpp"
 #include "viewer/relighter.hpp"
@@ -39,6 +40,14 @@ public:
     [[nodiscard]] const Heat* heat() const { return heat_.get(); }
     [[nodiscard]] const PictureMesh& light_mesh() const { return light_mesh_; }
     [[nodiscard]] const SmoothSurfaces& surfaces() const { return surfaces_; }
+    /// The same, across materials; made when it is first needed.
+    [[nodiscard]] const SmoothSurfaces& surfaces_across() const;
+    /// What is wrong with the geometry; null until it is found.
+    [[nodiscard]] const Findings* findings() const { return findings_ ? &*findings_ : nullptr; }
+    /// Looks for that beside the window, once, where there are form factors.
+    void look_for_findings();
+    /// @return whether it was found since
+    bool take_findings();
     /// Where stops count from.
     [[nodiscard]] double exposure() const { return exposure_; }
     /// The scene with its materials and its light as they stand.
@@ -112,6 +121,8 @@ private:
     ViewerInput input_;
     std::function<void()> wake_;
     SmoothSurfaces surfaces_;
+    mutable std::optional<SmoothSurfaces> surfaces_across_;
+    std::optional<Findings> findings_;
     MaterialHistory::State wanted_;
     Light light_;
     std::shared_ptr<const Heat> heat_;
@@ -126,9 +137,10 @@ private:
     State state_ = State::lamps;
     Work work_;
     bool changed_ = false;
-    std::optional<SolveUpdate> solved_;  ///< the last solution
-    std::optional<Relighter> relighter_; ///< where there are form factors
-    std::optional<RowFinder> finder_;    ///< while it is at work
+    std::optional<SolveUpdate> solved_;             ///< the last solution
+    std::optional<Relighter> relighter_;            ///< where there are form factors
+    std::optional<RowFinder> finder_;               ///< while it is at work
+    std::unique_ptr<FindingSearch> finding_search_; ///< likewise
 };
 
 } // namespace hemi::viewer

@@ -128,27 +128,27 @@ std::string dots_options(const ViewerInput& input, const Look& look, std::string
 }
 
 void dots_section(const ViewerInput& input, Choices& choices) {
-    if (!input.points || !ImGui::CollapsingHeader("Points", ImGuiTreeNodeFlags_DefaultOpen)) {
+    if (!input.points || !heading("Points", "Points of a table, as dots in the scene.")) {
         return;
     }
     Look& look = choices.look;
     const std::string shown = !look.dots         ? "not shown"
                               : look.dots_column ? input.points->columns[*look.dots_column].name
                                                  : "where they are";
-    ImGui::SetNextItemWidth(-1.0F);
-    if (ImGui::BeginCombo("##dots", shown.c_str())) {
+    if (begin_list("##dots", shown, -1.0F,
+                   "The column of the table that colours the dots, in its own unit.")) {
         for (std::size_t k = 0; k < input.points->columns.size(); ++k) {
-            if (ImGui::Selectable(input.points->columns[k].name.c_str(),
-                                  look.dots && look.dots_column == k)) {
+            if (list_line(input.points->columns[k].name, look.dots && look.dots_column == k,
+                          input.points->columns[k].unit)) {
                 look.dots = true;
                 look.dots_column = k;
             }
         }
-        if (ImGui::Selectable("where they are", look.dots && !look.dots_column)) {
+        if (list_line("where they are", look.dots && !look.dots_column, "White dots.")) {
             look.dots = true;
             look.dots_column.reset();
         }
-        if (ImGui::Selectable("not shown", !look.dots)) {
+        if (list_line("not shown", !look.dots)) {
             look.dots = false;
         }
         ImGui::EndCombo();

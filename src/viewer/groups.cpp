@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 namespace hemi::viewer {
 
@@ -38,10 +39,7 @@ bool visibility_button(Visibility visibility) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const bool clicked = ImGui::InvisibleButton("visibility", {edge, edge});
     const bool hovered = ImGui::IsItemHovered();
-    if (hovered) {
-        ImGui::SetTooltip("%s\nA click: the next of shown, outlines, hidden.",
-                          std::string(to_word(visibility)).c_str());
-    }
+    tip(std::string(to_word(visibility)) + "\nA click: the next of shown, outlines, hidden.");
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 ink = ImGui::GetColorU32(hovered ? ImGuiCol_Text : ImGuiCol_TextDisabled);
     const ImVec2 low{corner.x + 2.0F, corner.y + 2.0F};
@@ -78,8 +76,8 @@ void group_row(const PanelContent& content, Choices& choices, std::uint32_t grou
         ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     }
     const std::string name = names[group].empty() ? "(no name)" : names[group];
-    if (ImGui::Selectable((name + "##name").c_str(), choices.group == group,
-                          ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap)) {
+    if (list_line(name + "##name", choices.group == group, {},
+                  ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap)) {
         select_group(choices, group, *content.document.input().mesh);
     }
     if (visibility != Visibility::shown) {
@@ -94,14 +92,6 @@ void group_row(const PanelContent& content, Choices& choices, std::uint32_t grou
         text(number(line.net_power, 4));
     }
     ImGui::PopID();
-}
-
-void header_cell(const char* name, const std::string& tip) {
-    ImGui::TableNextColumn();
-    ImGui::TableHeader(name);
-    if (!tip.empty() && ImGui::IsItemHovered()) {
-        ImGui::SetTooltip("%s", tip.c_str());
-    }
 }
 
 void group_list(const PanelContent& content, Choices& choices) {
@@ -131,12 +121,13 @@ void group_list(const PanelContent& content, Choices& choices) {
     }
     const std::string unit = content.groups.unit.empty() ? "" : ", " + content.groups.unit;
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-    header_cell("##shown", "");
-    header_cell("group", "");
-    header_cell("area", "m²");
-    header_cell("mean", content.groups.quantity + unit + ": mean weighted with area");
+    header_cell("##shown",
+                "How much of the group is shown: full square all, hollow its outlines, dash nothing.");
+    header_cell("group", "Surfaces of one name. A click selects them.");
+    header_cell("area", "A, in m².");
+    header_cell("mean", content.groups.quantity + unit + ": mean weighted with area.");
     if (powers) {
-        header_cell("net W", "net power of radiation, leaving positive");
+        header_cell("net W", "Q: net power of radiation, leaving positive; W.");
     }
     if (choices.group != choices.group_seen) { // as by a click in the scene
         choices.group_seen = choices.group;
@@ -238,31 +229,47 @@ void set_visibility(Choices& choices, std::uint32_t group, Visibility visibility
     }
 }
 
+void choose_groups_again(Choices& choices, const std::vector<std::string>& before,
+                         const std::vector<std::string>& now) {
+    const PictureCut cut = std::exchange(choices.cut, PictureCut{{}, choices.cut.clip});
+    const std::optional<std::uint32_t> group = std::exchange(choices.group, std::nullopt);
+    for (std::uint32_t g = 0; g < now.size(); ++g) {
+        const auto found = std::find(before.begin(), before.end(), now[g]);
+        if (found == before.end()) {
+            continue;
+        }
+        const auto was = static_cast<std::uint32_t>(found - before.begin());
+        set_visibility(choices, g, cut.of_group(was), now.size());
+        choices.group = group == was ? std::optional(g) : choices.group;
+    }
+}
+
 void groups_section(const PanelContent& content, Choices& choices) {
-    if (!ImGui::CollapsingHeader("Groups", ImGuiTreeNodeFlags_DefaultOpen)) {
+    if (!heading("Groups", "Surfaces by name: which are shown, their areas, means and net powers.")) {
         return;
     }
     const std::size_t count = content.document.input().mesh->groups().size();
     ImGui::SetNextItemWidth(-1.0F);
     ImGui::InputTextWithHint("##search", "search", choices.group_search.data(), choices.group_search.size());
+    tip("Lists the groups with these letters in their names.");
     group_list(content, choices);
     const bool selected = choices.group.has_value();
     ImGui::BeginDisabled(!selected);
-    if (ImGui::Button("Isolate")) {
+    if (button("Isolate", "Shows the selected group alone (I).")) {
         isolate(choices, *choices.group, count);
     }
     ImGui::SameLine();
-    if (ImGui::Button("Outlines")) {
+    if (button("Outlines", "Only the outlines of the selected group (O).")) {
         set_visibility(choices, *choices.group, Visibility::outlines, count);
     }
     ImGui::SameLine();
-    if (ImGui::Button("Hide")) {
+    if (button("Hide", "Shows nothing of the selected group; its light stays (N).")) {
         set_visibility(choices, *choices.group, Visibility::hidden, count);
     }
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(choices.cut.groups.empty());
-    if (ImGui::Button("Show all")) {
+    if (button("Show all", "Shows all groups (A).")) {
         choices.cut.groups.clear();
     }
     ImGui::EndDisabled();

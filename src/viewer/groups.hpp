@@ -43,6 +43,12 @@ void isolate(Choices& choices, std::uint32_t group, std::size_t count);
 /// @param count  of all groups
 void set_visibility(Choices& choices, std::uint32_t group, Visibility visibility, std::size_t count);
 
+/// The choices of groups again, of a scene whose groups are others: by their names.
+/// @param before  of the scene before
+/// @param now     of this one
+void choose_groups_again(Choices& choices, const std::vector<std::string>& before,
+                         const std::vector<std::string>& now);
+
 /// The list of groups: a click selects one, a square before its name says how much of it is shown.
 void groups_section(const PanelContent& content, Choices& choices);
 

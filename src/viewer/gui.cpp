@@ -67,7 +67,9 @@ void set_font(float scale) {
 
 } // namespace
 
-Gui::Gui(double scale) : scale_(static_cast<float>(std::max(scale, 1.0))) {
+Gui::Gui(double scale, bool clock)
+    : scale_(static_cast<float>(std::max(scale, 1.0))), clock_(clock),
+      last_frame_(std::chrono::steady_clock::now()) {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
@@ -141,6 +143,12 @@ void Gui::begin(std::array<std::uint32_t, 2> size) {
     io.DisplaySize = {static_cast<float>(size[0]) / scale_, static_cast<float>(size[1]) / scale_};
     io.DisplayFramebufferScale = {scale_, scale_};
     io.DeltaTime = 1.0F / 60.0F;
+    if (clock_) {
+        constexpr float least = 1e-4F; // what is 0 is no frame
+        const auto now = std::chrono::steady_clock::now();
+        io.DeltaTime = std::max(std::chrono::duration<float>(now - last_frame_).count(), least);
+        last_frame_ = now;
+    }
     ImGui::NewFrame();
 }
 

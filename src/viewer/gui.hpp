@@ -3,19 +3,22 @@
 #include "viewer/events.hpp"
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
 namespace hemi::viewer {
 
 /// Dear ImGui on the window's OpenGL context. It sees the events that the window or a script brings, one
-/// frame an event, and nothing else: no clock, no files, no callbacks of its own.
+/// frame an event, and nothing else: no files, no callbacks of its own, and no clock where a script drives.
 class Gui {
 public:
     /// With the window's context current.
     /// @param scale  pixels of the window for each pixel of the panels' layout, at least 1
+    /// @param clock  whether time passes between frames, so that two clicks long after one another are no
+    ///   double click; else every frame is a sixtieth of a second
     /// @throws GlError
-    explicit Gui(double scale);
+    Gui(double scale, bool clock);
     ~Gui();
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
@@ -49,6 +52,8 @@ private:
     [[nodiscard]] static std::vector<unsigned char> content();
 
     float scale_;
+    bool clock_;
+    std::chrono::steady_clock::time_point last_frame_;
     std::vector<unsigned char> drawn_;
 };
 

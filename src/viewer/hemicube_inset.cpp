@@ -1,5 +1,6 @@
 #include "viewer/hemicube_inset.hpp"
 
+#include "display/legend.hpp"
 #include "gl/context.hpp"
 
 #include <algorithm>
@@ -20,10 +21,7 @@ constexpr Bytes blocked_bytes{96, 20, 24, 255};
 Bytes encode(const std::array<float, 3>& linear) {
     Bytes bytes{0, 0, 0, 255};
     for (std::size_t c = 0; c < 3; ++c) {
-        const float value = std::clamp(linear[c], 0.0F, 1.0F);
-        const float srgb =
-            value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;
-        bytes[c] = static_cast<std::uint8_t>(std::lround(255.0F * srgb));
+        bytes[c] = srgb_of(linear[c]);
     }
     return bytes;
 }
@@ -87,7 +85,9 @@ std::optional<std::uint32_t> HemicubeInset::item_at(double x, double y) const {
     return item < item_first_patch ? item : item_first_patch + original_[item - item_first_patch];
 }
 
-void HemicubeInset::paint(std::span<const std::array<float, 3>> colours) {
+void HemicubeInset::paint(std::span<const std::array<float, 3>> colours,
+                          const std::optional<std::array<float, 3>>& environment) {
+    const Bytes nothing = environment ? encode(*environment) : nothing_bytes;
     const std::uint32_t edge = std::min(2 * settings_.resolution, largest_picture);
     std::vector<Bytes> patch_bytes;
     patch_bytes.reserve(colours.size());
@@ -100,7 +100,7 @@ void HemicubeInset::paint(std::span<const std::array<float, 3>> colours) {
         for (std::uint32_t x = 0; x < edge; ++x) {
             const auto item = item_at((x + 0.5) / edge, (y + 0.5) / edge);
             pixels.push_back(!item                   ? corner_bytes
-                             : *item == item_nothing ? nothing_bytes
+                             : *item == item_nothing ? nothing
                              : *item == item_blocked ? blocked_bytes
                                                      : patch_bytes[*item - item_first_patch]);
         }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,8 +23,10 @@ public:
     /// Draws it, unless it was the last one.
     /// @param eye  of the patch's eye points; the first where there are fewer
     void look(std::uint32_t patch, std::uint32_t eye);
-    /// @param colours  of the patches, display linear
-    void paint(std::span<const std::array<float, 3>> colours);
+    /// @param colours      of the patches, display linear
+    /// @param environment  where nothing else is seen; none: dark grey
+    void paint(std::span<const std::array<float, 3>> colours,
+               const std::optional<std::array<float, 3>>& environment);
 
     [[nodiscard]] HemicubePicture picture() const;
     /// Item at a point of the unfolded hemicube, x to the right and y down in [0, 1); nothing in its corners.

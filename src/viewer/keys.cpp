@@ -140,7 +140,7 @@ bool apply_look_key(const KeyEvent& event, const ViewerInput& input, Choices& ch
         bool& logarithmic = logarithmic_of(look);
         logarithmic = !logarithmic;
     } else if (event.key == 'M') {
-        next_map(event.shift, look.map);
+        next_map(event.shift, map_of(look));
     } else if (event.key == 'V') {
         next_shown(event.shift, input, choices);
     } else if (event.key == 'H') {

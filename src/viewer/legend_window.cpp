@@ -2,6 +2,7 @@
 
 #include "display/false_colour_scale.hpp"
 #include "display/legend.hpp"
+#include "viewer/panels.hpp"
 #include "viewer/widgets.hpp"
 
 #include <fmt/format.h>
@@ -37,12 +38,7 @@ struct Box {
 
 ImU32 colour_of(const ColourScale& scale, double position) {
     const std::array<float, 3> linear = scale.colour_at(position);
-    const auto encode = [](float value) {
-        const float srgb =
-            value <= 0.0031308F ? 12.92F * value : 1.055F * std::pow(value, 1.0F / 2.4F) - 0.055F;
-        return static_cast<int>(std::lround(255.0F * srgb));
-    };
-    return IM_COL32(encode(linear[0]), encode(linear[1]), encode(linear[2]), 255);
+    return IM_COL32(srgb_of(linear[0]), srgb_of(linear[1]), srgb_of(linear[2]), 255);
 }
 
 void draw_colours(ImDrawList& list, const ColourScale& scale, const Box& bar) {
@@ -122,9 +118,9 @@ void choose_range(const ColourScale& scale, const Box& box, Look& look) {
     constexpr float least_drag = 4.0F;
     ImGui::SetCursorScreenPos({box.left, box.top});
     ImGui::InvisibleButton("range", {box.right - box.left, box.bottom - box.top});
-    if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) {
-        ImGui::SetTooltip("Share of the area by value.\nDrag: the range. Double click: that of the values.");
-    }
+    tip("Share of the area by value, over the colours of the scale.\nDrag: the range. Double click: that of "
+        "the "
+        "values.");
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
         look.range.reset();
         return;
@@ -165,21 +161,33 @@ struct LegendPlaces {
 /// @param bars_height  of what stands above the colours
 /// @param below        height of what stands below
 /// @return nothing, and no window, where the view is too small
+/// @param moved  by how much it was dragged; null: it stays
 std::optional<LegendPlaces> begin_legend(const char* name, const Field& field,
-                                         std::array<std::uint32_t, 2> view, float bars_height, float below) {
+                                         std::array<std::uint32_t, 2> view, float bars_height, float below,
+                                         std::array<float, 2>* moved = nullptr) {
     const float width = std::min(380.0F, static_cast<float>(view[0]) - 2.0F * margin);
     const float line_height = ImGui::GetTextLineHeight();
     const float height = legend_height(bars_height);
     if (width < 150.0F || static_cast<float>(view[1]) < 2.5F * height + below) {
         return std::nullopt;
     }
-    const float top = static_cast<float>(view[1]) - margin - height - below;
-    const Box whole{margin, top, margin + width, top + height};
+    const std::array<float, 2> by = moved != nullptr ? *moved : std::array<float, 2>{};
+    const auto inside = [](float wanted, float size, std::uint32_t room) { // of a view that became smaller
+        return std::clamp(wanted, 0.0F, std::max(0.0F, static_cast<float>(room) - size));
+    };
+    const float left = inside(margin + by[0], width, view[0]);
+    const float top = inside(static_cast<float>(view[1]) - margin - height - below + by[1], height, view[1]);
+    const Box whole{left, top, left + width, top + height};
     ImGui::SetNextWindowPos({whole.left, whole.top});
     ImGui::SetNextWindowSize({width, height});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(22, 24, 26, 225));
     ImGui::Begin(name, nullptr,
                  fixed_window | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoFocusOnAppearing);
+    if (moved != nullptr) {
+        ImGui::SetCursorScreenPos({whole.left, whole.top});
+        moving_area("move", {width, pad + line_height}, view, *moved);
+        tip(legend_title(field.shown, field.scale, field.grey) + "\nDrag: moves the legend.");
+    }
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddText({whole.left + pad, whole.top + pad - 2.0F}, ink,
                  legend_title(field.shown, field.scale, field.grey).c_str());
@@ -230,15 +238,15 @@ std::vector<double> area_histogram(const Field& field, const PatchMesh& mesh, st
 }
 
 void legend_window(const Field& field, const std::vector<double>& histogram,
-                   std::array<std::uint32_t, 2> view, Look& look) {
-    const auto places = begin_legend("legend", field, view, histogram_height, 0.0F);
+                   std::array<std::uint32_t, 2> view, Choices& choices) {
+    const auto places = begin_legend("legend", field, view, histogram_height, 0.0F, &choices.legend_moved);
     if (!places) {
         return;
     }
     draw_histogram(*ImGui::GetWindowDrawList(), histogram, places->bars);
-    if (look.shown.view == View::quantity) { // scales of form factors are the same for all patches
+    if (choices.look.shown.view == View::quantity) { // scales of form factors are the same for all patches
         choose_range(field.scale, {places->bar.left, places->bars.top, places->bar.right, places->bar.bottom},
-                     look);
+                     choices.look);
     }
     end_legend();
 }

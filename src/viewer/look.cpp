@@ -15,7 +15,9 @@ namespace {
 std::vector<ShownName> all_names() {
     std::vector<ShownName> names{{{View::picture}, "picture", "Light"},
                                  {{View::outlines}, "outlines", "Patch wireframe"},
-                                 {{View::items}, "items", "Item ids"}};
+                                 {{View::items}, "items", "Item ids"},
+                                 {{View::groups}, "groups", "Groups"},
+                                 {{View::findings}, "findings", "What check finds"}};
     for (const NamedValue<Quantity>& known : Names<Quantity>::table) {
         names.push_back({{View::quantity, known.value}, known.word, title_of(known.value)});
     }
@@ -27,6 +29,36 @@ std::vector<ShownName> all_names() {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 /// Logarithmic scales of factors span so much.
 constexpr double factor_range = 1e-4;
+
+/// Why a solution does not have a quantity; null if it does.
+/// @param factors  whether there are form factors, too
+const char* why_not_of(Quantity quantity, const Solution& solution, bool factors) {
+    switch (quantity) {
+    case Quantity::error:
+    case Quantity::error_factors:
+        return solution.error ? nullptr : "no errors were estimated of this light";
+    case Quantity::error_patch_size:
+        return solution.patch_size_error ? nullptr : "estimated by `hemi solve`: open its result";
+    case Quantity::environment:
+    case Quantity::blocked:
+    case Quantity::row_error:
+        return solution.row_sum.empty() ? "needs form factors" : nullptr;
+    case Quantity::irradiance:
+        return !factors && solution.irradiance.empty() ? "needs form factors" : nullptr;
+    case Quantity::direct:
+        return solution.direct.empty() ? "there is neither sun nor sky" : nullptr;
+    case Quantity::temperature:
+    case Quantity::net_flux:
+        return solution.temperature.empty() ? "needs a scene with temperatures" : nullptr;
+    case Quantity::radiosity:
+    case Quantity::exitance:
+    case Quantity::reflectance:
+    case Quantity::emissivity:
+    case Quantity::area:
+        break;
+    }
+    return nullptr;
+}
 
 /// Any look can be shown: a logarithmic scale begins above 0, or is none.
 ColourScale shown_scale(FalseColours& shown) {
@@ -68,44 +100,40 @@ const ShownName& name_of(const Shown& shown) {
 }
 
 const char* why_not(const Shown& shown, const ViewerInput& input, std::optional<std::uint32_t> picked) {
-    const Solution& solution = input.solution;
-    if (shown.view == View::row || shown.view == View::column) {
+    if (shown.view == View::row || shown.view == View::column || shown.view == View::findings) {
         if (input.factors == nullptr) {
             return input.factor_settings ? "not computed"
                                          : "a stored solution has no form factors; open the scene instead";
         }
-        return picked ? nullptr : "click a patch first";
+        return picked || shown.view == View::findings ? nullptr : "click a patch first";
     }
     if (shown.view != View::quantity) {
         return nullptr;
     }
-    switch (shown.quantity) {
-    case Quantity::error:
-    case Quantity::error_factors:
-        return solution.error ? nullptr : "no errors were estimated of this light";
-    case Quantity::error_patch_size:
-        return solution.patch_size_error ? nullptr : "estimated by `hemi solve`: open its result";
-    case Quantity::environment:
-    case Quantity::blocked:
-    case Quantity::row_error:
-        return solution.row_sum.empty() ? "needs form factors" : nullptr;
-    case Quantity::irradiance:
-        return input.factors == nullptr && solution.irradiance.empty() ? "needs form factors" : nullptr;
-    case Quantity::direct:
-        return solution.direct.empty() ? "there is neither sun nor sky" : nullptr;
-    case Quantity::temperature:
-    case Quantity::net_flux:
-        return !solution.temperature.empty() ? nullptr
-               : input.heat != nullptr       ? "not solved for yet"
-                                             : "needs a scene with temperatures";
-    case Quantity::radiosity:
-    case Quantity::exitance:
-    case Quantity::reflectance:
-    case Quantity::emissivity:
-    case Quantity::area:
-        break;
+    if (is_of_heat(shown.quantity) && input.solution.temperature.empty()) {
+        return input.heat != nullptr ? "not solved for yet" : "needs a scene with temperatures";
     }
-    return nullptr;
+    return why_not_of(shown.quantity, input.solution, input.factors != nullptr);
+}
+
+const char* why_no_difference(const Shown& shown, const ViewerInput& input) {
+    if (!input.compared) {
+        return "drop a second result on the first";
+    }
+    if (shown.view != View::quantity) {
+        return "differences are of quantities, such as radiosity";
+    }
+    return why_not_of(shown.quantity, input.compared->solution, false) == nullptr
+               ? nullptr
+               : "the result that it is compared with does not have this";
+}
+
+bool shows_difference(const Look& look) {
+    return look.difference && look.shown.view == View::quantity;
+}
+
+ColourMap& map_of(Look& look) {
+    return shows_difference(look) ? look.difference_map : look.map;
 }
 
 std::vector<std::string> channel_choices(const std::vector<std::string>& channels) {
@@ -124,21 +152,28 @@ std::vector<std::string> channel_choices(const std::vector<std::string>& channel
     return choices;
 }
 
-Field quantity_field(const Look& look, const PatchMesh& mesh, const Lit& lit, const Light& light) {
+Field quantity_field(const Look& look, const PatchMesh& mesh, const Lit& lit, const Light& light,
+                     const Compared* compared) {
     const Quantity quantity = look.shown.quantity;
-    Field field{patch_quantity(quantity, lit.scene, mesh, lit.solution, look.channel), {}};
+    const bool difference = shows_difference(look) && compared != nullptr;
+    Field field{difference ? difference_colours(
+                                 compare_solutions({lit.scene, mesh, lit.solution},
+                                                   {*compared->scene, *compared->mesh, compared->solution},
+                                                   compared->pairs, quantity, look.channel))
+                           : patch_quantity(quantity, lit.scene, mesh, lit.solution, look.channel),
+                {}};
     if (quantity == Quantity::radiosity || quantity == Quantity::irradiance) {
         for (std::uint32_t i = 0; i < mesh.size(); ++i) {
             field.shown.values[i] = light.knows(i) ? field.shown.values[i] : none;
         }
     }
-    if (look.celsius) {
+    if (look.celsius && !difference) {
         show_in_celsius(field.shown);
     }
-    field.shown.map = look.map;
+    field.shown.map = difference ? look.difference_map : look.map;
     field.shown.bands = look.bands;
     field.shown.iso_lines = look.iso_lines;
-    field.shown.logarithmic = look.logarithmic;
+    field.shown.logarithmic = look.logarithmic && !difference;
     if (look.range) {
         field.shown.range = look.range;
     }
@@ -209,6 +244,15 @@ std::vector<std::array<float, 3>> item_colours(const PatchMesh& mesh) {
     colours.reserve(mesh.size());
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         colours.push_back(item_colour(i));
+    }
+    return colours;
+}
+
+std::vector<std::array<float, 3>> group_colours(const PatchMesh& mesh) {
+    std::vector<std::array<float, 3>> colours;
+    colours.reserve(mesh.size());
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        colours.push_back(item_colour(mesh.group(i)));
     }
     return colours;
 }

@@ -22,6 +22,8 @@ enum class View {
     picture, ///< light, as `hemi render` draws it
     outlines,
     items,
+    groups,   ///< every group in a colour of its own
+    findings, ///< what `hemi check` finds
     quantity, ///< what is known of every patch, as `hemi render --show` draws it
     row,      ///< F(i, j) of the picked patch i, at j
     column,   ///< F(j, i), at j
@@ -48,14 +50,16 @@ struct ShownName {
 /// How the scene is shown; two equal ones give equal pictures.
 struct Look {
     Shown shown;
-    std::string channel = "mean";               ///< of quantities, as patch_quantity() takes it
-    ColourMap map = ColourMap::viridis;         ///< of false colours
-    std::optional<std::array<double, 2>> range; ///< of quantities' scales; none: as values ask for
-    bool logarithmic = false;                   ///< false colours of quantities
-    bool logarithmic_factors = true;            ///< false colours of form factors
-    std::uint32_t bands = 0;                    ///< of false colours; 0: they run smoothly
-    bool iso_lines = false;                     ///< of false colours
-    bool celsius = false;                       ///< temperatures in °C, else in K
+    std::string channel = "mean";                    ///< of quantities, as patch_quantity() takes it
+    ColourMap map = ColourMap::viridis;              ///< of false colours
+    std::optional<std::array<double, 2>> range;      ///< of quantities' scales; none: as values ask for
+    bool logarithmic = false;                        ///< false colours of quantities
+    bool logarithmic_factors = true;                 ///< false colours of form factors
+    std::uint32_t bands = 0;                         ///< of false colours; 0: they run smoothly
+    bool iso_lines = false;                          ///< of false colours
+    bool celsius = false;                            ///< temperatures in °C, else in K
+    bool difference = false;                         ///< quantities less those that they are compared with
+    ColourMap difference_map = ColourMap::cool_warm; ///< of differences
     Shading shading = Shading::gouraud;
     ToneMapping tone_mapping = ToneMapping::filmic;
     double stops = 0.0; ///< exposure over the one at the start, powers of two
@@ -66,6 +70,11 @@ struct Look {
 
     bool operator==(const Look&) const = default;
 };
+
+/// Whether what is shown is a difference of two solutions.
+[[nodiscard]] bool shows_difference(const Look& look);
+/// The colours of what is shown.
+[[nodiscard]] ColourMap& map_of(Look& look);
 
 /// The light in the scene as it stands: N·channels each, as RadiosityProblem has them.
 struct Light {
@@ -90,6 +99,8 @@ struct Field {
 /// Why something cannot be shown of this input; null if it can.
 [[nodiscard]] const char* why_not(const Shown& shown, const ViewerInput& input,
                                   std::optional<std::uint32_t> picked);
+/// Why no difference to what is compared can be shown of it; null if it can.
+[[nodiscard]] const char* why_no_difference(const Shown& shown, const ViewerInput& input);
 
 /// Channels that quantities may be of: the mean, the sum, the luminance where there is one, and each.
 [[nodiscard]] std::vector<std::string> channel_choices(const std::vector<std::string>& channels);
@@ -99,10 +110,11 @@ struct Lit {
     Scene scene;
     Solution solution;
 };
-/// A quantity of patches.
-/// @param light  says of which patches the radiosity is known
+/// A quantity of patches, or by how much it differs.
+/// @param light     says of which patches the radiosity is known
+/// @param compared  what it is compared with; may be null where no difference is shown
 [[nodiscard]] Field quantity_field(const Look& look, const PatchMesh& mesh, const Lit& lit,
-                                   const Light& light);
+                                   const Light& light, const Compared* compared);
 /// A row or a column of form factors.
 /// @param usual_factor  scales end there, whichever patch is picked
 [[nodiscard]] Field factor_field(const Look& look, const FormFactorMatrix& factors, std::uint32_t picked,
@@ -111,6 +123,8 @@ struct Lit {
 [[nodiscard]] double usual_largest_factor(const FormFactorMatrix& factors);
 
 [[nodiscard]] std::vector<std::array<float, 3>> item_colours(const PatchMesh& mesh);
+/// As many colours as there are groups.
+[[nodiscard]] std::vector<std::array<float, 3>> group_colours(const PatchMesh& mesh);
 
 /// Radiosity of every patch of `mesh` as the picture shows it in its flat shading; display linear.
 [[nodiscard]] std::vector<std::array<float, 3>> light_colours(const PictureMesh& mesh, double exposure,

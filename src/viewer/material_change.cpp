@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace hemi::viewer {
 
@@ -60,6 +61,34 @@ void apply_set(const SetCommand& set, const ViewerInput& input, Choices& choices
         throw InvalidArgument(fmt::format("set: the scene has no material \"{}\"", set.name));
     }
     put(set.property == SetCommand::Property::exitance ? found->exitance : found->reflectance);
+}
+
+MaterialChanges changed_materials(const Scene& scene, const Choices& choices) {
+    MaterialChanges changes;
+    const auto tell = [&changes](const std::string& what) {
+        changes.words += (changes.words.empty() ? "" : ", ") + what;
+    };
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const Material& now = choices.materials[m];
+        io::MaterialValues values{now.name, {}, {}};
+        if (now.reflectance != scene.materials[m].reflectance) {
+            values.reflectance = now.reflectance;
+            tell("reflectance of " + now.name);
+        }
+        if (now.exitance != scene.materials[m].exitance) {
+            values.exitance = now.exitance;
+            tell("exitance of " + now.name);
+        }
+        if (!values.reflectance.empty() || !values.exitance.empty()) {
+            changes.materials.push_back(std::move(values));
+        }
+    }
+    const std::vector<double> dark(scene.channels.size(), 0.0);
+    if (choices.environment != (scene.environment.empty() ? dark : scene.environment)) {
+        changes.environment = choices.environment;
+        tell("exitance of the environment");
+    }
+    return changes;
 }
 
 } // namespace hemi::viewer

@@ -63,9 +63,9 @@ void plot(const Scene& scene, const LineProbe& probe, const ShownValues& values)
         const float share = std::clamp((ImGui::GetIO().MousePos.x - corner.x) / width, 0.0F, 1.0F);
         const ProbePoint& point = probe.points[static_cast<std::size_t>(std::lround(share * last))];
         const double value = value_at(point, values);
-        ImGui::SetTooltip("at %s: %s", length_text(scene, point.length).c_str(),
-                          std::isnan(value) ? "nothing"
-                                            : fmt::format("{:.4g} {}", value, values.unit).c_str());
+        show_tip(fmt::format("at {}: {}", length_text(scene, point.length),
+                             std::isnan(value) ? std::string("nothing")
+                                               : fmt::format("{:.4g} {}", value, values.unit)));
     }
 }
 
@@ -110,11 +110,13 @@ void measure_window(const Scene& scene, const std::optional<LineProbe>& probe, c
                          length_text(scene, way.z)));
         text(values.title);
         plot(scene, *probe, values);
-        choices.wishes.save_probe = ImGui::Button("Save as CSV") || choices.wishes.save_probe;
+        choices.wishes.save_probe =
+            button("Save as CSV", "Lengths, points, patches and values along the line, as NAME-001.csv.") ||
+            choices.wishes.save_probe;
         ImGui::SameLine();
     }
     ImGui::PopTextWrapPos();
-    if (ImGui::Button("Close (D)")) {
+    if (button("Close (D)", "Measures no more.")) {
         choices.measuring = false;
     }
     ImGui::End();

@@ -8,16 +8,16 @@ namespace hemi::viewer {
 Opener::Opener(decltype(ViewerSettings::open) open, std::function<void()> done)
     : open_(std::move(open)), done_(std::move(done)) {}
 
-void Opener::open(const std::filesystem::path& file, const std::filesystem::path& factors) {
+void Opener::open(const FilesToOpen& files, const std::filesystem::path& named) {
     if (thread_.joinable()) {
         thread_.join();
     }
     working_ = true;
     opened_.reset();
-    thread_ = std::jthread([this, file, factors] {
-        Opened opened{file, {}, {}};
+    thread_ = std::jthread([this, files, named] {
+        Opened opened{named, {}, {}};
         try {
-            opened.input = open_(file, factors);
+            opened.input = open_(files);
         } catch (const std::exception& error) {
             opened.problem = error.what();
         }

@@ -26,8 +26,8 @@ public:
     Opener(decltype(ViewerSettings::open) open, std::function<void()> done);
 
     /// Waits for the file before, where one is under way.
-    /// @param factors  see ViewerSettings::open
-    void open(const std::filesystem::path& file, const std::filesystem::path& factors);
+    /// @param named  of the files, the one that is told of
+    void open(const FilesToOpen& files, const std::filesystem::path& named);
     [[nodiscard]] bool busy() const;
     [[nodiscard]] std::optional<Opened> take();
 

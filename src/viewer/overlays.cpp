@@ -16,30 +16,44 @@ namespace hemi::viewer {
 void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2> view, Choices& choices) {
     constexpr float margin = 10.0F;
     const auto smaller = static_cast<float>(std::min(view[0], view[1]));
-    const float edge = std::floor(std::clamp(0.36F * smaller, 120.0F, 420.0F));
-    ImGui::SetNextWindowPos({static_cast<float>(view[0]) - margin, margin}, ImGuiCond_Always, {1.0F, 0.0F});
+    const float edge = std::floor(std::clamp(0.36F * smaller, 136.0F, 420.0F));
+    const ImVec2 home{static_cast<float>(view[0]) - margin, margin};
+    // Of a view that became smaller some of it stays.
+    ImGui::SetNextWindowPos(
+        {std::clamp(home.x + choices.inset_moved[0], std::min(edge, home.x), static_cast<float>(view[0])),
+         std::clamp(home.y + choices.inset_moved[1], 0.0F,
+                    std::max(0.0F, static_cast<float>(view[1]) - edge))},
+        ImGuiCond_Always, {1.0F, 0.0F});
     ImGui::SetNextWindowBgAlpha(0.88F);
     ImGui::Begin("hemicube", nullptr, fixed_window | ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::PushTextWrapPos(edge + 8.0F);
-    text(fmt::format("Hemicube of patch {}", picture.patch));
-    ImGui::PopTextWrapPos();
-    if (ImGui::IsItemHovered()) {
-        ImGui::SetTooltip(
-            "%d texels along an edge. The top is in the middle, the four sides are folded out;\n"
-            "the patch's own plane is all round. Turned about its normal, as it was drawn.\n"
-            "Dark grey: nothing, the environment. Dark red: back faces.",
-            static_cast<int>(picture.resolution));
+    const float cross = ImGui::CalcTextSize("x").x + 2.0F * ImGui::GetStyle().FramePadding.x;
+    std::string title = fmt::format("Hemicube of patch {}", picture.patch);
+    if (ImGui::CalcTextSize(title.c_str()).x > edge - cross - 4.0F) {
+        title = fmt::format("Patch {}", picture.patch);
     }
-    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), {edge, edge});
-    choice("as shown", false, choices.hemicube_ids);
+    const ImVec2 corner = ImGui::GetCursorPos();
+    moving_area("move", {edge - cross - 4.0F, ImGui::GetFrameHeight()}, view, choices.inset_moved);
+    tip(fmt::format(
+        "{} texels along an edge. The top is in the middle, the four sides are folded out; the "
+        "patch's own plane is all round. Turned about its normal, as it was drawn. Where nothing is "
+        "seen it has the environment's colour; dark red are back faces.\nDrag: moves it.",
+        picture.resolution));
     ImGui::SameLine();
-    choice("ids", true, choices.hemicube_ids);
+    ImGui::SetCursorPos({corner.x + edge - cross, corner.y});
+    if (small_button("x##close", "Closes it (C). It does not open again by itself.")) {
+        choices.hemicube = false;
+    }
+    ImGui::SetCursorPos(corner);
+    text(title);
+    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(picture.texture)), {edge, edge});
+    choice("as shown", false, choices.hemicube_ids, "In the colours of the scene.");
+    ImGui::SameLine();
+    choice("ids", true, choices.hemicube_ids, "Every patch in a colour of its own.");
     if (picture.eyes > 1) {
         auto eye = static_cast<int>(choices.hemicube_eye) + 1;
-        ImGui::SetNextItemWidth(edge);
-        if (ImGui::SliderInt("##eye", &eye, 1, static_cast<int>(picture.eyes),
-                             fmt::format("eye point %d of {}", picture.eyes).c_str(),
-                             ImGuiSliderFlags_NoInput)) {
+        if (slider("##eye", eye, 1, static_cast<int>(picture.eyes),
+                   fmt::format("eye point %d of {}", picture.eyes).c_str(), edge,
+                   "Sample points of the patch, each with a hemicube of its own.")) {
             choices.hemicube_eye = static_cast<std::uint32_t>(eye - 1);
         }
     }
@@ -47,6 +61,17 @@ void hemicube_window(const HemicubePicture& picture, std::array<std::uint32_t, 2
 }
 
 namespace {
+
+/// A window in the middle of the view, whose words are wrapped until ImGui::PopTextWrapPos().
+void begin_question(const char* name, std::array<std::uint32_t, 2> view) {
+    const float width = std::min(430.0F, static_cast<float>(view[0]) - 20.0F);
+    ImGui::SetNextWindowPos({0.5F * static_cast<float>(view[0]), 0.4F * static_cast<float>(view[1])},
+                            ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSize({width, 0.0F});
+    ImGui::SetNextWindowBgAlpha(0.97F);
+    ImGui::Begin(name, nullptr, fixed_window | ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushTextWrapPos(width - 10.0F);
+}
 
 void mark_edge(const Vec3& from, const Vec3& to, const OrbitCamera& orbit, std::array<std::uint32_t, 2> view,
                ImU32 colour) {
@@ -114,23 +139,36 @@ void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& ope
 
 void close_question(const std::string& unsaved, bool savable, std::array<std::uint32_t, 2> view,
                     Wishes& wishes) {
-    const float width = std::min(430.0F, static_cast<float>(view[0]) - 20.0F);
-    ImGui::SetNextWindowPos({0.5F * static_cast<float>(view[0]), 0.4F * static_cast<float>(view[1])},
-                            ImGuiCond_Always, {0.5F, 0.5F});
-    ImGui::SetNextWindowSize({width, 0.0F});
-    ImGui::SetNextWindowBgAlpha(0.97F);
-    ImGui::Begin("quit", nullptr, fixed_window | ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::PushTextWrapPos(width - 10.0F);
+    begin_question("quit", view);
     text(unsaved);
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
     if (savable) {
-        wishes.save_and_close = ImGui::Button("Save the result and quit") || wishes.save_and_close;
+        wishes.save_and_close =
+            button("Save the result and quit", "As NAME-001.hres in the current folder.") ||
+            wishes.save_and_close;
         ImGui::SameLine();
     }
-    wishes.close = ImGui::Button("Quit (Q)") || wishes.close;
+    wishes.close = button("Quit (Q)", "What is not saved is lost.") || wishes.close;
     ImGui::SameLine();
-    wishes.stay = ImGui::Button("Stay (Esc)") || wishes.stay;
+    wishes.stay = button("Stay (Esc)", "The window stays open.") || wishes.stay;
+    ImGui::End();
+}
+
+void write_question(const std::string& words, const std::string& file, std::array<std::uint32_t, 2> view,
+                    Choices& choices) {
+    begin_question("write", view);
+    text(fmt::format("Write into {}: {}?", file, words));
+    ImGui::PopTextWrapPos();
+    ImGui::Spacing();
+    if (button("Write", "Replaces these values in the file; every other byte of it stays.")) {
+        choices.wishes.save_materials = true;
+        choices.asks_to_write = false;
+    }
+    ImGui::SameLine();
+    if (button("Cancel (Esc)", "The file stays as it is.")) {
+        choices.asks_to_write = false;
+    }
     ImGui::End();
 }
 
@@ -154,7 +192,7 @@ void message_window(const std::string& message, std::array<std::uint32_t, 2> vie
     text(message);
     ImGui::PopTextWrapPos();
     ImGui::SameLine(width - 54.0F);
-    open = !ImGui::SmallButton("Close");
+    open = !small_button("Close", "Closes this message (Esc).");
     ImGui::End();
     ImGui::PopStyleColor();
 }

@@ -34,6 +34,10 @@ void help_window(std::array<std::uint32_t, 2> view, Controls controls, bool& ope
 /// @param savable  whether it can be saved
 void close_question(const std::string& unsaved, bool savable, std::array<std::uint32_t, 2> view,
                     Wishes& wishes);
+/// Whether to write what was changed into the scene's file, in the middle of the view.
+/// @param words  what would be written
+void write_question(const std::string& words, const std::string& file, std::array<std::uint32_t, 2> view,
+                    Choices& choices);
 /// That surfaces which face away are not drawn, at the top of the view.
 void backs_note(std::array<std::uint32_t, 2> view);
 /// What went wrong, in the upper left of the view.

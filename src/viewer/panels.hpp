@@ -29,6 +29,11 @@ struct Wishes {
     bool save_camera = false;
     bool copy_command = false;
     bool reload = false;
+    bool save_materials = false;
+    bool check = false;                       ///< the geometry
+    bool open_compared = false;               ///< the result that is compared with, in place of the first
+    bool leave_compared = false;              ///< compares with nothing any more
+    std::optional<std::uint32_t> go_to_patch; ///< picks it and looks at it
     bool save_and_close = false;
     bool close = false;             ///< whatever is not saved
     bool stay = false;              ///< instead
@@ -63,9 +68,12 @@ struct Choices {
     std::vector<HeatCondition> conditions; ///< as the heat should be; none: the scene has none
     bool gauges = true;                    ///< axes and a scale bar
     bool walking = false;                  ///< W, A, S, D move the camera
+    bool asks_to_write = false;            ///< materials into the scene's file
     bool measuring = false;                ///< clicks set ends of a line
     std::vector<Vec3> measured{};          ///< its ends, as far as they are set
     std::vector<double> environment;       ///< as it should be, of every channel
+    std::array<float, 2> inset_moved{};    ///< of the hemicube's window, pixels of the layout
+    std::array<float, 2> legend_moved{};   ///< likewise
     bool panel = true;
     bool help = false;
     std::size_t picture_size = 0; ///< of screenshots, into picture_sizes()

@@ -57,6 +57,20 @@ Json line(const LineProbe& probe, const ShownValues& values) {
     return json;
 }
 
+Json findings_json(const Findings* findings) {
+    if (findings == nullptr) {
+        return nullptr;
+    }
+    Json json = Json::object();
+    for (const NamedValue<Finding>& kind : Names<Finding>::table) {
+        Json& patches = json[std::string(kind.word)] = Json::array();
+        for (const PatchFinding& finding : findings->of(kind.value)) {
+            patches.push_back(finding.patch);
+        }
+    }
+    return json;
+}
+
 } // namespace
 
 void write_report(const std::filesystem::path& path, const Report& report) {
@@ -91,6 +105,10 @@ void write_report(const std::filesystem::path& path, const Report& report) {
     json["line"] = report.probe ? line(*report.probe, report.values) : Json(nullptr);
     json["histogram"] = report.histogram;
     json["hides_backs"] = report.hides_backs;
+    const std::shared_ptr<const Compared>& compared = report.document.input().compared;
+    json["compared"] = compared ? Json(compared->file.string()) : Json(nullptr);
+    json["difference"] = shows_difference(report.choices.look);
+    json["findings"] = findings_json(report.document.findings());
     json["groups"] = Json::array();
     for (std::uint32_t g = 0; g < report.groups.lines.size(); ++g) {
         const GroupLine& line = report.groups.lines[g];

@@ -46,7 +46,8 @@ struct Report {
 /// points are shown, "asks_to_close": whether it does, "group": index of the selected one or null, "groups":
 /// [{"name", "visibility", "area", "mean", "net_power"} …], "clip": what is shown or null, "line": {"ends",
 /// "length", "values": [one a point or null …]} or null, "histogram": [share of the area by value …],
-/// "hides_backs": whether the window says so}.
+/// "hides_backs": whether the window says so, "compared": file or null, "difference": whether that is shown,
+/// "findings": {kind: [patch ...] ...} or null where none were looked for}.
 /// @throws IoError
 void write_report(const std::filesystem::path& path, const Report& report);
 

@@ -1,6 +1,7 @@
 #include "viewer/row_finder.hpp"
 
 #include "engine/gathering.hpp"
+#include "hemi/pipeline/cost.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/preview.hpp"
 
@@ -111,6 +112,7 @@ std::shared_ptr<const FormFactors> RowFinder::find(Listener& listener) {
     if (const auto preview = coarse_preview(*scene_, *mesh_, settings_, solver_, listener)) {
         listener.show_preview(*preview);
     }
+    progress_.plan(factor_phases(*mesh_, settings_));
     // Of all patches, so that every one can be picked, and may begin to reflect.
     auto factors =
         std::make_shared<const FormFactors>(compute_form_factors(*scene_, *mesh_, settings_, listener));

@@ -17,15 +17,21 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
     field_.reset();
     if (look.shown.view == View::quantity) {
         field_ = quantity_field(look, *input.mesh, document.lit(look.shown.quantity == Quantity::irradiance),
-                                document.light());
+                                document.light(), input.compared.get());
     } else if (look.shown.view == View::row || look.shown.view == View::column) {
         field_ = factor_field(look, input.factors->matrix, *picked, document.usual_factor());
     }
     colours_.clear();
+    key_.reset();
     if (field_) {
         colours_ = value_colours(field_->shown.values, field_->scale, *input.mesh);
     } else if (look.shown.view == View::items) {
         colours_ = item_colours(*input.mesh);
+    } else if (look.shown.view == View::groups) {
+        colours_ = group_colours(*input.mesh);
+    } else if (look.shown.view == View::findings) {
+        colours_ = finding_colours(document.findings(), *input.mesh);
+        key_ = finding_key(document.findings());
     } else if (look.shown.view == View::outlines) {
         colours_ = plain_colours(*input.mesh);
     }
@@ -37,7 +43,9 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
     }
     PictureMesh drawn = colours_.empty() ? light_ : painted(light_, colours_);
     if (field_ && field_->scale.lines) {
-        put_iso_values(drawn, *input.mesh, document.surfaces(), field_->shown.values, field_->scale);
+        put_iso_values(drawn, *input.mesh,
+                       field_->shown.across_materials ? document.surfaces_across() : document.surfaces(),
+                       field_->shown.values, field_->scale);
         settings_.iso_lines = iso_positions(field_->scale);
     }
     drawn = with_images(std::move(drawn), *input.mesh);
@@ -48,6 +56,15 @@ void SceneView::show(const Document& document, const Look& look, std::optional<s
 
 std::vector<std::array<float, 3>> SceneView::colours() const {
     return colours_.empty() ? light_colours(light_, settings_.exposure, settings_.tone_mapping) : colours_;
+}
+
+std::optional<std::array<float, 3>> SceneView::environment_colour() const {
+    if (!colours_.empty() || settings_.background || light_.environment == std::array<float, 3>{}) {
+        return std::nullopt;
+    }
+    PictureMesh sky;
+    sky.patches.assign(light_.environment.begin(), light_.environment.end());
+    return light_colours(sky, settings_.exposure, settings_.tone_mapping).front();
 }
 
 PictureSettings SceneView::settings(std::array<std::uint32_t, 2> size, std::uint32_t samples) const {
@@ -72,6 +89,9 @@ Picture SceneView::picture(const Camera& camera, std::array<std::uint32_t, 2> si
         draw_legend(picture, legend_scale(field_->shown, field_->scale),
                     legend_title(field_->shown, field_->scale, field_->grey),
                     values_beyond(field_->shown, field_->scale));
+    }
+    if (key_) {
+        draw_key(picture, "What check finds", *key_);
     }
     if (dots_) {
         draw_dots_legend(picture, *dots_, field_ ? 1 : 0);

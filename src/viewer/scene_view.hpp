@@ -29,6 +29,8 @@ public:
     [[nodiscard]] const std::optional<Dots>& dots() const { return dots_; }
     /// Colours of the patches as they are shown, display linear.
     [[nodiscard]] std::vector<std::array<float, 3>> colours() const;
+    /// That of the environment; nothing where none is shown.
+    [[nodiscard]] std::optional<std::array<float, 3>> environment_colour() const;
     [[nodiscard]] double exposure() const { return settings_.exposure; }
 
     /// @param samples  along an edge of a pixel
@@ -50,6 +52,7 @@ private:
     std::optional<Field> field_;
     std::optional<Dots> dots_;
     std::vector<std::array<float, 3>> colours_; ///< what was painted
+    std::optional<std::vector<KeyLine>> key_;   ///< what it means, where that is no number
     PictureMesh light_;                         ///< where nothing was painted
     std::size_t drawn_patches_ = 0;             ///< with their images, without dots
     bool evenly_lit_ = false;                   ///< that is even_light()

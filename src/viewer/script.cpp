@@ -278,12 +278,21 @@ BandsCommand parse_bands(Line& line) {
     return {static_cast<std::uint32_t>(count)};
 }
 
-IsoLinesCommand parse_iso_lines(Line& line) {
+bool parse_on_off(Line& line, std::string_view command) {
     const std::string_view word = line.word("on or off");
     if (word != "on" && word != "off") {
-        line.fail(fmt::format("iso-lines \"{}\"; must be on or off", word));
+        line.fail(fmt::format("{} \"{}\"; must be on or off", command, word));
     }
-    return {word == "on"};
+    return word == "on";
+}
+
+FindingCommand parse_finding(Line& line) {
+    const std::string_view word = line.word("a kind of finding");
+    const std::optional<Finding> kind = from_word<Finding>(word);
+    if (!kind) {
+        line.fail(fmt::format("finding \"{}\"; must be one of {}", word, fmt::join(words<Finding>(), ", ")));
+    }
+    return {*kind, line.size("its number")};
 }
 
 ClipCommand parse_clip(Line& line) {
@@ -400,7 +409,13 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
     } else if (command == "bands") {
         result.action = parse_bands(line);
     } else if (command == "iso-lines") {
-        result.action = parse_iso_lines(line);
+        result.action = IsoLinesCommand{parse_on_off(line, command)};
+    } else if (command == "difference") {
+        result.action = DifferenceCommand{parse_on_off(line, command)};
+    } else if (command == "finding") {
+        result.action = parse_finding(line);
+    } else if (command == "long-work") {
+        result.action = LongWorkCommand{line.number("the time")};
     } else if (command == "clip") {
         result.action = parse_clip(line);
     } else if (command == "key") {
@@ -418,6 +433,8 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         result.action = ChangedCommand{};
     } else if (command == "save-camera") {
         result.action = SaveCameraCommand{};
+    } else if (command == "save-materials") {
+        result.action = SaveMaterialsCommand{};
     } else if (command == "live") {
         result.action = LiveCommand{};
     } else if (command == "preview") {
@@ -438,10 +455,11 @@ ScriptCommand parse_command(std::string_view command, Line& line, std::size_t nu
         line.fail(fmt::format(
             "command \"{}\"; must be drag, click, move, scroll, key, type, show, channel, map, range, dots, "
             "bands, "
-            "iso-lines, select, show-group, outline, hide, isolate, show-all, clip, measure, set, "
+            "iso-lines, difference, finding, long-work, select, show-group, outline, hide, isolate, "
+            "show-all, clip, measure, set, "
             "fov, resize, minimise, restore, screenshot, windowshot, report, command, save-result, "
             "save-probe, "
-            "save-camera, drop, reload, "
+            "save-camera, save-materials, drop, reload, "
             "changed, live, preview, rows, patches, wait, cancel or quit",
             command));
     }

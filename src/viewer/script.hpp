@@ -3,6 +3,7 @@
 #include "hemi/display/colour_map.hpp"
 #include "hemi/display/picture_cut.hpp"
 #include "viewer/events.hpp"
+#include "viewer/findings.hpp"
 
 #include <array>
 #include <cstddef>
@@ -81,6 +82,19 @@ struct ClipCommand {
     bool through_patch = false;     ///< the picked one
     std::optional<ClipPlane> plane; ///< else that; none: it is not cut
 };
+/// Whether quantities are shown as differences to what is compared.
+struct DifferenceCommand {
+    bool shown;
+};
+/// As a click on one of the patches that are found of a kind.
+struct FindingCommand {
+    Finding kind;
+    std::uint32_t number; ///< from 1, worst first
+};
+/// Work that took longer is asked for before the window closes.
+struct LongWorkCommand {
+    double seconds;
+};
 /// Types letters into the field that was clicked.
 struct TypeCommand {
     std::string text;
@@ -115,6 +129,8 @@ struct MeasureCommand {
     std::array<double, 2> to;
 };
 struct SaveCameraCommand {};
+/// Writes changed materials into the scene's file, without a question.
+struct SaveMaterialsCommand {};
 /// Writes the command line that draws the picture.
 struct CommandLineCommand {
     std::string path;
@@ -155,11 +171,12 @@ struct ScriptCommand {
     std::size_t line;
     std::variant<DragCommand, ClickCommand, MoveCommand, ScrollCommand, KeyCommand, ShowCommand,
                  ChannelCommand, MapCommand, RangeCommand, DotsCommand, BandsCommand, IsoLinesCommand,
-                 GroupCommand, ClipCommand, TypeCommand, MeasureCommand, SaveProbeCommand, SetCommand,
-                 ResizeCommand, ScreenshotCommand, WindowshotCommand, ReportCommand, LiveCommand, WaitCommand,
-                 PreviewCommand, RowsCommand, PatchesCommand, CancelCommand, DropCommand, ReloadCommand,
-                 ChangedCommand, SaveResultCommand, SaveCameraCommand, CommandLineCommand, FovCommand,
-                 MinimiseCommand, QuitCommand>
+                 GroupCommand, ClipCommand, DifferenceCommand, FindingCommand, LongWorkCommand, TypeCommand,
+                 MeasureCommand, SaveProbeCommand, SetCommand, ResizeCommand, ScreenshotCommand,
+                 WindowshotCommand, ReportCommand, LiveCommand, WaitCommand, PreviewCommand, RowsCommand,
+                 PatchesCommand, CancelCommand, DropCommand, ReloadCommand, ChangedCommand, SaveResultCommand,
+                 SaveCameraCommand, SaveMaterialsCommand, CommandLineCommand, FovCommand, MinimiseCommand,
+                 QuitCommand>
         action;
 };
 
@@ -183,6 +200,9 @@ struct ScriptCommand {
 /// select|show-group|outline|hide|isolate GROUP
 ///                        selects it; how much of it is shown; show-all
 /// clip PLANE             as parse_clip_plane() reads it; `patch`: through the picked one; `off`
+/// difference on|off      of quantities, to the result that is compared
+/// finding KIND N         goes to one of the patches that check finds, 1 the worst of its kind
+/// long-work SECONDS      work that is asked for before the window closes, 60 else
 /// measure X0 Y0 X1 Y1    the line between what is seen at two pixels
 /// save-probe FILE        .csv: what is shown along it
 /// type TEXT              into the field that was clicked
@@ -196,6 +216,7 @@ struct ScriptCommand {
 /// command FILE           .txt: the command line that draws the picture
 /// save-result FILE       .hres
 /// save-camera            into the scene's file
+/// save-materials         what was changed, into the scene's file
 /// drop FILE              opens it; where it cannot be read, the window says so
 /// reload                 reads the file again
 /// changed                until the file has changed on the disk, and was read again

@@ -76,6 +76,9 @@ public:
         }
         choices.look.shown = shown;
         application_.settle();
+        if (shown.view == View::findings) {
+            application_.wait_for_work();
+        }
     }
     void perform(const ChannelCommand& command) {
         check_channel(application_.document().input().scene->channels, command.channel);
@@ -83,7 +86,7 @@ public:
         application_.settle();
     }
     void perform(const MapCommand& command) {
-        application_.choices().look.map = command.map;
+        map_of(application_.choices().look) = command.map;
         application_.settle();
     }
     void perform(const RangeCommand& command) {
@@ -101,6 +104,31 @@ public:
     void perform(const IsoLinesCommand& command) {
         application_.choices().look.iso_lines = command.drawn;
         application_.settle();
+    }
+    void perform(const DifferenceCommand& command) {
+        Look& look = application_.choices().look;
+        const char* problem =
+            command.shown ? why_no_difference(look.shown, application_.document().input()) : nullptr;
+        if (problem != nullptr) {
+            throw InvalidArgument(fmt::format("difference: {}", problem));
+        }
+        look.difference = command.shown;
+        application_.settle();
+    }
+    void perform(const FindingCommand& command) {
+        application_.document().look_for_findings();
+        application_.wait_for_work();
+        const Findings* findings = application_.document().findings();
+        const std::size_t count = findings == nullptr ? 0 : findings->of(command.kind).size();
+        if (command.number > count) {
+            throw InvalidArgument(
+                fmt::format("finding {} {}: there are {}", to_word(command.kind), command.number, count));
+        }
+        application_.go_to_patch(findings->of(command.kind)[command.number - 1].patch);
+        application_.settle();
+    }
+    void perform(const LongWorkCommand& command) {
+        application_.set_long_work(std::chrono::duration<double>(command.seconds));
     }
     void perform(const GroupCommand& command) {
         apply_group(command, application_.document().input(), application_.choices());
@@ -171,6 +199,7 @@ public:
     }
     void perform(const SaveResultCommand& command) { application_.save_result(command.path); }
     void perform(const SaveCameraCommand&) { application_.save_camera(); }
+    void perform(const SaveMaterialsCommand&) { application_.save_materials(); }
     void perform(const DropCommand& drop) {
         application_.handle(DropEvent{drop.path});
         application_.wait_for_work();

@@ -3,6 +3,7 @@
 #include "hemi/display/dots.hpp"
 #include "hemi/display/picture.hpp"
 #include "hemi/matrix/form_factors.hpp"
+#include "hemi/pipeline/difference.hpp"
 #include "hemi/pipeline/heat.hpp"
 #include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/refinement.hpp"
@@ -27,6 +28,15 @@
 namespace hemi::viewer {
 
 class MeshRefiner;
+
+/// A stored solution that the light is compared with.
+struct Compared {
+    std::filesystem::path file;
+    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const PatchMesh> mesh;
+    Solution solution; ///< with its exitance
+    PatchPairs pairs;  ///< of the mesh that is shown with this one
+};
 
 /// A scene to look at, solved or to be solved, and how to begin.
 struct ViewerInput {
@@ -53,6 +63,8 @@ struct ViewerInput {
     Solution solution;
     std::shared_ptr<const FormFactors> factors; ///< prepared; null until they are found
     std::string of_solution;                    ///< what the window says of a solution that is there
+    std::shared_ptr<const Compared> compared;   ///< null: nothing is compared
+    double max_row_error = 1e-4;                ///< what diagnose() takes for sound
     /// What the scene says of heat, of these patches, without sun and sky; null: nothing.
     std::shared_ptr<const HeatProblem> heat;
     std::string heat_command; ///< as `command`, of pictures of heat
@@ -79,19 +91,26 @@ struct ViewerInput {
     }
 };
 
+/// What makes up what is shown.
+struct FilesToOpen {
+    std::filesystem::path file;     ///< a scene or a stored solution
+    std::filesystem::path factors;  ///< of its rows; empty: none
+    std::filesystem::path compared; ///< a stored solution; empty: none
+};
+
 struct ViewerSettings {
     Controls controls = Controls::standard;
     std::string script; ///< path of a script (see parse_script); empty: a person drives the window
-    /// Reads another file, or the same one again, with the file of its rows, if there is one; called on a
-    /// thread of its own. @throws InputError, …
-    std::function<ViewerInput(const std::filesystem::path&, const std::filesystem::path&)> open;
+    /// Reads other files, or the same ones again; called on a thread of its own. @throws InputError, …
+    std::function<ViewerInput(const FilesToOpen&)> open;
 };
 
 /// Opens a window and runs it until it is closed, or until the script ends. Call from the main thread.
 ///
 /// Mouse and keys: see guide(). Beside the scene stands a panel where the window is large enough for it.
 /// Screenshots have the pixels that draw_picture() gives for the same camera and size. The file is read again
-/// when it changes, and files that are dropped on the window are opened; a .hff holds rows of the open scene.
+/// when it changes, and files that are dropped on the window are opened; a .hff holds rows of the open scene,
+/// and a stored solution that is dropped on another one is compared with it.
 /// An OpenGL error ends it.
 /// @throws NoDevice without a display or without OpenGL 4.5 on it; InputError if the script cannot be read or
 ///   understood, naming file and line; GlError; IoError where a script's file cannot be written.

@@ -2,15 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace hemi::viewer {
+
+void WorkProgress::plan(std::vector<Phase> phases) {
+    const std::lock_guard lock(mutex_);
+    plan_ = std::move(phases);
+}
 
 bool WorkProgress::set(Phase phase, std::size_t done, std::size_t total) {
     constexpr std::chrono::milliseconds interval{100};
     const Clock::time_point now = Clock::now();
-    const std::string title(to_word(phase));
     const bool counts = phase != Phase::closure && phase != Phase::radiosity && phase != Phase::preview &&
                         phase != Phase::error_estimate && phase != Phase::patch_size;
     const std::lock_guard lock(mutex_);
+    const auto stage = std::find(plan_.begin(), plan_.end(), phase);
+    const std::string title = stage == plan_.end() ? std::string(to_word(phase))
+                                                   : fmt::format("{}/{} {}", stage - plan_.begin() + 1,
+                                                                 plan_.size(), to_word(phase));
     bool tell = now - told_ >= interval;
     if (title_ != title) {
         began_ = now;
@@ -31,6 +43,11 @@ std::string WorkProgress::text(double& share) const {
     std::string text = title_.empty() ? "starting" : title_;
     if (!unit_.empty() && seconds_ > 0.5) {
         text += fmt::format(", {:.0f} {}/s", static_cast<double>(done_) / seconds_, unit_);
+    }
+    constexpr double enough = 0.02; // of the stage, to tell of the rest
+    if (share > enough && seconds_ > 0.5) {
+        const auto left = static_cast<long long>(std::ceil(seconds_ * (1.0 - share) / share));
+        text += fmt::format(", {}:{:02} left", left / 60, left % 60);
     }
     return text;
 }

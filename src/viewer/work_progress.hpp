@@ -9,16 +9,19 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hemi::viewer {
 
 /// How far work on another thread is, for the window; used from both threads.
 class WorkProgress {
 public:
+    /// What the work will consist of, in this order, as far as that is known.
+    void plan(std::vector<Phase> phases);
     /// @param done  as Observer::progress has it
     /// @return whether so much time has passed, or so much has changed, that the window should be told
     bool set(Phase phase, std::size_t done, std::size_t total);
-    /// What is being done, and how fast.
+    /// What is being done, which stage of how many that is, how fast, and how long it takes from now.
     /// @param share  becomes the part of it that is done
     [[nodiscard]] std::string text(double& share) const;
 
@@ -26,6 +29,7 @@ private:
     using Clock = std::chrono::steady_clock;
 
     mutable std::mutex mutex_;
+    std::vector<Phase> plan_;
     std::string title_;
     std::string unit_; ///< plural; empty: nothing is counted
     std::size_t done_ = 0;

@@ -64,7 +64,8 @@ TEST_CASE("Viewer: the histogram is of area, and a drag over it chooses the rang
     // The legend is 380 wide at most, in the lower left; its bar ends 29 before its right edge.
     const int status = place.view("show irradiance\nreport whole.json\nwindowshot whole.png\n"
                                   "drag left 100 350 200 350\nreport part.json\nwindowshot part.png\n"
-                                  "click 150 350\nclick 150 350\nreport again.json\n",
+                                  "click 150 350\nclick 150 350\nreport again.json\n"
+                                  "drag left 60 298 60 268\ndrag left 100 320 200 320\nreport moved.json\n",
                                   with_panel);
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
@@ -90,6 +91,9 @@ TEST_CASE("Viewer: the histogram is of area, and a drag over it chooses the rang
     CHECK(sum(part) == Approx(static_cast<double>(inside) / static_cast<double>(values.size())));
     CHECK(place.json("again.json")["scale"]["low"].get<double>() == low);
     CHECK(part["camera"] == whole["camera"]); // the drag was not the scene's
+    // Its title moves it.
+    CHECK(place.json("moved.json")["scale"] == part["scale"]);
+    CHECK(place.json("moved.json")["camera"] == whole["camera"]);
     // No range that a drag can give closes the window.
     REQUIRE(place.view("show irradiance\nrange -200 -100\nkey L\nreport negative.json\n", small) == 0);
     CHECK(place.json("negative.json")["scale"]["logarithmic"] == false);

@@ -59,6 +59,32 @@ TEST_CASE("Viewer: follows the file, and keeps the last good picture when that i
           Approx(0.1 * first["radiosity"][0][0].get<double>()).epsilon(1e-5));
 }
 
+TEST_CASE("Viewer: groups stay hidden, and changes can be had back, when the file changes", "[viewer][gl]") {
+    const Workplace place;
+    std::string more = place.read("room.json");
+    replace(more, R"("surfaces": [)", R"("surfaces": [{"name": "mat", "material": "white",
+        "polygon": [[0.3,0.3,0.1],[0.7,0.3,0.1],[0.7,0.7,0.1],[0.3,0.7,0.1]]},)");
+    place.write("more.json", more);
+    const int status = view_while(place,
+                                  "hide left\nselect right\nset reflectance 0.1 white\nscreenshot first.png\n"
+                                  "changed\nreport second.json\nkey ctrl+Z\nwait\nreport undone.json\n"
+                                  "key ctrl+shift+Z\nwait\nreport redone.json\n",
+                                  {{"first.png", "mv more.json room.json"}});
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    const auto second = place.json("second.json");
+    REQUIRE(second["groups"].size() == 6);
+    for (const auto& group : second["groups"]) {
+        CHECK(group["visibility"] == (group["name"] == "left" ? "hidden" : "shown"));
+    }
+    CHECK(second["groups"][second["group"].get<std::size_t>()]["name"] == "right");
+    const auto bright = [](const nlohmann::json& report) { // of the floor, which is white
+        return report["radiosity"][1][0].get<double>();
+    };
+    CHECK(bright(place.json("undone.json")) < 0.5 * bright(second));
+    CHECK(place.json("redone.json")["radiosity"] == second["radiosity"]);
+}
+
 TEST_CASE("Viewer: a file that is dropped on the window is opened", "[viewer][gl]") {
     const Workplace place;
     std::string other = place.read("room.json");
@@ -128,6 +154,24 @@ TEST_CASE("Viewer: a camera that is saved into the scene is where it begins next
     CHECK(place.read("begun.png") == place.read("saved.png"));
     CHECK(place.read("reset.png") == place.read("saved.png"));
     CHECK(place.json("begun.json")["camera"]["fov"] == 50.0);
+}
+
+TEST_CASE("Viewer: materials that were changed can be written into the scene", "[viewer][gl]") {
+    const Workplace place;
+    REQUIRE(place.view(
+                "set reflectance 0.25 white\nset exitance 5,6,7 lamp\nset environment 1\nreport light.json\n"
+                "save-materials\nreload\nkey Q\nreport never.json\n",
+                small) == 0);
+    CHECK_FALSE(place.has("never.json")); // nothing is unsaved
+    REQUIRE(place.view("report again.json\n", small) == 0);
+    const auto light = place.json("light.json")["radiosity"];
+    const auto again = place.json("again.json")["radiosity"];
+    REQUIRE(again.size() == light.size());
+    for (std::size_t i = 0; i < light.size(); i += 7) {
+        CHECK(again[i][0].get<double>() == Approx(light[i][0].get<double>()).epsilon(2e-5));
+    }
+    CHECK(place.view("save-materials\n", small) == 2); // nothing was changed
+    CHECK(place.read("errors.txt").find("no material") != std::string::npos);
 }
 
 TEST_CASE("Viewer: screenshots have the size and the samples that are asked for", "[viewer][gl]") {

@@ -221,6 +221,34 @@ TEST_CASE("Viewer: every quantity and every panel draws", "[viewer][gl]") {
     CHECK(place.read("bare.png") == place.read("bare_too.png"));
 }
 
+TEST_CASE("Viewer: sliders take numbers, controls have tips, and the hemicube's window moves and closes",
+          "[viewer][gl]") {
+    const Workplace place;
+    // Exposure is the first slider of the panel, which is 380 wide; the hemicube is in the view's upper
+    // right.
+    const int status = place.view("move 470 93\nwindowshot tip.png\nmove 330 399\nwindowshot plain.png\n"
+                                  "click 470 93\nclick 470 93\ntype 2\nkey Enter\nscreenshot typed.png\n"
+                                  "click 500 93\nclick 500 93\ntype 99\nkey Enter\nscreenshot most.png\n"
+                                  "click 440 93\nclick 440 93\ntype 0\nkey Enter\nscreenshot zero.png\n"
+                                  "click 100 330\nreport open.json\nwindowshot open.png\n"
+                                  "drag left 230 26 180 76\nwindowshot moved.png\nclick 252 76\n"
+                                  "report closed.json\nclick 120 330\nreport other.json\n"
+                                  "key E\nkey E\nkey E\nkey E\nkey E\nkey E\nscreenshot pressed.png\n",
+                                  with_panel);
+    INFO(place.read("errors.txt"));
+    REQUIRE(status == 0);
+    CHECK(place.read("tip.png") != place.read("plain.png"));
+    CHECK(place.read("typed.png") == place.read("pressed.png"));
+    CHECK(place.read("zero.png") != place.read("typed.png"));
+    CHECK(place.read("most.png") != place.read("typed.png"));
+    CHECK_FALSE(place.json("open.json")["hemicube"].empty());
+    CHECK(place.read("moved.png") != place.read("open.png"));
+    CHECK(place.json("closed.json")["hemicube"].empty());
+    CHECK(place.json("closed.json")["picked"] == place.json("open.json")["picked"]);
+    CHECK(place.json("other.json")["picked"] != place.json("open.json")["picked"]);
+    CHECK(place.json("other.json")["hemicube"].empty()); // it stays closed
+}
+
 TEST_CASE("Viewer: Escape closes what is open, and never the window", "[viewer][gl]") {
     const Workplace place;
     // The list of quantities stands at the top of the panel, which is 380 wide.
@@ -250,6 +278,14 @@ TEST_CASE("Viewer: changes that are not saved are asked for before it quits", "[
     CHECK(place.read("asks.png") != place.read("stays.png"));
     CHECK_FALSE(place.has("never.json"));
     REQUIRE(place.view("set reflectance 0.1 white\nkey Q\nkey Q\nreport never.json\n", small) == 0);
+    CHECK_FALSE(place.has("never.json"));
+    // Light that took long is asked for as well, until it is saved; that of a moment is not.
+    REQUIRE(place.view("long-work 0\nkey Q\nreport long.json\nkey Escape\nsave-result long.hres\nkey Q\n"
+                       "report never.json\n",
+                       small) == 0);
+    CHECK(place.json("long.json")["asks_to_close"] == true);
+    CHECK_FALSE(place.has("never.json"));
+    REQUIRE(place.view("key Q\nreport never.json\n", small) == 0);
     CHECK_FALSE(place.has("never.json"));
     // What is taken back after saving is other light again; at once, before it is found.
     REQUIRE(place.view("set reflectance 0.1 white\nset reflectance 0.2 white\nsave-result kept.hres\n"

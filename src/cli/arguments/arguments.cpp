@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <type_traits>
 
 namespace hemi::cli {
 
@@ -423,7 +424,7 @@ void add_diff(CLI::App& app, DiffArguments& a) {
 
 #ifdef HEMI_WITH_VIEWER
 void add_view(CLI::App& app, ViewArguments& a) {
-    add_scene(app, a.scene, "SCENE|RESULT", ".hres");
+    add_scene(app, a.scene, "SCENE|RESULT", "one .hres, or two to compare");
     add_unit(app, a.scene);
     a.rows.error_of = ErrorOf::vertices;
     add_rows(app, a.rows);
@@ -454,7 +455,8 @@ void add_view(CLI::App& app, ViewArguments& a) {
     app.footer("Examples:\n"
                "  hemi view scenes/cornell-box.json\n"
                "  hemi view scenes/l-room.json --error-target 1%\n"
-               "  hemi view room.hres --flat");
+               "  hemi view room.hres --flat\n"
+               "  hemi view day.hres evening.hres");
 }
 
 #endif
@@ -538,6 +540,8 @@ void add_info(CLI::App& app, InfoArguments& a) {
     a.scene.reader.adiabatic = true;
     add_scene(app, a.scene, "SCENE|FILE", ".hff, .hres, .mtx, .csv, .npz, .txt, .vf, .dat, .bin");
     add_rows(app, a.rows);
+    add_clusters(app, a.rows);
+    add_max_memory(app, a.rows);
     add_common(app, a.common);
     app.footer("Examples:\n"
                "  hemi info scenes/office.json --preset exact\n"
@@ -585,7 +589,7 @@ void add_command(CLI::App& app, const std::string& name, const std::string& help
             }
         }
         if constexpr (requires { values->scene.also; }) {
-            check_files(values->scene);
+            check_files(values->scene, std::is_same_v<A, ViewArguments>);
         }
         if constexpr (requires { values->rows.factors.method; }) {
             check_method(values->rows, values->common.given);

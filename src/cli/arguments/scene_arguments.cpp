@@ -138,9 +138,13 @@ void add_unit(CLI::App& app, SceneOptions& scene) {
                             [&scene](LengthUnit unit) { scene.reader.unit = metres(unit); });
 }
 
-void check_files(const SceneOptions& scene) {
+void check_files(const SceneOptions& scene, bool two_results) {
     std::vector<std::filesystem::path> files = scene.also;
     files.insert(files.begin(), scene.path);
+    if (two_results && files.size() == 2 && files[0].extension() == ".hres" &&
+        files[1].extension() == ".hres") {
+        return;
+    }
     for (const std::filesystem::path& file : files) {
         if (files.size() > 1 && !io::is_scene_file(file)) {
             throw InvalidArgument(

@@ -19,7 +19,8 @@ void add_up(CLI::App& app, SceneOptions& scene, const std::string& help);
 void add_unit(CLI::App& app, SceneOptions& scene);
 
 /// Several files make up one scene, of meshes alone.
+/// @param two_results  whether two stored solutions may be named as well, which are compared
 /// @throws InvalidArgument for others among them
-void check_files(const SceneOptions& scene);
+void check_files(const SceneOptions& scene, bool two_results);
 
 } // namespace hemi::cli
