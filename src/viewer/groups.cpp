@@ -22,7 +22,11 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_rows = 6;
 
 std::string number(double value, int digits) {
-    return std::isnan(value) ? "-" : fmt::format("{:.{}g}", value, digits);
+    constexpr double long_number = 1e6;
+    const double size = std::abs(value);
+    return std::isnan(value)                                      ? "-"
+           : size >= std::pow(10.0, digits) && size < long_number ? fmt::format("{:.0f}", value)
+                                                                  : fmt::format("{:.{}g}", value, digits);
 }
 
 /// Whether a name has the letters that are searched for, small or capital.

@@ -36,8 +36,14 @@ void shown_combo(const PanelContent& content, Choices& choices) {
     ImGui::EndCombo();
 }
 
+/// Whether a quantity is one value whatever the channel.
+bool is_without_channels(Quantity quantity) {
+    return quantity == Quantity::environment || quantity == Quantity::blocked ||
+           quantity == Quantity::row_error || quantity == Quantity::area;
+}
+
 void channel_choice(const ViewerInput& input, Look& look) {
-    if (input.channels() == 1) {
+    if (input.channels() == 1 || is_without_channels(look.shown.quantity)) {
         return;
     }
     if (begin_list("##channel", "channel: " + look.channel, -1.0F,
