@@ -5,6 +5,7 @@
 #include "cli/report/factor_report.hpp"
 #include "cli/terminal_observer.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/display/lightmap.hpp"
 #include "hemi/io/baked_mesh_file.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
@@ -13,6 +14,8 @@
 #include "hemi/pipeline/vertex_gather.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace hemi::cli {
 
@@ -30,6 +33,11 @@ std::vector<float> flat_corners(const std::vector<float>& patches) {
     return corners;
 }
 
+bool has_lightmap(const BakeArguments& arguments) {
+    const std::vector<std::string>& given = arguments.common.given;
+    return std::find(given.begin(), given.end(), "--lightmap") != given.end();
+}
+
 void write_baked(const BakeArguments& arguments, const Outputs& outputs, const Scene& scene,
                  const PatchMesh& mesh, const Solution& solution, const Terminal& terminal) {
     const PictureMesh picture = make_picture_mesh(
@@ -42,15 +50,27 @@ void write_baked(const BakeArguments& arguments, const Outputs& outputs, const S
     const std::filesystem::path& path = *arguments.picture.output;
     const std::vector<float> corners =
         arguments.picture.flat ? flat_corners(picture.patches) : picture.corners;
-    (extension_of(path) == ".ply" ? io::write_baked_ply : io::write_baked_glb)(path, mesh, corners, exposure);
     Report report;
+    report.json["lightmap"] = nullptr;
+    if (has_lightmap(arguments)) {
+        const Lightmap lightmap = make_lightmap(mesh, corners, arguments.picture.size[0]);
+        io::write_lightmapped_glb(path, mesh, corners, exposure,
+                                  {lightmap.size, lightmap.texels, lightmap.coordinates});
+        report.add("lightmap",
+                   fmt::format("{0} x {0} texels, {1} along the edge of a patch", lightmap.size,
+                               lightmap.patch_size),
+                   {{"lightmap", {{"size", lightmap.size}, {"patch_size", lightmap.patch_size}}}});
+    } else {
+        (extension_of(path) == ".ply" ? io::write_baked_ply : io::write_baked_glb)(path, mesh, corners,
+                                                                                   exposure);
+    }
     report.add("baked",
                fmt::format("{} ({}, exposure {}{})",
                            is_standard_output(path) ? "standard output" : path.string(),
                            plural(mesh.size(), "patch", "patches"), number_text(exposure),
                            arguments.picture.exposure ? "" : ", automatic"),
                {{"output", path.string()}, {"patches", mesh.size()}, {"exposure", exposure}});
-    report.select("hemi/bake/1", {"output", "patches", "exposure"});
+    report.select("hemi/bake/1", {"output", "patches", "exposure", "lightmap"});
     outputs.show(report, arguments.common.json, terminal);
 }
 
@@ -83,7 +103,8 @@ void bake_result(const BakeArguments& arguments, const Outputs& outputs, const T
         throw InvalidArgument(fmt::format("{}: bake needs a scene ({}) or a stored solution (.hres)",
                                           path.string(), io::scene_extensions()));
     }
-    refuse_all_but(arguments.common, std::vector<std::string>{"--output", "--show", "--flat", "--exposure"},
+    refuse_all_but(arguments.common,
+                   std::vector<std::string>{"--output", "--show", "--flat", "--exposure", "--lightmap"},
                    path);
     io::ResultFile result = io::read_hres(path);
     if (!result.solution.temperature.empty()) {
@@ -103,6 +124,9 @@ ExitStatus run(const BakeArguments& arguments, const Terminal& terminal) {
     Outputs outputs;
     outputs.keep(arguments.scene.path);
     outputs.add("-o", *arguments.picture.output, {".glb", ".ply"}, true);
+    if (has_lightmap(arguments) && extension_of(*arguments.picture.output) == ".ply") {
+        throw InvalidArgument("--lightmap: a .ply has no texture; -o OUT.glb does");
+    }
     outputs.refuse_with_json(arguments.common.json);
     if (io::is_scene_file(arguments.scene.path)) {
         return bake_scene(arguments, outputs, terminal);

@@ -104,9 +104,12 @@ void add_stages(FactorCost& cost, VisibilityProvider& provider, const PatchMesh&
         const auto count = static_cast<double>(rows);
         return count * (images.mesh().size() - 0.5 * count);
     };
-    const double share = pairs(mesh.size()) / (pairs(more.size()) - (all ? 0.0 : pairs(few.size())));
+    const double done = pairs(more.size());
+    const double before = all ? 0.0 : pairs(few.size());
     const auto whole = [&](double StageTimes::*of) {
-        return std::max(0.0, last.*of - (all ? 0.0 : first.*of)) * share;
+        // Where the machine's other work hides the difference, with what is made once.
+        const double difference = last.*of - (all ? 0.0 : first.*of);
+        return pairs(mesh.size()) * (difference > 0.0 ? difference / (done - before) : last.*of / done);
     };
     cost.stages.push_back({Phase::pairs, whole(&StageTimes::pairs)});
     cost.stages.push_back({Phase::form_factors, whole(&StageTimes::factors)});

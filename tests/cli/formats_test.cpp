@@ -221,6 +221,19 @@ TEST_CASE("Bake: a scene and its stored solution give the same mesh, which hemi 
     CHECK(differs);
 
     CHECK(run_hemi({"bake", hres, "-o", directory.path("x.gltf")}).status == 2);
+    const Outcome mapped =
+        run_hemi({"bake", hres, "-o", directory.path("map.glb"), "--lightmap", "128", "--json"});
+    INFO(mapped.err);
+    CHECK(mapped.json()["lightmap"]["size"] == 128);
+    CHECK(mapped.json()["lightmap"]["patch_size"] >= 1);
+    CHECK(baked.json()["lightmap"].is_null());
+    CHECK(run_hemi({"info", directory.path("map.glb")}).status == 0); // readers find the mesh in it
+    CHECK(run_hemi({"bake", hres, "-o", directory.path("x.ply"), "--lightmap", "128"})
+              .err_has("a .ply has no texture"));
+    const Outcome little = run_hemi({"bake", hres, "-o", directory.path("x.glb"), "--lightmap", "16"});
+    CHECK(little.status == 2);
+    CHECK(little.err_has("are enough"));
+    CHECK(run_hemi({"bake", hres, "-o", directory.path("x.glb"), "--lightmap", "128", "--flat"}).status == 2);
     CHECK(run_hemi({"bake", hres, "-o", directory.path("x.glb"), "--seed", "1"}).err_has("does not apply"));
     CHECK(run_hemi({"bake", directory.path("cube.hff"), "-o", directory.path("x.glb")}).status == 2);
 }

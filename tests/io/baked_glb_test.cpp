@@ -1,10 +1,18 @@
 #include "hemi/io/baked_mesh_file.hpp"
 
+#include "hemi/core/error.hpp"
+#include "hemi/display/lightmap.hpp"
+#include "hemi/io/output_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "io/scenes/gltf_file.hpp"
 #include "io_fixtures.hpp"
+#include "support/png.hpp"
 
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace hemi::io_test {
@@ -127,6 +135,60 @@ TEST_CASE("Baked glTF: values that do not fit, and disks that are full, leave no
         message_of<InvalidArgument>([&] { io::write_baked_glb(folder / "a.glb", huge, ramp(huge), 1.0); }),
         {"too large for the 32-bit numbers"});
     REQUIRE(folder.files() == 0);
+}
+
+TEST_CASE("Baked glTF: a lightmap holds the radiosity of every vertex where that is in it", "[io]") {
+    const Folder folder;
+    const PatchMesh mesh(far_scene());
+    const std::vector<float> values = ramp(mesh);
+    const Lightmap map = make_lightmap(mesh, values, 64);
+    io::write_lightmapped_glb(folder / "a.glb", mesh, values, 1.25, {map.size, map.texels, map.coordinates});
+    const io::GltfFile file(folder / "a.glb", false);
+    const std::string bytes = io::read_file(folder / "a.glb");
+    std::uint32_t json_bytes = 0;
+    std::memcpy(&json_bytes, bytes.data() + 12, sizeof json_bytes);
+    const auto json = nlohmann::json::parse(bytes.substr(20, json_bytes));
+    const auto texture = json["materials"][0]["emissiveTexture"];
+    CHECK(texture["texCoord"] == 1);
+    const auto image = json["images"][json["textures"][texture["index"].get<int>()]["source"].get<int>()];
+    CHECK(image["mimeType"] == "image/png");
+    const auto view = json["bufferViews"][image["bufferView"].get<std::size_t>()];
+    const auto offset = view["byteOffset"].get<std::size_t>();
+    CHECK(offset + view["byteLength"].get<std::size_t>() <=
+          json["buffers"][0]["byteLength"].get<std::size_t>());
+    const test::DeepPicture picture =
+        test::read_png_16(bytes.substr(20 + json_bytes + 8 + offset, view["byteLength"].get<std::size_t>()));
+    REQUIRE(picture.width == 64);
+    REQUIRE(picture.height == 64);
+    std::size_t compared = 0;
+    for (std::size_t m = 0; m < 2; ++m) {
+        const io::JsonNode meshes = file.root().member("meshes");
+        const io::JsonNode baked = meshes.element(m);
+        const io::JsonNode primitives = baked.member("primitives");
+        const io::JsonNode primitive = primitives.element(0);
+        const io::JsonNode attributes = primitive.member("attributes");
+        CHECK_FALSE(attributes.has("COLOR_0"));
+        const io::GltfAccessor places = file.accessor(attributes.member("TEXCOORD_1"));
+        const io::GltfAccessor first_places = file.accessor(attributes.member("TEXCOORD_0"));
+        const io::GltfAccessor radiosity = file.accessor(attributes.member("_RADIOSITY"));
+        REQUIRE(places.count() == radiosity.count());
+        for (std::size_t v = 0; v < places.count(); ++v) {
+            CHECK(places.number(v, 0) == first_places.number(v, 0));
+            const auto x = static_cast<std::size_t>(places.number(v, 0) * 64.0);
+            const auto y = static_cast<std::size_t>(places.number(v, 1) * 64.0);
+            for (std::uint32_t c = 0; c < 3; ++c) {
+                const double coded = picture.pixels[(y * 64 + x) * 3 + c] / 65535.0;
+                const double linear =
+                    coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
+                CHECK(linear == Approx(std::min(1.0, 1.25 * radiosity.number(v, c))).margin(5e-5));
+                ++compared;
+            }
+        }
+    }
+    CHECK(compared == 3 * (4 * 4 + 2 * 3));
+    CHECK_THROWS_AS(
+        io::write_lightmapped_glb(folder / "b.glb", mesh, values, 1.0, {32, map.texels, map.coordinates}),
+        InvalidArgument);
 }
 
 } // namespace hemi::io_test

@@ -468,6 +468,14 @@ void add_bake(CLI::App& app, BakeArguments& a) {
               "mesh with vertex colours: .glb or .ply; - for .glb on stdout")
         ->required();
     (void)add_shown(app, a.picture);
+    Options(app, "Output")
+        .value("--lightmap", "SIZE",
+               "of a .glb: the light as a texture of SIZE x SIZE texels instead of vertex colours",
+               [&a](const std::string& text) {
+                   const std::uint32_t size = parse_index("--lightmap", text, 1);
+                   a.picture.size = {size, size};
+               })
+        ->excludes(app.get_option("--flat"));
     add_gather(app, a.gather);
     add_common(app, a.common);
     app.footer(
@@ -475,7 +483,8 @@ void add_bake(CLI::App& app, BakeArguments& a) {
         "radiosity itself is _RADIOSITY, or radiosity_red and so on. Axes are those of the scene.\n\n"
         "Examples:\n"
         "  hemi bake scenes/cornell-box.json -o cornell-box.glb\n"
-        "  hemi bake room.hres -o room.glb --exposure 0.5 --flat");
+        "  hemi bake room.hres -o room.glb --exposure 0.5 --flat\n"
+        "  hemi bake room.hres -o room.glb --lightmap 1024");
 }
 
 void add_merge(CLI::App& app, MergeArguments& a) {

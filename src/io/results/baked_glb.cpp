@@ -3,6 +3,7 @@
 #include "hemi/io/output_file.hpp"
 #include "io/formats/json_text.hpp"
 #include "io/results/baked_mesh.hpp"
+#include "io/results/png_16.hpp"
 
 #include <fmt/format.h>
 
@@ -10,16 +11,24 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
-#include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hemi::io {
 
 namespace {
 
-constexpr std::uint64_t vertex_bytes = 3 * sizeof(float); // of each attribute
+/// One of a vertex, as floats.
+struct Attribute {
+    const char* name;
+    std::uint32_t components;
+    std::function<std::array<float, 3>(std::uint32_t patch, std::uint32_t corner)> value;
+
+    [[nodiscard]] std::uint64_t bytes() const { return components * sizeof(float); }
+};
 
 /// Patches of one group, and where its vertices and indices lie in the common buffers.
 struct Part {
@@ -35,9 +44,16 @@ struct Part {
 
 class Baker {
 public:
-    Baker(const PatchMesh& mesh, std::span<const float> radiosity, double exposure)
-        : mesh_(mesh), radiosity_(radiosity), exposure_(exposure), centre_(mesh.bounds().centre()) {
+    /// @param texture  null: the light is in the vertices' colours
+    Baker(const PatchMesh& mesh, std::span<const float> radiosity, double exposure,
+          const BakedTexture* texture)
+        : mesh_(mesh), radiosity_(radiosity), exposure_(exposure), texture_(texture),
+          centre_(mesh.bounds().centre()) {
         make_parts();
+        add_attributes();
+        if (texture_ != nullptr) {
+            picture_ = encoded();
+        }
     }
 
     void write(const std::filesystem::path& path) const {
@@ -54,19 +70,11 @@ public:
         file.write("JSON" + json);
         write_words(file, {buffer_bytes()});
         file.write("BIN\0", 4);
-        write_attribute(file, [this](std::uint32_t patch, std::uint32_t corner) {
-            return position(mesh_.corners(patch).points[corner]);
-        });
-        write_attribute(file, [this](std::uint32_t patch, std::uint32_t corner) {
-            std::array<float, 3> colour = value(patch, corner);
-            for (float& c : colour) {
-                c = static_cast<float>(std::clamp(exposure_ * static_cast<double>(c), 0.0, 1.0));
-            }
-            return colour;
-        });
-        write_attribute(file,
-                        [this](std::uint32_t patch, std::uint32_t corner) { return value(patch, corner); });
+        for (const Attribute& attribute : attributes_) {
+            write_attribute(file, attribute);
+        }
         write_indices(file);
+        file.write(picture_ + std::string((4 - picture_.size() % 4) % 4, '\0'));
         file.commit();
     }
 
@@ -78,6 +86,45 @@ private:
     [[nodiscard]] std::array<float, 3> value(std::uint32_t patch, std::uint32_t corner) const {
         const std::size_t first = (std::size_t{patch} * 4 + corner) * 3;
         return {radiosity_[first], radiosity_[first + 1], radiosity_[first + 2]};
+    }
+
+    void add_attributes() {
+        attributes_.push_back({"POSITION", 3, [this](std::uint32_t patch, std::uint32_t corner) {
+                                   return position(mesh_.corners(patch).points[corner]);
+                               }});
+        if (texture_ == nullptr) { // of which a colour would be a factor
+            attributes_.push_back({"COLOR_0", 3, [this](std::uint32_t patch, std::uint32_t corner) {
+                                       std::array<float, 3> colour = value(patch, corner);
+                                       for (float& c : colour) {
+                                           c = static_cast<float>(
+                                               std::clamp(exposure_ * static_cast<double>(c), 0.0, 1.0));
+                                       }
+                                       return colour;
+                                   }});
+        }
+        attributes_.push_back({"_RADIOSITY", 3, [this](std::uint32_t patch, std::uint32_t corner) {
+                                   return value(patch, corner);
+                               }});
+        const auto place = [this](std::uint32_t patch, std::uint32_t corner) {
+            const std::size_t at = (std::size_t{patch} * 4 + corner) * 2;
+            return std::array<float, 3>{texture_->coordinates[at], texture_->coordinates[at + 1], 0.0F};
+        };
+        if (texture_ != nullptr) { // glTF has no second set without a first one
+            attributes_.push_back({"TEXCOORD_0", 2, place});
+            attributes_.push_back({"TEXCOORD_1", 2, place});
+        }
+    }
+
+    /// The lightmap as a PNG.
+    [[nodiscard]] std::string encoded() const {
+        std::vector<std::uint16_t> values;
+        values.reserve(texture_->texels.size());
+        for (const float texel : texture_->texels) {
+            const double x = std::clamp(exposure_ * static_cast<double>(texel), 0.0, 1.0);
+            const double srgb = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+            values.push_back(static_cast<std::uint16_t>(std::lround(65535.0 * srgb)));
+        }
+        return png_of_16_bits(texture_->size, texture_->size, values);
     }
 
     [[nodiscard]] std::array<float, 3> position(const Vec3& point) const {
@@ -126,7 +173,34 @@ private:
     }
 
     [[nodiscard]] std::uint64_t buffer_bytes() const {
-        return 3 * vertex_bytes * vertices_ + sizeof(std::uint32_t) * indices_;
+        return attribute_bytes() + sizeof(std::uint32_t) * indices_ + (picture_.size() + 3) / 4 * 4;
+    }
+
+    [[nodiscard]] std::uint64_t attribute_bytes() const {
+        std::uint64_t bytes = 0;
+        for (const Attribute& attribute : attributes_) {
+            bytes += attribute.bytes() * vertices_;
+        }
+        return bytes;
+    }
+
+    /// Unlit in the vertices' colours, or black and shining by the lightmap: there are viewers that draw no
+    /// texture of unlit materials, and others (VTK 9.1) none that shines without one of the base colour.
+    [[nodiscard]] Json material() const {
+        if (texture_ != nullptr) {
+            const Json lightmap{{"index", 0}, {"texCoord", 1}};
+            return {{"name", "baked"},
+                    {"pbrMetallicRoughness",
+                     {{"baseColorFactor", {0, 0, 0, 1}},
+                      {"baseColorTexture", lightmap},
+                      {"metallicFactor", 0},
+                      {"roughnessFactor", 1}}},
+                    {"emissiveFactor", {1, 1, 1}},
+                    {"emissiveTexture", lightmap}};
+        }
+        return {{"name", "baked"},
+                {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 0}}},
+                {"extensions", {{"KHR_materials_unlit", Json::object()}}}};
     }
 
     [[nodiscard]] Json document() const {
@@ -134,62 +208,67 @@ private:
         Json meshes = Json::array();
         Json accessors = Json::array();
         Json children = Json::array();
-        const auto attribute = [&](std::uint64_t view, const Part& part) {
-            accessors.push_back({{"bufferView", view},
-                                 {"byteOffset", part.first_vertex * vertex_bytes},
-                                 {"componentType", 5126},
-                                 {"type", "VEC3"},
-                                 {"count", part.vertices}});
-            return accessors.size() - 1;
-        };
         for (const Part& part : parts_) {
-            const std::size_t position = attribute(0, part);
-            accessors.back()["min"] = part.lower;
-            accessors.back()["max"] = part.upper;
-            const std::size_t colour = attribute(1, part);
-            const std::size_t radiosity = attribute(2, part);
-            accessors.push_back({{"bufferView", 3},
+            Json of_vertices = Json::object();
+            for (std::size_t k = 0; k < attributes_.size(); ++k) {
+                of_vertices[attributes_[k].name] = accessors.size();
+                accessors.push_back({{"bufferView", k},
+                                     {"byteOffset", part.first_vertex * attributes_[k].bytes()},
+                                     {"componentType", 5126},
+                                     {"type", attributes_[k].components == 2 ? "VEC2" : "VEC3"},
+                                     {"count", part.vertices}});
+                if (k == 0) {
+                    accessors.back()["min"] = part.lower;
+                    accessors.back()["max"] = part.upper;
+                }
+            }
+            accessors.push_back({{"bufferView", attributes_.size()},
                                  {"byteOffset", part.first_index * sizeof(std::uint32_t)},
                                  {"componentType", 5125},
                                  {"type", "SCALAR"},
                                  {"count", part.indices}});
-            meshes.push_back(
-                {{"name", mesh_.groups()[part.group]},
-                 {"primitives",
-                  Json::array({{{"attributes",
-                                 {{"POSITION", position}, {"COLOR_0", colour}, {"_RADIOSITY", radiosity}}},
-                                {"indices", accessors.size() - 1},
-                                {"material", 0}}})}});
+            meshes.push_back({{"name", mesh_.groups()[part.group]},
+                              {"primitives", Json::array({{{"attributes", std::move(of_vertices)},
+                                                           {"indices", accessors.size() - 1},
+                                                           {"material", 0}}})}});
             nodes.push_back({{"name", mesh_.groups()[part.group]},
                              {"mesh", meshes.size() - 1},
                              {"translation", {centre_.x, centre_.y, centre_.z}}});
             children.push_back(nodes.size() - 1);
         }
-        const std::uint64_t attribute_bytes = vertex_bytes * vertices_;
         Json views = Json::array();
-        for (std::uint64_t k = 0; k < 3; ++k) {
-            views.push_back({{"buffer", 0},
-                             {"byteOffset", k * attribute_bytes},
-                             {"byteLength", attribute_bytes},
-                             {"target", 34962}});
+        std::uint64_t offset = 0;
+        const auto add_view = [&](std::uint64_t bytes, int target) {
+            views.push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}});
+            if (target != 0) {
+                views.back()["target"] = target;
+            }
+            offset += bytes;
+        };
+        for (const Attribute& attribute : attributes_) {
+            add_view(attribute.bytes() * vertices_, 34962);
         }
-        views.push_back({{"buffer", 0},
-                         {"byteOffset", 3 * attribute_bytes},
-                         {"byteLength", sizeof(std::uint32_t) * indices_},
-                         {"target", 34963}});
-        return {{"asset", {{"version", "2.0"}, {"generator", "hemi " HEMI_VERSION}}},
-                {"extensionsUsed", Json::array({"KHR_materials_unlit"})},
-                {"scene", 0},
-                {"scenes", Json::array({{{"nodes", children}}})},
-                {"nodes", nodes},
-                {"meshes", meshes},
-                {"materials", Json::array({{{"name", "baked"},
-                                            {"pbrMetallicRoughness",
-                                             {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 0}}},
-                                            {"extensions", {{"KHR_materials_unlit", Json::object()}}}}})},
-                {"accessors", accessors},
-                {"bufferViews", views},
-                {"buffers", Json::array({{{"byteLength", buffer_bytes()}}})}};
+        add_view(sizeof(std::uint32_t) * indices_, 34963);
+        Json json{{"asset", {{"version", "2.0"}, {"generator", "hemi " HEMI_VERSION}}},
+                  {"scene", 0},
+                  {"scenes", Json::array({{{"nodes", children}}})},
+                  {"nodes", nodes},
+                  {"meshes", meshes},
+                  {"materials", Json::array({material()})},
+                  {"accessors", accessors}};
+        if (texture_ == nullptr) {
+            json["extensionsUsed"] = Json::array({"KHR_materials_unlit"});
+        } else {
+            json["images"] = Json::array(
+                {{{"name", "lightmap"}, {"mimeType", "image/png"}, {"bufferView", views.size()}}});
+            json["samplers"] = Json::array( // linear, and no repetition
+                {{{"magFilter", 9729}, {"minFilter", 9729}, {"wrapS", 33071}, {"wrapT", 33071}}});
+            json["textures"] = Json::array({{{"sampler", 0}, {"source", 0}}});
+            add_view(picture_.size(), 0);
+        }
+        json["bufferViews"] = views;
+        json["buffers"] = Json::array({{{"byteLength", buffer_bytes()}}});
+        return json;
     }
 
     static void write_words(OutputFile& file, std::initializer_list<std::uint64_t> values) {
@@ -199,16 +278,15 @@ private:
         }
     }
 
-    template <class Value>
-    void write_attribute(OutputFile& file, const Value& value_of) const {
+    void write_attribute(OutputFile& file, const Attribute& attribute) const {
         std::vector<float> values;
         for (const Part& part : parts_) {
             values.clear();
-            values.reserve(3 * part.vertices);
+            values.reserve(attribute.components * part.vertices);
             for (const std::uint32_t patch : part.patches) {
                 for (std::uint32_t corner = 0; corner < corners(patch); ++corner) {
-                    const std::array<float, 3> three = value_of(patch, corner);
-                    values.insert(values.end(), three.begin(), three.end());
+                    const std::array<float, 3> three = attribute.value(patch, corner);
+                    values.insert(values.end(), three.begin(), three.begin() + attribute.components);
                 }
             }
             file.write(values.data(), values.size() * sizeof(float));
@@ -235,7 +313,10 @@ private:
     const PatchMesh& mesh_;
     std::span<const float> radiosity_;
     double exposure_;
+    const BakedTexture* texture_;
     Vec3 centre_;
+    std::vector<Attribute> attributes_;
+    std::string picture_; ///< the lightmap as a file; empty: none
     std::vector<Part> parts_;
     std::uint64_t vertices_ = 0;
     std::uint64_t indices_ = 0;
@@ -246,7 +327,17 @@ private:
 void write_baked_glb(const std::filesystem::path& path, const PatchMesh& mesh,
                      std::span<const float> radiosity, double exposure) {
     check_baked(mesh, radiosity, exposure);
-    Baker(mesh, radiosity, exposure).write(path);
+    Baker(mesh, radiosity, exposure, nullptr).write(path);
+}
+
+void write_lightmapped_glb(const std::filesystem::path& path, const PatchMesh& mesh,
+                           std::span<const float> radiosity, double exposure, const BakedTexture& texture) {
+    check_baked(mesh, radiosity, exposure);
+    if (texture.coordinates.size() != std::size_t{mesh.size()} * 8 ||
+        texture.texels.size() != std::size_t{texture.size} * texture.size * 3) {
+        throw InvalidArgument("a texture of another mesh, or of other numbers of texels");
+    }
+    Baker(mesh, radiosity, exposure, &texture).write(path);
 }
 
 } // namespace hemi::io
