@@ -88,7 +88,10 @@ void patch_list(const Findings& findings, Finding kind, const PatchMesh& mesh, C
     const std::vector<PatchFinding>& patches = findings.of(kind);
     const char* share = share_of(kind);
     const std::size_t count = std::min(patches.size(), most_lines);
+    constexpr std::size_t seen_lines = 8; // before the list scrolls
+    const auto lines = static_cast<float>(std::min(count + (count < patches.size() ? 1U : 0U), seen_lines));
     ImGui::Indent();
+    ImGui::BeginChild(title_of(kind), {0.0F, lines * ImGui::GetTextLineHeightWithSpacing() + 4.0F});
     for (std::size_t k = 0; k < count; ++k) {
         const PatchFinding& finding = patches[k];
         std::string words = fmt::format("{}  {}", finding.patch, mesh.groups()[mesh.group(finding.patch)]);
@@ -104,6 +107,7 @@ void patch_list(const Findings& findings, Finding kind, const PatchMesh& mesh, C
     if (count < patches.size()) {
         faint(fmt::format("and {} more", patches.size() - count));
     }
+    ImGui::EndChild();
     ImGui::Unindent();
 }
 

@@ -199,8 +199,8 @@ void side_panel(const PanelContent& content, std::array<std::uint32_t, 2> window
     groups_section(content, choices);
     dots_section(content.document.input(), choices);
     heat_section(content, choices);
+    findings_section(content, choices); // above the patch, whose lines come and go
     patch_section(content, choices);
-    findings_section(content, choices);
     clip_section(content, choices);
     solution_section(content, choices);
     material_section(content, choices);
