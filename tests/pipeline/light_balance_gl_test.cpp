@@ -75,6 +75,20 @@ TEST_CASE("LightBalance: a closed room absorbs what its lamp emits, also where r
     CHECK_FALSE(light_balance(fewer, solved.values, solved.solution.radiosity));
 }
 
+TEST_CASE("LightBalance: a lamp back to back with a wall of a closed room lights the outside alone",
+          "[pipeline]") {
+    Scene scene = lit_room();
+    test::add_polygon(scene, "outside", {Vec3(2, 2, 0), Vec3(2, 2, 1), Vec3(2, 0, 1), Vec3(2, 0, 0)}, {2, 2});
+    scene.surfaces.back().material = 1;
+    const Solved solved = solve(scene);
+    const auto balance = light_balance(solved.factors, solved.values, solved.solution.radiosity);
+    REQUIRE(balance);
+    CHECK(balance->emitted == Approx(18.0));
+    CHECK(balance->absorbed == Approx(12.0).epsilon(1e-6));
+    CHECK(balance->environment == Approx(6.0).epsilon(1e-6));
+    CHECK(balance->lost == Approx(0.0).margin(1e-6));
+}
+
 TEST_CASE("LightBalance: through an opening light goes out, and comes in", "[pipeline]") {
     Scene scene = lit_room();
     std::erase_if(scene.surfaces,

@@ -101,7 +101,7 @@ TEST_CASE("long patches: the open ends of long ducts are what the walls' factors
           "them",
           "[pipeline][gl][long-patches]") {
     CHECK(through_ends(1000.0, "z0") == Approx(0.000648).margin(1e-6).epsilon(0));
-    for (const double length : {300.0, 1000.0, 3000.0}) {
+    for (const double length : {1000.0, 3000.0}) {
         Scene scene = duct(length, false);
         const PatchMesh mesh(scene);
         for (const Enclosure enclosure : {Enclosure::automatic, Enclosure::open}) {
