@@ -22,6 +22,8 @@ constexpr double max_lost_share = 0.001;
 // A reversed surface sends back about its own area in back-face shares; a roof that nothing can see sends
 // none.
 constexpr double reversed_above = 0.1;
+// Of all area: bodies that stick out of a room, not a room with a window beside one without.
+constexpr double max_outside = 0.1;
 // float32 values may round up by a few units in the last place.
 constexpr double rounding = 1e-6;
 
@@ -162,6 +164,49 @@ void examine_close_surfaces(Diagnosis& diagnosis, const PatchMesh& mesh) {
                      [](const PatchFinding& a, const PatchFinding& b) { return a.share < b.share; });
 }
 
+/// Sets apart what sticks out of an enclosure: of what it sees there nothing tells anything of the enclosure.
+void set_apart_outside(Diagnosis& diagnosis, const FormFactors& file, double max_row_error) {
+    const FormFactorMatrix& factors = file.matrix;
+    std::vector<bool> outside(factors.size());
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        outside[i] = factors.row(i).environment > max_row_error;
+    }
+    const auto sees_inside = [&](std::uint32_t i) {
+        double inside = 0.0;
+        visit_sources(factors, factors.row(i),
+                      [&](std::uint32_t j, double factor) { inside += outside[j] ? 0.0 : factor; });
+        return inside > max_row_error;
+    };
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::uint32_t i = 0; i < factors.size(); ++i) {
+            if (outside[i] && sees_inside(i)) {
+                outside[i] = false;
+                changed = true;
+            }
+        }
+    }
+    double area = 0.0;
+    double area_outside = 0.0;
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        area += file.areas[i];
+        area_outside += outside[i] ? file.areas[i] : 0.0;
+    }
+    if (area_outside > max_outside * area) {
+        return;
+    }
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        if (outside[i]) {
+            diagnosis.outside.push_back({i, factors.row(i).environment});
+        }
+    }
+    for (std::vector<PatchFinding>* findings :
+         {&diagnosis.back_faces, &diagnosis.partly_buried, &diagnosis.buried}) {
+        std::erase_if(*findings, [&](const PatchFinding& finding) { return outside[finding.patch]; });
+    }
+    sort_worst_first(diagnosis.outside);
+}
+
 void find_leak_directions(Diagnosis& diagnosis, const PatchMesh& mesh) {
     std::vector<std::uint32_t> shown;
     for (std::size_t k = 0; k < std::min(Diagnosis::shown, diagnosis.leaks.size()); ++k) {
@@ -224,6 +269,11 @@ Diagnosis diagnose(const FormFactors& file, const PatchMesh* mesh, double max_ro
     }
     if (mesh != nullptr) {
         examine_close_surfaces(diagnosis, *mesh);
+    }
+    if (diagnosis.all_known) {
+        set_apart_outside(diagnosis, file, max_row_error);
+    }
+    if (mesh != nullptr) {
         find_leak_directions(diagnosis, *mesh);
     }
     list_failures(diagnosis, max_row_error);

@@ -84,6 +84,7 @@ py::dict check(const FormFactors& factors, const PatchMesh* mesh, double max_row
     result["buried"] = patch_list(diagnosis.buried);
     result["back_faces"] = patch_list(diagnosis.back_faces);
     result["partly_buried"] = patch_list(diagnosis.partly_buried);
+    result["outside"] = patch_list(diagnosis.outside);
     result["close"] = patch_list(diagnosis.close);
     result["never_visible"] =
         diagnosis.all_known ? py::object(patch_list(diagnosis.never_visible)) : py::none();

@@ -472,7 +472,7 @@ Returns
 dict
     ok, failures (sentences), enclosure ("closed", "nearly closed", "open"), row_sum, reciprocity,
     largest_factor, above_one, and lists of patches with their share, worst first: leaks, buried, back_faces,
-    partly_buried, close, never_visible; reversed: groups whose normals point the wrong way.
+    partly_buried, outside, close, never_visible; reversed: groups whose normals point the wrong way.
 )");
     type.def("solve", &solve, py::kw_only(), py::arg("reflectance") = py::none(),
              py::arg("exitance") = py::none(), py::arg("environment") = py::none(),

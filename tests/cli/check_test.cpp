@@ -90,6 +90,32 @@ TEST_CASE("check: a scene with a small gap is called nearly closed", "[cli]") {
     CHECK(json["leaks"]["count"] == json["leaking"]);
 }
 
+TEST_CASE("check: what sticks out of a closed room is not judged", "[cli]") {
+    const Directory directory;
+    Json room = cube(2);
+    room["enclosure"] = "auto";
+    for (const char* polygon : {"[[0.3,0.3,0.2],[0.5,0.3,0.2],[0.5,0.5,0.2],[0.3,0.5,0.2]]",
+                                "[[0.3,0.3,-0.1],[0.5,0.3,-0.1],[0.5,0.3,0.2],[0.3,0.3,0.2]]",
+                                "[[0.5,0.3,-0.1],[0.5,0.5,-0.1],[0.5,0.5,0.2],[0.5,0.3,0.2]]",
+                                "[[0.5,0.5,-0.1],[0.3,0.5,-0.1],[0.3,0.5,0.2],[0.5,0.5,0.2]]",
+                                "[[0.3,0.5,-0.1],[0.3,0.3,-0.1],[0.3,0.3,0.2],[0.3,0.5,0.2]]",
+                                "[[0.3,0.3,-0.1],[0.3,0.5,-0.1],[0.5,0.5,-0.1],[0.5,0.3,-0.1]]"}) {
+        room["surfaces"].push_back(
+            {{"name", "box"}, {"material", "white"}, {"polygon", Json::parse(polygon)}});
+    }
+    const std::string scene = directory.write("box.json", room);
+    const Outcome check = run_hemi({"check", scene, "--device", "cpu", "--json"});
+    CHECK(check.status == 0);
+    CHECK(check.json()["outside"]["count"] == 5); // which see the floor's back
+    CHECK(check.json()["blocked"]["count"] == 0);
+    CHECK(check.json()["straddled"]["count"] == 0);
+    // Nor is a face that is turned in the room taken for one outside.
+    std::swap(room["surfaces"][6]["polygon"][1], room["surfaces"][6]["polygon"][3]);
+    const Outcome turned =
+        run_hemi({"check", directory.write("turned.json", room), "--device", "cpu", "--json"});
+    CHECK(turned.status == 5);
+}
+
 TEST_CASE("check: covered patches are told from turned surfaces", "[cli]") {
     const Directory directory;
     Json scene = cube(8);

@@ -72,8 +72,12 @@ struct Diagnosis {
     std::vector<PatchFinding> buried; ///< b_i > buried_above: the centre lies under or inside something
     std::vector<PatchFinding> back_faces; ///< not buried, b_i above the limit, worst first
     std::vector<PatchFinding>
-        partly_buried;               ///< not buried, b_i above the limit, and a surface stands on them
-    std::vector<PatchFinding> close; ///< a surface is close above: share is the gap in patch sizes
+        partly_buried; ///< not buried, b_i above the limit, and a surface stands on them
+    /// Patches on the outside of what at least nine tenths of the area enclose: they see the environment, and
+    /// of patches none but one another. What they meet is not judged: no light of the rest comes there. Share
+    /// is e_i.
+    std::vector<PatchFinding> outside;
+    std::vector<PatchFinding> close;         ///< a surface is close above: share is the gap in patch sizes
     std::vector<PatchFinding> never_visible; ///< no patch sees them, though they are not buried
     std::vector<ReversedGroup> reversed;     ///< normals point the wrong way
     std::vector<std::uint32_t> turned;       ///< patches of these surfaces, ascending

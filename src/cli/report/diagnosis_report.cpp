@@ -45,6 +45,10 @@ std::vector<Section> sections(const Diagnosis& diagnosis) {
          "other geometry stands on part of them; use smaller patches, or make its outline an edge of the "
          "mesh. Share that is buried",
          true},
+        {"outside", "outside", &diagnosis.outside,
+         "they are outside of what the others enclose, and see the environment and one another alone; what "
+         "they meet there is not judged. Environment share",
+         true},
         {"near", "close surfaces", &diagnosis.close,
          "a surface is close above them; the preset default takes up to 16 sample points there, exact up to "
          "64, and smaller patches help. Gap in patch sizes",
@@ -190,13 +194,33 @@ Report diagnosis_report(const Diagnosis& diagnosis, const FormFactors& factors, 
                {{"max_row_error", max_row_error},
                 {"failures", diagnosis.failures},
                 {"ok", diagnosis.failures.empty()}});
-    report.select("hemi/check/1",
-                  {"renderer",  "imprint",         "patches",     "parts",         "rows",
-                   "row_sum",   "environment_max", "blocked_max", "balance_error", "largest_factor",
-                   "above_one", "reciprocity",     "repair",      "enclosure",     "declared",
-                   "leaking",   "leaks",           "covered",     "blocked",       "straddled",
-                   "near",      "turned",          "unseen",      "max_row_error", "failures",
-                   "ok"});
+    report.select("hemi/check/1", {"renderer",
+                                   "imprint",
+                                   "patches",
+                                   "parts",
+                                   "rows",
+                                   "row_sum",
+                                   "environment_max",
+                                   "blocked_max",
+                                   "balance_error",
+                                   "largest_factor",
+                                   "above_one",
+                                   "reciprocity",
+                                   "repair",
+                                   "enclosure",
+                                   "declared",
+                                   "leaking",
+                                   "leaks",
+                                   "covered",
+                                   "blocked",
+                                   "straddled",
+                                   "outside",
+                                   "near",
+                                   "turned",
+                                   "unseen",
+                                   "max_row_error",
+                                   "failures",
+                                   "ok"});
     return report;
 }
 
