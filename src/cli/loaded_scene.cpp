@@ -9,6 +9,7 @@
 #include "hemi/io/paths.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/io/vtp_file.hpp"
+#include "hemi/scene/contact.hpp"
 #include "hemi/scene/orientation.hpp"
 #include "hemi/scene/thermal_exitance.hpp"
 #include "hemi/scene/triangle_pairs.hpp"
@@ -111,6 +112,21 @@ void warn_of_divided_patches(const Imprint& cut, const Scene& as_read, const Sub
                               numbers[first->sheet], group(first->sheet), count > 1 ? ", ..." : ""));
 }
 
+void warn_of_near_contacts(const Scene& scene, const Terminal& terminal) {
+    const std::vector<NearContact> contacts = near_contacts(scene);
+    if (!contacts.empty()) {
+        const std::vector<std::uint32_t> numbers = face_numbers(scene.surfaces);
+        const auto name = [&](std::uint32_t face) {
+            return fmt::format("face {} of {}", numbers[face], scene.groups[scene.surfaces[face].group]);
+        };
+        terminal.warn(fmt::format(
+            "{} just short of other faces, and light passes between them: {} by {:.3g} of {}{}; where they "
+            "should touch, join them",
+            plural(contacts.size(), "edge of a sheet ends", "edges of sheets end"), name(contacts[0].sheet),
+            contacts[0].gap, name(contacts[0].face), contacts.size() > 1 ? ", ..." : ""));
+    }
+}
+
 void warn_of_turned_faces(const Scene& scene, const Terminal& terminal) {
     const std::vector<std::uint32_t> turned = turned_against_others(scene);
     if (!turned.empty()) {
@@ -192,6 +208,7 @@ LoadedScene load_scene(const SceneOptions& options, const Terminal& terminal) {
         mesh = make_mesh(scene, options);
     }
     Subdivision subdivision = options.subdivision;
+    warn_of_near_contacts(scene, terminal);
     std::optional<SceneAsRead> as_read;
     if (auto cut = imprint(scene, subdivision, options.imprint)) {
         warn_of_overlaps(*cut, scene, terminal);

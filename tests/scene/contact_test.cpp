@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 using namespace hemi;
@@ -92,4 +93,30 @@ TEST_CASE("patches_in_contact: the back of a two-sided sheet on the floor", "[sc
     const auto found = contacts(scene);
     CHECK(std::find(found.begin(), found.end(), 17) != found.end()); // the sheet's back
     CHECK(std::find(found.begin(), found.end(), 16) == found.end()); // its front
+}
+
+TEST_CASE("near_contacts: a sheet that ends a hair above the floor", "[scene]") {
+    const auto screen = [](double gap) {
+        Scene scene = floor_and_plate(1.0, false);
+        scene.surfaces.pop_back();
+        add_polygon(scene, "screen", {Vec3(1, 1, gap), Vec3(2, 2, gap), Vec3(2, 2, 1), Vec3(1, 1, 1)});
+        scene.surfaces.back().two_sided = true;
+        return scene;
+    };
+    for (const double gap : {1e-4, -1e-4, 1e-5, 2e-6}) {
+        const auto found = near_contacts(screen(gap));
+        REQUIRE(found.size() == 1);
+        CHECK(found[0].sheet == 1);
+        CHECK(found[0].face == 0);
+        CHECK(found[0].gap == Approx(std::abs(gap)));
+    }
+    for (const double gap : {0.0, 1e-7, -0.3, 0.01}) { // touches, passes through, or stands clear of it
+        CHECK(near_contacts(screen(gap)).empty());
+    }
+    Scene body = screen(1e-4);
+    body.surfaces.back().two_sided = false; // a body's, which is closed below
+    CHECK(near_contacts(body).empty());
+    Scene rug = floor_and_plate(1e-4, false);
+    rug.surfaces.back().two_sided = true;
+    CHECK(near_contacts(rug).empty());
 }
