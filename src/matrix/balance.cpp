@@ -2,6 +2,7 @@
 
 #include "core/parallel_for.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/ranks.hpp"
 #include "hemi/matrix/product.hpp"
 #include "matrix/pairs.hpp"
 
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 namespace hemi {
 
@@ -17,17 +20,15 @@ namespace {
 
 constexpr double relevant_factor = 1e-4;
 
-/// Gathers what differs between F(i, j) and F(j, i), pair by pair.
+/// Gathers what differs between F(i, j) and F(j, i), pair by pair. Travels between ranks as it is.
 class ReciprocityTally {
 public:
-    explicit ReciprocityTally(std::span<const double> areas) : areas_(areas) {}
-
-    void add(std::uint32_t i, double f_ij, std::uint32_t j, double f_ji) {
-        const double exchange_ij = areas_[i] * f_ij;
-        const double exchange_ji = areas_[j] * f_ji;
+    void add(std::span<const double> areas, std::uint32_t i, double f_ij, std::uint32_t j, double f_ji) {
+        const double exchange_ij = areas[i] * f_ij;
+        const double exchange_ji = areas[j] * f_ji;
         const double gap = std::abs(exchange_ij - exchange_ji);
-        const double gap_i = gap / areas_[i];
-        const double gap_j = gap / areas_[j];
+        const double gap_i = gap / areas[i];
+        const double gap_j = gap / areas[j];
         squares_ += 0.5 * (gap_i * gap_i + gap_j * gap_j);
         ++result_.pairs;
         if (std::max(gap_i, gap_j) > result_.max) {
@@ -68,7 +69,6 @@ public:
     }
 
 private:
-    std::span<const double> areas_;
     Reciprocity result_;
     double squares_ = 0.0;
     double relative_squares_ = 0.0;
@@ -115,21 +115,26 @@ Reciprocity reciprocity(const FormFactorMatrix& factors, std::span<const double>
     }
     const std::span<const RowBlock> blocks = factors.blocks();
     const std::vector<std::uint32_t> cuts = slice_rows(blocks);
-    std::vector<ReciprocityTally> tallies(cuts.size() - 1, ReciprocityTally(areas));
+    const std::size_t first = begin_of_share(ranks(), ranks().rank(), cuts.size() - 1);
+    std::vector<ReciprocityTally> tallies(begin_of_share(ranks(), ranks().rank() + 1, cuts.size() - 1) -
+                                          first);
     const auto value = [&](std::uint32_t i, std::uint64_t k) {
         return k == not_stored ? 0.0 : static_cast<double>(block_of(blocks, i).values[k]);
     };
     parallel_for(tallies.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
-            ReciprocityTally tally(areas);
-            visit_pairs(blocks, cuts[s], cuts[s + 1],
+            ReciprocityTally tally;
+            visit_pairs(blocks, cuts[first + s], cuts[first + s + 1],
                         [&](std::uint32_t i, std::uint64_t k_ij, std::uint32_t j, std::uint64_t k_ji) {
-                            tally.add(i, value(i, k_ij), j, value(j, k_ji));
+                            tally.add(areas, i, value(i, k_ij), j, value(j, k_ji));
                         });
             tallies[s] = tally;
         }
     });
-    ReciprocityTally all(areas);
+    if (ranks().size() > 1) {
+        tallies = gather_values(ranks(), std::span<const ReciprocityTally>(tallies));
+    }
+    ReciprocityTally all;
     for (const ReciprocityTally& tally : tallies) {
         all.add(tally);
     }

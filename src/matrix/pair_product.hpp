@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/parallel_for.hpp"
+#include "hemi/core/ranks.hpp"
 #include "matrix/pairs.hpp"
 
 #include <algorithm>
@@ -14,8 +15,8 @@ namespace hemi {
 
 /// Products of a symmetric matrix over pairs of patches with a field: y_i = sum_j w_ij z_j. The weight of a
 /// pair comes from the entry right of the diagonal only, so w_ij = w_ji exactly. Rows are summed by slice and
-/// then in the order of slices: the same bits on any number of threads.
-/// Memory: up to 16 fields.
+/// then in the order of slices: the same bits on any number of threads, and on any number of ranks, which
+/// share the slices. Memory: up to 16 fields.
 class PairProduct {
 public:
     /// @param stride  values a patch, side by side: 1, 2 or a multiple of 4
@@ -31,14 +32,17 @@ public:
     /// @param z,y  size·stride values
     template <class Scale, class WeightOf>
     void apply(const Scale& scale, const WeightOf& weight_of, const double* z, double* y) {
-        parallel_for(partial_.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t s = begin; s < end; ++s) {
+        const std::size_t first_slice = begin_of_rank(ranks().rank());
+        const std::size_t own_slices = begin_of_rank(ranks().rank() + 1) - first_slice;
+        parallel_for(own_slices, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t s = first_slice + begin; s < first_slice + end; ++s) {
                 std::fill(partial_[s].begin(), partial_[s].end(), 0.0);
                 for (std::uint32_t i = cuts_[s]; i < cuts_[s + 1]; ++i) {
                     add_row(s, i, scale(i), weight_of(block_of(blocks_, i), i), z);
                 }
             }
         });
+        exchange_slices();
         constexpr std::size_t grain = 8192;
         parallel_for(size_ * stride_, grain, [&](std::size_t begin, std::size_t end) {
             std::fill(y + begin, y + end, 0.0);
@@ -52,6 +56,29 @@ public:
     }
 
 private:
+    /// The first slice of a rank's share.
+    [[nodiscard]] std::size_t begin_of_rank(std::uint32_t rank) const {
+        return begin_of_share(ranks(), rank, partial_.size());
+    }
+
+    /// Gives all ranks the sums of all slices.
+    void exchange_slices() {
+        if (ranks().size() == 1) {
+            return;
+        }
+        std::vector<double> own;
+        for (std::size_t s = begin_of_rank(ranks().rank()); s < begin_of_rank(ranks().rank() + 1); ++s) {
+            own.insert(own.end(), partial_[s].begin(), partial_[s].end());
+        }
+        const std::vector<double> all = gather_values(ranks(), std::span<const double>(own));
+        auto next = all.begin();
+        for (std::vector<double>& of_slice : partial_) {
+            const auto end = next + static_cast<std::ptrdiff_t>(of_slice.size());
+            std::copy(next, end, of_slice.begin());
+            next = end;
+        }
+    }
+
     template <class Weight>
     void add_row(std::size_t slice, std::uint32_t i, double scale, const Weight& weight, const double* z) {
         const RowBlock& block = block_of(blocks_, i);

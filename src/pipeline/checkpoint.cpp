@@ -1,11 +1,26 @@
 #include "hemi/pipeline/checkpoint.hpp"
 
+#include "hemi/core/ranks.hpp"
 #include "io/factors/checkpoint_file.hpp"
+
+#include <fmt/format.h>
 
 namespace hemi {
 
+namespace {
+
+/// Every rank keeps its own rows.
+std::filesystem::path output_of_rank(std::filesystem::path output) {
+    if (ranks().size() > 1) {
+        output += fmt::format(".{}of{}", ranks().rank() + 1, ranks().size());
+    }
+    return output;
+}
+
+} // namespace
+
 RowCheckpoint::RowCheckpoint(const std::filesystem::path& output, bool resume)
-    : file_(std::make_unique<io::CheckpointFile>(output, resume)) {}
+    : file_(std::make_unique<io::CheckpointFile>(output_of_rank(output), resume)) {}
 
 RowCheckpoint::~RowCheckpoint() = default;
 

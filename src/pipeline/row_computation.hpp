@@ -4,6 +4,7 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/engine/touching_faces.hpp"
 #include "hemi/pipeline/form_factors.hpp"
+#include "pipeline/divided_rows.hpp"
 #include "pipeline/observed_rows.hpp"
 
 #include <cstddef>
@@ -57,17 +58,23 @@ struct ReferencePlan {
 [[nodiscard]] ReferencePlan plan_reference(std::span<const std::uint32_t> known,
                                            const FactorSettings& settings, std::uint32_t size);
 
-/// The provider's part of computed rows: observed, kept, timed.
+/// The provider's part of computed rows: observed, kept, timed. Ranks observe and keep what they compute.
 /// @tparam Row  RowView or VisibilityRow
 template <class Row>
 class Computation {
 public:
     Computation(FormFactors& factors, BasicRowProvider<Row>& provider, Observer& observer,
                 RowCheckpoint* checkpoint, io::CheckpointKey key)
-        : factors_(factors), provider_(provider), observer_(observer), checkpoint_(checkpoint),
-          hemicubes_before_(provider.hemicubes()), rows_(provider, observer, checkpoint, std::move(key)) {}
+        : factors_(factors), observer_(observer), checkpoint_(checkpoint),
+          own_(rows_of_rank(provider), observer, checkpoint, std::move(key)), rows_(own_),
+          hemicubes_before_(rows_.hemicubes()) {}
 
     [[nodiscard]] BasicRowProvider<Row>& rows() { return rows_; }
+    /// For what shares rows out by itself.
+    [[nodiscard]] BasicRowProvider<Row>& rows_of_this_rank() {
+        divides_itself_ = true;
+        return own_;
+    }
 
     [[nodiscard]] Progress progress(Phase phase) {
         return [this, phase](std::size_t done, std::size_t total) {
@@ -84,9 +91,12 @@ public:
 
     /// All rows have come: what made them, and what it took.
     void finish(std::size_t patches) {
-        factors_.work.hemicubes = provider_.hemicubes() - hemicubes_before_;
+        if (divides_itself_) {
+            rows_.compare_ranks(hemicubes_before_);
+        }
+        factors_.work.hemicubes = rows_.hemicubes() - hemicubes_before_;
         factors_.work.rows = patches - (checkpoint_ != nullptr ? checkpoint_->reused() : 0);
-        factors_.provenance.renderer = provider_.renderer();
+        factors_.provenance.renderer = rows_.renderer();
     }
     /// The same, and which patches touch, of rows of F.
     void finish(const PatchMesh& mesh, std::size_t patches) {
@@ -97,12 +107,13 @@ public:
 
 private:
     FormFactors& factors_;
-    BasicRowProvider<Row>& provider_;
     Observer& observer_;
     RowCheckpoint* checkpoint_;
+    ObservedRows<Row> own_; ///< of this rank
+    DividedRows<Row> rows_;
     std::uint64_t hemicubes_before_; ///< of samples
+    bool divides_itself_ = false;
     Stopwatch watch_;
-    ObservedRows<Row> rows_;
 };
 
 } // namespace hemi

@@ -1,12 +1,15 @@
 #include "hemi/pipeline/settings.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/core/ranks.hpp"
+#include "pipeline/divided_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace hemi {
 
@@ -45,6 +48,15 @@ EngineSettings with_workers(EngineSettings engine) {
         engine.worker_program = find_worker_program();
     }
     return engine;
+}
+
+/// The rows of a provider, shared out where there are several ranks.
+template <class Row>
+std::unique_ptr<BasicRowProvider<Row>> divided(std::unique_ptr<BasicRowProvider<Row>> rows) {
+    if (ranks().size() > 1) {
+        rows = std::make_unique<DividedRows<Row>>(std::move(rows));
+    }
+    return rows;
 }
 
 } // namespace
@@ -140,16 +152,16 @@ std::uint64_t memory_limit(const FactorSettings& settings) {
 }
 
 std::unique_ptr<RowProvider> make_row_provider(const PatchMesh& mesh, const FactorSettings& settings) {
-    return settings.method == Method::hemicube
-               ? make_hemicube_engine(mesh, plan_rows(settings, mesh.size()).hemicube,
-                                      with_workers(settings.engine))
-               : make_baseline(mesh, plan_baseline(settings));
+    return divided(settings.method == Method::hemicube
+                       ? make_hemicube_engine(mesh, plan_rows(settings, mesh.size()).hemicube,
+                                              with_workers(settings.engine))
+                       : make_baseline(mesh, plan_baseline(settings)));
 }
 
 std::unique_ptr<VisibilityProvider> make_visibility_provider(const PatchMesh& mesh,
                                                              const HemicubeSettings& hemicube,
                                                              const FactorSettings& settings) {
-    return make_visibility_engine(mesh, hemicube, with_workers(settings.engine));
+    return divided(make_visibility_engine(mesh, hemicube, with_workers(settings.engine)));
 }
 
 std::unique_ptr<VisibilityProvider> make_point_visibility_provider(const PatchMesh& mesh,
@@ -157,7 +169,8 @@ std::unique_ptr<VisibilityProvider> make_point_visibility_provider(const PatchMe
                                                                    const HemicubeSettings& hemicube,
                                                                    const FactorSettings& settings,
                                                                    DirectionMeasure measure) {
-    return make_point_visibility_engine(mesh, points, hemicube, with_workers(settings.engine), measure);
+    return divided(
+        make_point_visibility_engine(mesh, points, hemicube, with_workers(settings.engine), measure));
 }
 
 } // namespace hemi

@@ -1,3 +1,4 @@
+#include "hemi/core/ranks.hpp"
 #include "solver/radiosity_system.hpp"
 
 #include <fmt/format.h>
@@ -5,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace hemi {
@@ -17,18 +19,56 @@ struct Change {
     bool rounding = true;  ///< in no channel more than the rounding of B
 };
 
+/// Rows that a rank multiplies, where ranks share them.
+struct RowShare {
+    std::uint32_t first;
+    std::uint32_t end;
+
+    /// @param divided  else all rows are its own
+    RowShare(std::uint32_t size, bool divided) : first(0), end(size) {
+        if (divided) {
+            first = begin_of(ranks().rank(), size);
+            end = begin_of(ranks().rank() + 1, size);
+        }
+    }
+
+    /// Gives all ranks the values of all rows.
+    void exchange(std::span<double> values, std::size_t of_row) const {
+        const auto own = values.subspan(first * of_row, (end - first) * of_row);
+        if (own.size() < values.size()) {
+            const std::vector<double> all = gather_values(ranks(), std::span<const double>(own));
+            std::copy(all.begin(), all.end(), values.begin());
+        }
+    }
+
+private:
+    static std::uint32_t begin_of(std::uint32_t rank, std::uint32_t size) {
+        return static_cast<std::uint32_t>(begin_of_share(ranks(), rank, size));
+    }
+};
+
 class Sweeper {
 public:
     explicit Sweeper(const RadiositySystem& system) : system_(system), sums_(system.source().stride()) {}
 
-    /// One sweep over all rows: reads `read`, writes `written` (the same field for Gauss–Seidel).
+    /// One sweep over all rows: reads `read`, writes `written` (the same field for Gauss–Seidel, which goes
+    /// from row to row and cannot be shared out).
     Change sweep(ChannelField& read, ChannelField& written) {
         fill_clusters(read, system_.factors()); // as they were before the sweep
         const std::uint32_t channels = system_.channels();
         std::vector<double> squares(channels, 0.0);
         std::vector<double> value_squares(channels, 0.0);
         std::vector<double> old(channels);
-        for (std::uint32_t i = 0; i < system_.size(); ++i) {
+        const auto tally = [&](const double* before, const double* after) {
+            for (std::uint32_t c = 0; c < channels; ++c) {
+                const double change = after[c] - before[c];
+                squares[c] += change * change;
+                value_squares[c] += after[c] * after[c];
+            }
+        };
+        const bool divided = ranks().size() > 1 && &read != &written;
+        const RowShare share(system_.size(), divided);
+        for (std::uint32_t i = share.first; i < share.end; ++i) {
             // F(i, i) belongs to the divisor: with B_i = 0 the sum leaves it out without a branch.
             double* const old_i = read.patch(i);
             std::copy_n(old_i, channels, old.data());
@@ -40,11 +80,17 @@ public:
             const double* const source = system_.source().patch(i);
             double* const new_i = written.patch(i);
             for (std::uint32_t c = 0; c < channels; ++c) {
-                const double value = (source[c] + rho[c] * sums_[c]) / (1.0 - rho[c] * system_.self(i));
-                const double change = value - old[c];
-                squares[c] += change * change;
-                value_squares[c] += value * value;
-                new_i[c] = value;
+                new_i[c] = (source[c] + rho[c] * sums_[c]) / (1.0 - rho[c] * system_.self(i));
+            }
+            if (!divided) {
+                tally(old.data(), new_i);
+            }
+        }
+        if (divided) {
+            const std::size_t values = std::size_t{system_.size()} * written.stride();
+            share.exchange(written.values().first(values), written.stride());
+            for (std::uint32_t i = 0; i < system_.size(); ++i) {
+                tally(read.patch(i), written.patch(i));
             }
         }
         Change result{.relative = system_.worst_relative(squares)};
@@ -58,17 +104,23 @@ public:
     /// The worst channel's ||E' - (I - rho F) B|| / ||E'||.
     double residual(ChannelField& radiosity) {
         fill_clusters(radiosity, system_.factors());
-        std::vector<double> squares(system_.channels(), 0.0);
-        for (std::uint32_t i = 0; i < system_.size(); ++i) {
+        const std::uint32_t channels = system_.channels();
+        std::vector<double> gaps(std::size_t{system_.size()} * channels);
+        const RowShare share(system_.size(), ranks().size() > 1);
+        for (std::uint32_t i = share.first; i < share.end; ++i) {
             row_product(system_.factors().row(i), radiosity, sums_.data());
             const double* const rho = system_.reflectance().patch(i);
             const double* const source = system_.source().patch(i);
             const double* const value = radiosity.patch(i);
-            for (std::uint32_t c = 0; c < system_.channels(); ++c) {
+            for (std::uint32_t c = 0; c < channels; ++c) {
                 const double arriving = sums_[c] + system_.defect(i) * value[c];
-                const double gap = source[c] - value[c] + rho[c] * arriving;
-                squares[c] += gap * gap;
+                gaps[std::size_t{i} * channels + c] = source[c] - value[c] + rho[c] * arriving;
             }
+        }
+        share.exchange(gaps, channels);
+        std::vector<double> squares(channels, 0.0);
+        for (std::size_t k = 0; k < gaps.size(); ++k) {
+            squares[k % channels] += gaps[k] * gaps[k];
         }
         return system_.worst_relative(squares);
     }

@@ -24,7 +24,8 @@ const std::map<std::string, std::set<std::string>> allowed{
     {"worker", {"core", "engine"}},
     {"python", {"core", "scene", "matrix", "engine", "solver", "io", "display", "pipeline"}},
     {"viewer", {"core", "scene", "matrix", "gl", "engine", "solver", "io", "display", "pipeline"}},
-    {"cli", {"core", "scene", "matrix", "gl", "engine", "solver", "io", "display", "pipeline", "viewer"}}};
+    {"cli", {"core", "scene", "matrix", "gl", "engine", "solver", "io", "display", "pipeline", "viewer"}},
+    {"mpi", {"core", "cli"}}};
 
 /// Libraries that stay behind one module, by the beginning of the header's name.
 const std::map<std::string, std::string> at_home{{"glad/", "gl"},
@@ -43,7 +44,8 @@ const std::map<std::string, std::string> at_home{{"glad/", "gl"},
                                                  {"embree3/", "engine"},
                                                  {"imgui", "viewer"},
                                                  {"backends/imgui", "viewer"},
-                                                 {"pybind11/", "python"}};
+                                                 {"pybind11/", "python"},
+                                                 {"mpi.h", "mpi"}};
 
 /// Private headers of the library that the window draws and shows with. The command line and the
 /// module of Python use none: they prove that the public ones suffice.
@@ -191,6 +193,7 @@ TEST_CASE("dependencies: an include that does not run down is found", "[structur
         {"src/engine/eye.cpp", "#include \"../core/welder.hpp\"", true},
         {"src/engine/eye.cpp", "#include <glad/gl.h>", true},
         {"src/cli/solve.cpp", "#include \"engine/gathering.hpp\"", true},
+        {"src/core/ranks.cpp", "#include <mpi.h>", true},
         {"src/python/scene.cpp", "#include \"core/parallel_for.hpp\"", true},
         {"src/viewer/window.cpp", "#include \"engine/gathering.hpp\"", false},
         {"src/viewer/window.cpp", "#include \"io/formats/chunk_file.hpp\"", true},

@@ -35,12 +35,13 @@ struct ClusterSettings {
 /// they see the environment of an open scene (as compute_visibility_weighted() has it), it gets what is left
 /// of 1; else all factors are changed as little as makes up for it, by their variances (Repair::closure, of
 /// the near pairs); of rows without anything far that may be one way only.
-/// @param visibility   computes rows of visibility
+/// @param visibility   computes rows of visibility: of several ranks (hemi::Ranks) each computes a share of
+///   them by its own, and gives all what became of them
 /// @param mesh         its N patches
 /// @param patches      whose rows are wanted, ascending; all others stay unknown
 /// @param settings     how
 /// @param enclosure    as the scene says
-/// @param progress     called after every row; may be empty
+/// @param progress     called after every row of this rank; may be empty
 /// @throws Cancelled; OutOfMemory if the rows do not fit
 [[nodiscard]] FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMesh& mesh,
                                                  std::span<const std::uint32_t> patches,

@@ -16,7 +16,8 @@ class CheckpointFile;
 
 /// Rows that outlast a run which is interrupted or killed: finished blocks of raw hemicube rows, kept in
 /// OUTPUT.rows beside the file of form factors that a run is to write, until that is complete. Analytic
-/// factors and error estimates are computed again.
+/// factors and error estimates are computed again. Of several ranks (hemi::Ranks) each keeps its own rows,
+/// the K-th of N in OUTPUT.KofN.rows, where as many ranks find them again.
 class RowCheckpoint {
 public:
     /// @param output  the file of form factors that is to be written

@@ -1,6 +1,7 @@
 #include "cli/report/scene_report.hpp"
 
 #include "cli/report/group_sizes.hpp"
+#include "hemi/core/ranks.hpp"
 #include "hemi/scene/light_unit.hpp"
 
 #include <fmt/format.h>
@@ -136,6 +137,9 @@ Report scene_size_report(const LoadedScene& loaded) {
                     loaded.as_read ? fmt::format("; cut into {}", plural(loaded.mesh.size(), "part", "parts"))
                                    : std::string()),
         {{"patches", mesh.size()}, {"parts", loaded.mesh.size()}, {"groups", mesh.groups()}});
+    if (ranks().size() > 1) {
+        report.add("ranks", fmt::format("{}, {} on this machine", ranks().size(), ranks().on_machine()));
+    }
     return report;
 }
 

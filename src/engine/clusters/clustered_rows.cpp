@@ -6,6 +6,7 @@
 #include "engine/visibility_weighted/pair_visibility.hpp"
 #include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/ranks.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/matrix/repair.hpp"
@@ -257,6 +258,9 @@ public:
     /// The rows of all patches, of which those that did not come are empty.
     [[nodiscard]] std::vector<ClusteredRow> finish() {
         flush();
+        if (ranks().size() > 1) {
+            exchange();
+        }
         return std::move(rows_);
     }
 
@@ -275,13 +279,59 @@ private:
             }
             give_back(maker);
         });
+        for (const SeenRow& kept : kept_) {
+            made_.push_back(kept.patch);
+        }
         kept_.clear();
         bytes_ += bytes;
+        check_memory();
+    }
+
+    void check_memory() const {
         if (bytes_ > max_memory_) {
             throw OutOfMemory(fmt::format("rows of clusters need more than {}. Larger patches, a larger "
                                           "cluster error or a higher limit would help",
                                           memory_text(max_memory_)),
                               {"cluster-error", "patch-size", "max-memory"});
+        }
+    }
+
+    /// Gives all ranks the rows that each has made.
+    void exchange() {
+        struct Head {
+            std::uint64_t patch;
+            std::uint64_t near;
+            std::uint64_t far;
+            double environment;
+            double blocked;
+            std::uint64_t hides;
+        };
+        const std::uint64_t own = made_.size();
+        const std::vector<std::uint64_t> counts = gather_values(ranks(), std::span(&own, 1));
+        const std::uint64_t most = *std::max_element(counts.begin(), counts.end());
+        bytes_ = 0;
+        for (std::uint64_t first = 0; first < most; first += rows_at_once) {
+            std::vector<Head> heads;
+            std::vector<Entry> entries;
+            for (std::uint64_t k = first; k < std::min<std::uint64_t>(own, first + rows_at_once); ++k) {
+                const ClusteredRow& row = rows_[made_[k]];
+                heads.push_back({made_[k], row.near.size(), row.far.size(), row.environment, row.blocked,
+                                 row.hides ? 1u : 0u});
+                entries.insert(entries.end(), row.near.begin(), row.near.end());
+                entries.insert(entries.end(), row.far.begin(), row.far.end());
+            }
+            heads = gather_values(ranks(), std::span<const Head>(heads));
+            entries = gather_values(ranks(), std::span<const Entry>(entries));
+            auto next = entries.begin();
+            for (const Head& head : heads) {
+                const auto far = next + static_cast<std::ptrdiff_t>(head.near);
+                const auto end = far + static_cast<std::ptrdiff_t>(head.far);
+                rows_[head.patch] = {
+                    {next, far}, {far, end}, head.environment, head.blocked, head.hides != 0};
+                bytes_ += rows_[head.patch].bytes();
+                next = end;
+            }
+            check_memory();
         }
     }
 
@@ -306,6 +356,7 @@ private:
     std::uint64_t max_memory_;
     std::uint64_t bytes_ = 0;
     std::vector<SeenRow> kept_;
+    std::vector<std::uint32_t> made_; ///< patches whose rows this rank has made
     std::vector<ClusteredRow> rows_;
     std::mutex mutex_;
     std::vector<std::shared_ptr<RowMaker>> makers_; ///< idle
@@ -315,6 +366,17 @@ void append(RowBlock& block, const Entry& entry) {
     block.columns.push_back(entry.column);
     block.values.push_back(entry.value);
     block.visibility.push_back(entry.visibility);
+}
+
+/// Those of the patches whose rows this rank computes: whole blocks, in turn.
+std::vector<std::uint32_t> share_of(std::span<const std::uint32_t> patches) {
+    std::vector<std::uint32_t> own;
+    for (const std::uint32_t patch : patches) {
+        if (patch / FormFactorMatrix::block_rows % ranks().size() == ranks().rank()) {
+            own.push_back(patch);
+        }
+    }
+    return own;
 }
 
 /// Pairs near each other, as one matrix. Takes them out of the rows.
@@ -560,12 +622,16 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
     {
         RowCollector collector(mesh, tree, settings);
         std::size_t done = 0;
-        visibility.rows(patches, [&](std::uint32_t patch, const VisibilityRow& row) {
+        const std::vector<std::uint32_t> own = share_of(patches);
+        const auto take = [&](std::uint32_t patch, const VisibilityRow& row) {
             collector.take(patch, row);
-            if (progress && !progress(++done, patches.size())) {
+            if (progress && !progress(++done, own.size())) {
                 throw Cancelled();
             }
-        });
+        };
+        if (!own.empty()) {
+            visibility.rows(own, take);
+        }
         rows = collector.finish();
     }
     FormFactorMatrix near = near_pairs(rows, patches, mesh);

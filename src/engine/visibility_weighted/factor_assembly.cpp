@@ -2,8 +2,10 @@
 
 #include "core/parallel_for.hpp"
 #include "engine/environment_verdict.hpp"
+#include "engine/visibility_weighted/divided_assembly.hpp"
 #include "engine/visibility_weighted/facing_test.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/ranks.hpp"
 #include "scene/enclosed_space.hpp"
 
 #include <algorithm>
@@ -117,30 +119,6 @@ private:
     std::vector<RowBlock>& blocks_;
     std::vector<std::uint64_t> next_; ///< where the next entry of a row goes below the diagonal, in its block
 };
-
-/// Drops entries that are zero after all.
-void drop_zeros(RowBlock& block) {
-    std::uint64_t kept = 0;
-    for (std::uint32_t local = 0; local < block.rows(); ++local) {
-        const std::uint64_t begin = block.begin[local];
-        block.begin[local] = kept;
-        for (std::uint64_t entry = begin; entry < block.begin[local + 1]; ++entry) {
-            if (block.values[entry] > 0.0f) {
-                block.columns[kept] = block.columns[entry];
-                block.values[kept] = block.values[entry];
-                block.visibility[kept] = block.visibility[entry];
-                ++kept;
-            }
-        }
-    }
-    block.begin.back() = kept;
-    block.columns.resize(kept);
-    block.values.resize(kept);
-    block.visibility.resize(kept);
-    block.columns.shrink_to_fit();
-    block.values.shrink_to_fit();
-    block.visibility.shrink_to_fit();
-}
 
 /// Fills rows pair by pair, of a patch and all images of another, which are one entry.
 class FoldedFiller {
@@ -342,6 +320,7 @@ public:
         if (enclosure == Enclosure::automatic) {
             space_.emplace(mesh_);
         }
+        find_hiding();
     }
 
     /// @param k  of a patch that has a row
@@ -350,7 +329,7 @@ public:
         if (space_ && space_->encloses(i)) {
             return {.texels = pairs_.environment[k], .enclosed = true};
         }
-        return evidence_of(matrix.row(i), hides(k), rule_);
+        return evidence_of(matrix.row(i), hides_[k] != 0, rule_);
     }
 
     /// The same with factors by the exact rule.
@@ -358,8 +337,9 @@ public:
         const std::uint32_t i = pairs_.index.patches()[k];
         const ExchangeAreas exact(mesh_, ExchangeRule::exact);
         double sum = 0.0;
+        const std::vector<PairVisibility> visibility = row_of_all(k);
         for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
-            if (const PairVisibility pair = pairs_.visibility[k][j]; j != i && !pair.is_hidden()) {
+            if (const PairVisibility pair = visibility[j]; j != i && !pair.is_hidden()) {
                 sum += exact(i, j) / mesh_.areas()[i] * pair.value();
             }
         }
@@ -371,15 +351,64 @@ public:
     }
 
 private:
-    /// Whether a row faces a patch that it sees nothing of.
-    [[nodiscard]] bool hides(std::size_t k) const {
+    /// Finds which rows face a patch that they see nothing of. Of ranks each knows pairs of its own rows; a
+    /// row hides something where one of them says so.
+    void find_hiding() {
+        hides_.assign(pairs_.index.rows(), 0);
+        parallel_for(hides_.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                hides_[k] = finds_hidden(k) ? 1 : 0;
+            }
+        });
+        if (pairs_.own.divided()) {
+            const std::vector<std::uint8_t> all =
+                gather_values(ranks(), std::span<const std::uint8_t>(hides_));
+            for (std::size_t k = 0; k < all.size(); ++k) {
+                hides_[k % hides_.size()] |= all[k];
+            }
+        }
+    }
+
+    [[nodiscard]] bool finds_hidden(std::size_t k) const {
         const std::uint32_t i = pairs_.index.patches()[k];
         for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
-            if (pairs_.visibility[k][j].is_hidden() && j != i && facing_(i, j)) {
+            const std::optional<PairVisibility> pair = known_pair(k, j);
+            if (pair && pair->is_hidden() && j != i && facing_(i, j)) {
                 return true;
             }
         }
         return false;
+    }
+
+    /// V of row k and patch j, unless it is another rank's pair.
+    [[nodiscard]] std::optional<PairVisibility> known_pair(std::size_t k, std::uint32_t j) const {
+        if (!pairs_.own.divided()) {
+            return pairs_.visibility[k][j];
+        }
+        const std::uint32_t i = pairs_.index.patches()[k];
+        const std::uint32_t other = pairs_.index.row_of(j);
+        if (j < i && other != RowIndex::no_row) {
+            return pairs_.own.contains(other) ? std::optional(pairs_.visibility[other][i]) : std::nullopt;
+        }
+        return pairs_.own.contains(k) ? std::optional(pairs_.visibility[k][j]) : std::nullopt;
+    }
+
+    /// V of a row and all patches, whoever knows it. All ranks ask for the same row.
+    [[nodiscard]] std::vector<PairVisibility> row_of_all(std::size_t k) const {
+        std::vector<PairVisibility> row(mesh_.size());
+        for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
+            row[j] = known_pair(k, j).value_or(PairVisibility());
+        }
+        if (pairs_.own.divided()) {
+            const std::vector<PairVisibility> all =
+                gather_values(ranks(), std::span<const PairVisibility>(row));
+            for (std::size_t at = 0; at < all.size(); ++at) {
+                if (!all[at].is_hidden()) {
+                    row[at % row.size()] = all[at];
+                }
+            }
+        }
+        return row;
     }
 
     const PairTable& pairs_;
@@ -387,6 +416,7 @@ private:
     ExchangeRule rule_;
     FacingTest facing_;
     std::optional<EnclosedSpace> space_;
+    std::vector<std::uint8_t> hides_; ///< of each row: whether it faces a patch that it sees nothing of
 };
 
 /// Sets the environment's share of all rows, which texels measured, to what the scene and the factors say.
@@ -416,11 +446,36 @@ void settle_environment(FormFactorMatrix& matrix, const PairTable& pairs, const 
 
 } // namespace
 
+void drop_zeros(RowBlock& block) {
+    std::uint64_t kept = 0;
+    for (std::uint32_t local = 0; local < block.rows(); ++local) {
+        const std::uint64_t begin = block.begin[local];
+        block.begin[local] = kept;
+        for (std::uint64_t entry = begin; entry < block.begin[local + 1]; ++entry) {
+            if (block.values[entry] > 0.0f) {
+                block.columns[kept] = block.columns[entry];
+                block.values[kept] = block.values[entry];
+                block.visibility[kept] = block.visibility[entry];
+                ++kept;
+            }
+        }
+    }
+    block.begin.back() = kept;
+    block.columns.resize(kept);
+    block.values.resize(kept);
+    block.visibility.resize(kept);
+    block.columns.shrink_to_fit();
+    block.values.shrink_to_fit();
+    block.visibility.shrink_to_fit();
+}
+
 FormFactorMatrix assemble_factors(const PairTable& pairs, const ImageMesh& images, ExchangeRule rule,
                                   Enclosure enclosure, const Progress& progress) {
     const ExchangeAreas exchange_areas(images.mesh(), rule);
     FormFactorMatrix matrix = images.any() ? assemble_folded(pairs, images, exchange_areas, progress)
-                                           : assemble_pairs(pairs, images.mesh(), exchange_areas, progress);
+                              : pairs.own.divided()
+                                  ? assemble_divided(pairs, images.mesh(), exchange_areas, progress)
+                                  : assemble_pairs(pairs, images.mesh(), exchange_areas, progress);
     settle_environment(matrix, pairs, images, rule, enclosure);
     return matrix;
 }

@@ -8,6 +8,9 @@
 
 namespace hemi {
 
+/// Drops entries that are zero after all.
+void drop_zeros(RowBlock& block);
+
 /// F(i, j) = X0(i, j) V(i, j) / A_i for all pairs of the table, X0(i, j) = A_i F0(i, j) being the unoccluded
 /// exchange area, and the balance of every row. Last phase of compute_visibility_weighted(), which says what
 /// the balance is.

@@ -39,14 +39,7 @@ class PairEstimator {
 public:
     /// All must outlive this.
     PairEstimator(const VisibilityTable& table, const ImageMesh& images, const FacingTest& facing)
-        : table_(table), images_(images), facing_(facing), neighbours_(images.mesh()),
-          mean_(table.index.rows()) {
-        parallel_for(mean_.size(), rows_per_task, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                mean_[k] = mean_share(table_.samples[k]);
-            }
-        });
-    }
+        : table_(table), images_(images), facing_(facing), neighbours_(images.mesh()) {}
 
     /// Of row k and patch j, which may be an image.
     [[nodiscard]] PairEstimate operator()(std::size_t k, std::uint32_t j) const {
@@ -66,7 +59,7 @@ public:
         if (!there.known() && !back.known()) {
             there = neighbours_.stand_in(table_.samples[k], j);
             back = one_way ? VisibilitySample() : neighbours_.stand_in(table_.samples[other], to);
-            assumed = one_way ? mean_[k] : 0.5 * (mean_[k] + mean_[other]);
+            assumed = one_way ? table_.mean[k] : 0.5 * (table_.mean[k] + table_.mean[other]);
         }
         return combine(there, back, assumed);
     }
@@ -76,7 +69,6 @@ private:
     const ImageMesh& images_;
     const FacingTest& facing_;
     CoplanarNeighbours neighbours_;
-    std::vector<double> mean_; ///< see mean_share(), of each row
 };
 
 /// Texels and rays together, each weighted by their number.
@@ -94,9 +86,10 @@ PairTable combine_pairs(VisibilityTable samples, const ImageMesh& images, std::u
     const std::span<const std::uint32_t> patches = samples.index.patches();
     const std::uint32_t size = samples.index.size();
     std::vector<std::vector<PairVisibility>> visibility(patches.size());
-    parallel_for(patches.size(), rows_per_task, [&](std::size_t begin, std::size_t end) {
+    const OwnRows own = samples.own;
+    parallel_for(own.count(), rows_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            visibility[k].resize(size);
+            visibility[own[k]].resize(size);
         }
     });
     const PatchMesh& mesh = images.mesh();
@@ -106,7 +99,7 @@ PairTable combine_pairs(VisibilityTable samples, const ImageMesh& images, std::u
     std::optional<ShadowRaySelection> selected;
     if (shadow_rays > 0) {
         rays.emplace(mesh);
-        selected.emplace(mesh, facing, patches, shadow_rays, std::cref(estimate));
+        selected.emplace(mesh, facing, patches, own, shadow_rays, std::cref(estimate));
     }
     // A pair of two rows is combined by the lower one, which alone writes both entries.
     const auto combine_part = [&](std::size_t k, std::uint32_t from, std::uint32_t upto) {
@@ -123,7 +116,7 @@ PairTable combine_pairs(VisibilityTable samples, const ImageMesh& images, std::u
                 add_rays(rays->visibility(i, j, shadow_rays), pair);
             }
             visibility[k][j] = pair.visibility;
-            if (other != RowIndex::no_row) {
+            if (other != RowIndex::no_row && own.contains(other)) {
                 visibility[other][to] = pair.visibility;
             }
         }
@@ -132,18 +125,19 @@ PairTable combine_pairs(VisibilityTable samples, const ImageMesh& images, std::u
     // apart from column to column, but side by side from row to row.
     constexpr std::size_t rows_at_once = 64;
     constexpr std::size_t columns_at_once = 64;
-    for (std::size_t first = 0; first < patches.size(); first += rows_at_once) {
-        const std::size_t end = std::min(first + rows_at_once, patches.size());
+    for (std::size_t first = 0; first < own.count(); first += rows_at_once) {
+        const std::size_t end = std::min(first + rows_at_once, own.count());
         parallel_for(size, columns_at_once, [&](std::size_t from, std::size_t upto) {
             for (std::size_t k = first; k < end; ++k) {
-                combine_part(k, static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(upto));
+                combine_part(own[k], static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(upto));
             }
         });
-        if (progress && !progress(end, patches.size())) {
+        if (progress && !progress(end, own.count())) {
             throw Cancelled();
         }
     }
-    return {samples.index, std::move(visibility), std::move(samples.environment), std::move(samples.blocked)};
+    return {samples.index, own, std::move(visibility), std::move(samples.environment),
+            std::move(samples.blocked)};
 }
 
 } // namespace hemi

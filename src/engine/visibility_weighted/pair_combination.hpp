@@ -16,9 +16,12 @@ namespace hemi {
 /// of a row and a patch.
 struct PairTable {
     RowIndex index;
-    std::vector<std::vector<PairVisibility>> visibility; ///< N a row
-    std::vector<double> environment;                     ///< e of each row, as measured
-    std::vector<double> blocked;                         ///< b of each row, as measured
+    OwnRows own;
+    /// N a row. Where ranks share the pairs, of their own rows alone, and of the patches before these only
+    /// those that have no row or an own one.
+    std::vector<std::vector<PairVisibility>> visibility;
+    std::vector<double> environment; ///< e of each row, as measured
+    std::vector<double> blocked;     ///< b of each row, as measured
 };
 
 /// Combines what both ends of every pair saw of each other, and adds shadow rays where that is uncertain.

@@ -7,6 +7,7 @@
 #include "engine/visibility_weighted/coplanar_neighbours.hpp"
 #include "engine/visibility_weighted/visibility_sample.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/ranks.hpp"
 #include "hemi/scene/image_mesh.hpp"
 #include "scene/enclosed_space.hpp"
 
@@ -216,6 +217,32 @@ private:
     std::optional<ShadowRays> rays_;
 };
 
+/// Gives all ranks the rows of all, of which this one has made those from `first` to before `last`.
+void exchange_rows(std::span<PointRow> rows, std::size_t first, std::size_t last) {
+    std::vector<double> environment;
+    std::vector<std::uint64_t> counts;
+    std::vector<std::uint32_t> columns;
+    std::vector<float> values;
+    for (const PointRow& row : rows.subspan(first, last - first)) {
+        environment.push_back(row.environment);
+        counts.push_back(row.columns.size());
+        columns.insert(columns.end(), row.columns.begin(), row.columns.end());
+        values.insert(values.end(), row.values.begin(), row.values.end());
+    }
+    environment = gather_values(ranks(), std::span<const double>(environment));
+    counts = gather_values(ranks(), std::span<const std::uint64_t>(counts));
+    columns = gather_values(ranks(), std::span<const std::uint32_t>(columns));
+    values = gather_values(ranks(), std::span<const float>(values));
+    std::ptrdiff_t next = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const auto end = next + static_cast<std::ptrdiff_t>(counts[k]);
+        rows[k].columns.assign(columns.begin() + next, columns.begin() + end);
+        rows[k].values.assign(values.begin() + next, values.begin() + end);
+        rows[k].environment = environment[k];
+        next = end;
+    }
+}
+
 } // namespace
 
 void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
@@ -232,12 +259,18 @@ void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
     std::vector<SampledPoint> batch;
     std::size_t done = 0;
     const auto finish_batch = [&] {
+        // All ranks have the same batch, and each finishes some of it.
         std::vector<PointRow> finished(batch.size());
-        parallel_for(batch.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
+        const std::size_t first = begin_of_share(ranks(), ranks().rank(), batch.size());
+        const std::size_t last = begin_of_share(ranks(), ranks().rank() + 1, batch.size());
+        parallel_for(last - first, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = first + begin; k < first + end; ++k) {
                 finished[k] = rows(batch[k]);
             }
         });
+        if (ranks().size() > 1) {
+            exchange_rows(std::span(finished), first, last);
+        }
         for (std::size_t k = 0; k < batch.size(); ++k) {
             const RowView row{
                 finished[k].columns, finished[k].values, {}, finished[k].environment, batch[k].blocked};

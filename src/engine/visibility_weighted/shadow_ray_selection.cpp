@@ -1,9 +1,12 @@
 #include "engine/visibility_weighted/shadow_ray_selection.hpp"
 
+#include "hemi/core/ranks.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <vector>
 
 namespace hemi {
 
@@ -36,9 +39,9 @@ constexpr int min_exponent = -160;
 } // namespace
 
 ShadowRaySelection::ShadowRaySelection(const PatchMesh& mesh, const FacingTest& facing,
-                                       std::span<const std::uint32_t> patches, std::uint32_t rays,
-                                       const Estimate& estimate)
-    : mesh_(mesh), facing_(facing), rays_(rays), min_variance_(find_min_variance(patches, estimate)) {}
+                                       std::span<const std::uint32_t> patches, const OwnRows& own,
+                                       std::uint32_t rays, const Estimate& estimate)
+    : mesh_(mesh), facing_(facing), rays_(rays), min_variance_(find_min_variance(patches, own, estimate)) {}
 
 /// Whether a pair is partly hidden, and few texels say how much.
 bool ShadowRaySelection::is_uncertain(const PairEstimate& pair) const {
@@ -61,19 +64,34 @@ double ShadowRaySelection::variance(const PairEstimate& pair, std::uint32_t i, s
     return factor * factor * visibility * (1.0 - visibility) / std::max(pair.texels, min_texels);
 }
 
-double ShadowRaySelection::find_min_variance(std::span<const std::uint32_t> patches,
+double ShadowRaySelection::find_min_variance(std::span<const std::uint32_t> patches, const OwnRows& own,
                                              const Estimate& estimate) const {
-    std::array<double, 1 - min_exponent> sums{};
+    constexpr std::size_t exponents = 1 - min_exponent;
     const std::size_t rows = std::min(sampled_rows, patches.size());
+    std::vector<double> of_rows(rows * exponents, 0.0); // by sampled row, then by exponent
     for (std::size_t sample = 0; sample < rows; ++sample) {
         const std::size_t k = (2 * sample + 1) * patches.size() / (2 * rows);
+        if (!own.contains(k)) {
+            continue;
+        }
+        double* const sums = of_rows.data() + sample * exponents;
         for (std::uint32_t j = 0; j < mesh_.size(); ++j) {
             const PairEstimate pair = estimate(k, j);
             if (const double one = is_uncertain(pair) ? variance(pair, patches[k], j) : 0.0; one > 0.0) {
-                sums[static_cast<std::size_t>(std::clamp(std::ilogb(one), min_exponent, 0) - min_exponent)] +=
-                    one;
+                sums[std::clamp(std::ilogb(one), min_exponent, 0) - min_exponent] += one;
             }
         }
+    }
+    if (own.divided()) { // a row is 0 but in one rank
+        const std::vector<double> all = gather_values(ranks(), std::span<const double>(of_rows));
+        std::fill(of_rows.begin(), of_rows.end(), 0.0);
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            of_rows[k % of_rows.size()] += all[k];
+        }
+    }
+    std::array<double, exponents> sums{};
+    for (std::size_t k = 0; k < of_rows.size(); ++k) {
+        sums[k % exponents] += of_rows[k];
     }
     const double total = std::accumulate(sums.begin(), sums.end(), 0.0);
     if (!(total > 0.0)) {

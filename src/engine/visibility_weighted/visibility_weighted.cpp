@@ -44,6 +44,7 @@
 #include "engine/visibility_weighted/factor_assembly.hpp"
 #include "engine/visibility_weighted/pair_combination.hpp"
 #include "engine/visibility_weighted/visibility_table.hpp"
+#include "hemi/core/ranks.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -55,8 +56,15 @@ std::uint64_t visibility_weighted_memory(double entries_per_row, std::uint64_t r
     const double matrix =
         entries_per_row * count * (sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t)) +
         static_cast<double>(FormFactorMatrix(size).memory_bytes());
-    const double tables = count * size * (sizeof(VisibilitySample) + sizeof(PairVisibility));
-    return static_cast<std::uint64_t>(memory_margin * matrix + tables);
+    const double pairs = count * size;
+    if (ranks().size() == 1) {
+        const double tables = pairs * (sizeof(VisibilitySample) + sizeof(PairVisibility));
+        return static_cast<std::uint64_t>(memory_margin * matrix + tables);
+    }
+    // Each rank has samples of both directions, then its share of the entries once more.
+    const double tables = pairs * (2 * sizeof(VisibilitySample) + sizeof(PairVisibility));
+    const double entries = 8.0 * entries_per_row * count;
+    return static_cast<std::uint64_t>(memory_margin * matrix + (tables + entries) / ranks().size());
 }
 
 VisibilityWeightedEstimate estimate_visibility_weighted(VisibilityProvider& visibility,
@@ -77,7 +85,9 @@ FormFactorMatrix compute_visibility_weighted(VisibilityProvider& visibility, con
                                              const Progress& rows_done, const Progress& pairs_combined,
                                              const Progress& pairs_done) {
     const ImageMesh images(mesh);
-    VisibilityTable samples = sample_visibility(visibility, patches, images.mesh().size(), rows_done);
+    const bool divided = ranks().size() > 1 && !images.any(); // ways back by images would be other ranks'
+    VisibilityTable samples =
+        sample_visibility(visibility, patches, images.mesh().size(), divided, rows_done);
     const PairTable pairs = combine_pairs(std::move(samples), images, settings.shadow_rays, pairs_combined);
     return assemble_factors(pairs, images, settings.rule, enclosure, pairs_done);
 }

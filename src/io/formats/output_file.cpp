@@ -2,6 +2,7 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
+#include "hemi/core/ranks.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -99,6 +100,13 @@ std::uint64_t physical_memory() {
 } // namespace
 
 OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
+    if (ranks().rank() > 0) { // all have the same to write
+        stream_ = std::fopen("/dev/null", "wbe");
+        if (stream_ == nullptr) {
+            fail(path_, errno);
+        }
+        return;
+    }
     if (path_ == "-") {
         stream_ = stdout;
         return;
