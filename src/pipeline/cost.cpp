@@ -66,7 +66,7 @@ StageTimes time_stages(VisibilityProvider& provider, const ImageMesh& images,
                        std::span<const std::uint32_t> patches, const VisibilityWeightedSettings& settings) {
     constexpr int times = 3;
     constexpr double other_passes = 3.0; // over the entries, besides iterations
-    const VisibilityTable table = sample_visibility(provider, patches, images.mesh().size(), {});
+    const VisibilityTable table = sample_visibility(provider, patches, images.mesh().size(), false, {});
     StageTimes least;
     const auto lower = [](double& least_time, double time) { least_time = std::min(least_time, time); };
     for (int k = 0; k < times; ++k) {
