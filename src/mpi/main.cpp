@@ -44,16 +44,16 @@ public:
     }
 
     [[nodiscard]] std::vector<Bytes> gather(std::span<const std::byte> own) override {
-        const std::uint64_t bytes = own.size();
-        std::vector<std::uint64_t> sizes(size());
-        MPI_Request request = MPI_REQUEST_NULL;
-        MPI_Iallgather(&bytes, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD, &request);
-        wait(request); // for the slowest: what follows is quick
+        own_size_ = own.size();
+        sizes_.resize(size());
+        MPI_Iallgather(&own_size_, 1, MPI_UINT64_T, sizes_.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD,
+                       &gathering_);
+        wait(gathering_); // for the slowest: what follows is quick
         std::uint64_t all = 0;
-        for (const std::uint64_t one : sizes) {
+        for (const std::uint64_t one : sizes_) {
             all += one;
         }
-        return all <= at_once ? gather_together(own, sizes, all) : gather_one_by_one(own, sizes);
+        return all <= at_once ? gather_together(own, sizes_, all) : gather_one_by_one(own, sizes_);
     }
 
     [[nodiscard]] bool meet() noexcept override {
@@ -66,7 +66,10 @@ public:
         if (failed_alone_) {
             MPI_Abort(MPI_COMM_WORLD, status);
         }
-        (void)meet(true); // the first rank may still be writing
+        (void)meet(true);                     // the first rank may still be writing
+        if (gathering_ != MPI_REQUEST_NULL) { // interrupted, maybe each at another place
+            MPI_Abort(MPI_COMM_WORLD, status);
+        }
         MPI_Finalize();
         return status;
     }
@@ -164,6 +167,10 @@ private:
     int rank_ = 0;
     int size_ = 1;
     int on_machine_ = 1;
+    // Of a gathering under way, which may still be when an interrupt ends the work.
+    std::uint64_t own_size_ = 0;
+    std::vector<std::uint64_t> sizes_;
+    MPI_Request gathering_ = MPI_REQUEST_NULL;
     MPI_Comm meeting_ = MPI_COMM_NULL; ///< of those that end, whatever the others are waiting for
     MPI_Request request_ = MPI_REQUEST_NULL;
     bool met_ = false;

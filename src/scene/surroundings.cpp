@@ -102,7 +102,7 @@ Sight Surroundings::look(std::uint32_t face, const Vec3& eye, std::span<const Ve
             const Occluder& other = occluders_[index];
             const double along = glm::dot(other.normal, ray);
             const double distance = glm::dot(other.corners[0] - eye, other.normal) / along;
-            if ((other.face == face && !other.image) || !(distance > 0.0) ||
+            if ((other.face == face && !other.image) || !(distance > 0.0 && std::isfinite(distance)) ||
                 !contains(other.corners, other.normal, eye + distance * ray, slack_)) {
                 return;
             }

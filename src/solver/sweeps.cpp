@@ -25,7 +25,7 @@ struct RowShare {
     std::uint32_t end;
 
     /// @param divided  else all rows are its own
-    RowShare(std::uint32_t size, bool divided) : first(0), end(size) {
+    RowShare(std::uint32_t size, bool divided) : first(0), end(size), divided_(divided) {
         if (divided) {
             first = begin_of(ranks().rank(), size);
             end = begin_of(ranks().rank() + 1, size);
@@ -34,14 +34,16 @@ struct RowShare {
 
     /// Gives all ranks the values of all rows.
     void exchange(std::span<double> values, std::size_t of_row) const {
-        const auto own = values.subspan(first * of_row, (end - first) * of_row);
-        if (own.size() < values.size()) {
+        if (divided_) { // also of a rank that has all of them, or none
+            const auto own = values.subspan(first * of_row, (end - first) * of_row);
             const std::vector<double> all = gather_values(ranks(), std::span<const double>(own));
             std::copy(all.begin(), all.end(), values.begin());
         }
     }
 
 private:
+    bool divided_;
+
     static std::uint32_t begin_of(std::uint32_t rank, std::uint32_t size) {
         return static_cast<std::uint32_t>(begin_of_share(ranks(), rank, size));
     }

@@ -429,13 +429,22 @@ void Application::settle() {
     const View shown = choices_.look.shown.view;
     const bool of_patch = shown == View::row || shown == View::column;
     if (other_look || (other_patch && of_patch)) {
-        try {
-            view_.show(*document_, choices_.look, choices_.picked);
-        } catch (const InvalidArgument& error) { // such a range, for example
-            message_ = error.what();
-            choices_.look.range.reset();
-            choices_.look.logarithmic = false;
-            view_.show(*document_, choices_.look, choices_.picked);
+        while (true) {
+            try {
+                view_.show(*document_, choices_.look, choices_.picked);
+                break;
+            } catch (const InvalidArgument& error) { // such a range or a difference, for example
+                message_ = error.what();
+                Look& look = choices_.look;
+                if (look.range || look.logarithmic) {
+                    look.range.reset();
+                    look.logarithmic = false;
+                } else if (look.difference) {
+                    look.difference = false;
+                } else {
+                    throw;
+                }
+            }
         }
         values_ = shown_values(*document_, choices_.look, view_.field());
         groups_ = group_table(*document_, values_);

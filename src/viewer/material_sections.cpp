@@ -109,8 +109,8 @@ void channel_sliders(const char* name, std::vector<double>& values, float most, 
     if (sliders(name, shown.data(), count, most, beyond, format, -86.0F, words)) {
         for (std::size_t c = 0; c < values.size(); ++c) {
             const float value = shown[values.size() > most_sliders ? 0 : c];
-            if (value != static_cast<float>(values[c])) { // others keep their digits
-                values[c] = static_cast<double>(value);
+            if (value != static_cast<float>(values[c])) {        // others keep their digits
+                values[c] = std::stod(fmt::format("{}", value)); // 0.3, not the float next to it
             }
         }
     }

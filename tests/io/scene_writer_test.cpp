@@ -78,7 +78,7 @@ TEST_CASE("write_scene_materials: replaces values of materials and nothing else"
     io::write_scene_materials(path, values, std::vector{1.0, 2.0});
     const std::string text = io::read_file(path);
     CHECK(text.substr(0, before.size()) == before);
-    CHECK(text.find("\"lamp\": {\"reflectance\": 0.25, \"exitance\": 3.5}") != std::string::npos);
+    CHECK(text.find("\"lamp\": {\"reflectance\": 0.25, \"exitance\": [3.5, 3.5]}") != std::string::npos);
     Diagnostics diagnostics;
     const Scene scene = io::read_scene(path, {}, diagnostics);
     REQUIRE(scene.materials.size() == 2);
@@ -99,4 +99,24 @@ TEST_CASE("write_scene_materials: replaces values of materials and nothing else"
                                                     surfaces + "}");
     CHECK_THROWS_AS(io::write_scene_materials(warm, std::vector<io::MaterialValues>{{"m", {0.5}, {}}}, {}),
                     InvalidArgument);
+
+    // Lists say how many channels there are; and what could not be read again is not written.
+    const auto coloured = folder.write(
+        "coloured.json",
+        R"({"hemi": 1, "materials": {"m": {"reflectance": [0.1, 0.2, 0.3]}}, )" + surfaces + "}");
+    io::write_scene_materials(coloured, std::vector<io::MaterialValues>{{"m", {0.5, 0.5, 0.5}, {}}}, {});
+    CHECK(io::read_scene(coloured, {}, diagnostics).channels.size() == 3);
+    std::string lit = surfaces;
+    lit.insert(lit.find("\"material\""), "\"luminous_flux\": 100, ");
+    const std::string lumens = R"({"hemi": 1, "materials": {"m": {"reflectance": 0.5}}, )" + lit + "}";
+    const auto lamp = folder.write("lamp.json", lumens);
+    REQUIRE(io::read_scene(lamp, {}, diagnostics).photometric);
+    CHECK_THROWS_WITH(io::write_scene_materials(lamp, std::vector<io::MaterialValues>{{"m", {}, {50.0}}}, {}),
+                      Catch::Matchers::Contains("lamp.json: not written") &&
+                          Catch::Matchers::Contains("luminous flux"));
+    CHECK(io::read_file(lamp) == lumens);
+    for (const auto& entry : std::filesystem::directory_iterator(lamp.parent_path())) {
+        CHECK(entry.path().extension() == ".json");
+        CHECK_FALSE(entry.path().filename().string().starts_with("."));
+    }
 }

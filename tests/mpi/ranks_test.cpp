@@ -99,6 +99,18 @@ TEST_CASE("Ranks: any number of them find the solution of one process, by every 
     compare({"--clusters", "on", "--no-estimate"}, {3});
 }
 
+TEST_CASE("Ranks: more of them than there are patches", "[mpi]") {
+    const Directory directory;
+    const std::string scene = directory.write(
+        "one.json", R"({"hemi": 1, "materials": {"m": {"reflectance": 0.5, "exitance": 1}}, "surfaces": [
+        {"material": "m", "polygon": [[0,0,0],[1,0,0],[1,1,0],[0,1,0]]}]})");
+    const CommandOutcome run =
+        run_ranks(2, {"solve", scene, "--device", "cpu", "--solver", "jacobi", "--json"});
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    CHECK(has(run.out, "\"radiosity\":[[1.0]]"));
+}
+
 TEST_CASE("Ranks: rows of some patches alone, and heat, are those of one process", "[mpi]") {
     const Directory directory;
     const Words command = GENERATE(as<Words>(), Words{"solve", room, "--patches-per-face", "4", "--factors"},

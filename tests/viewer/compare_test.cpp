@@ -62,6 +62,19 @@ TEST_CASE("Viewer: a second result that is dropped on the first shows the differ
     REQUIRE(place.run(Workplace::view_command("a.hres b.hres", "--size 300x200")) == 0);
     CHECK(place.json("named.json")["values"] == dropped["values"]);
     CHECK(place.run(Workplace::view_command("a.hres room.json", "--size 300x200")) == 2);
+
+    // What cannot be compared ends the difference, not the window.
+    std::string lumens = place.read("room.json");
+    replace(lumens, R"(, "exitance": [20, 18, 12])", "");
+    replace(lumens, R"("name": "ceiling")", R"("name": "ceiling", "luminous_flux": [20, 18, 12])");
+    place.write("lumens.json", lumens);
+    REQUIRE(place.run(fmt::format("'{}' solve lumens.json --result lumens.hres --device osmesa -q",
+                                  HEMI_PROGRAM)) == 0);
+    place.write("script.txt", "report lumens-and-watts.json\n");
+    const int ended = place.run(Workplace::view_command("a.hres lumens.hres", "--size 300x200"));
+    INFO(place.read("errors.txt"));
+    REQUIRE(ended == 0);
+    CHECK(place.json("lumens-and-watts.json")["difference"] == false);
 }
 
 TEST_CASE("Viewer: what check finds is shown in colours, and gone to", "[viewer][gl]") {

@@ -248,8 +248,8 @@ TEST_CASE("Viewer: while rows come in, patches show the light that reaches them 
 
 TEST_CASE("Viewer: rows that come in sharpen the coarse preview of a large scene", "[viewer][gl]") {
     const Workplace place;
-    // 5 x 900 patches, of which the preview has 5 x 196 or so.
-    const std::string large = "--patches-per-face 900 --preset plain --resolution 64 --jobs 1";
+    // 5 x 900 patches, of which the preview has 5 x 196 or so. Their rows take longer than a few frames.
+    const std::string large = "--patches-per-face 900 --preset plain --resolution 64 --eye-points 4 --jobs 1";
     const int status = place.view("live\npreview\nreport preview.json\nrows 0.1\ncancel\nreport half.json\n",
                                   "--size 300x200 " + large);
     INFO(place.read("errors.txt"));

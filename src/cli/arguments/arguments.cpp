@@ -472,7 +472,7 @@ void add_bake(CLI::App& app, BakeArguments& a) {
         .value("--lightmap", "SIZE",
                "of a .glb: the light as a texture of SIZE x SIZE texels instead of vertex colours",
                [&a](const std::string& text) {
-                   const std::uint32_t size = parse_index("--lightmap", text, 1);
+                   const std::uint32_t size = parse_index("--lightmap", text, 16, 16384);
                    a.picture.size = {size, size};
                })
         ->excludes(app.get_option("--flat"));

@@ -2,15 +2,17 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/io/output_file.hpp"
+#include "hemi/io/scene_reader.hpp"
 #include "io/formats/json_text.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace hemi::io {
@@ -77,9 +79,9 @@ std::string camera_text(const Camera& camera) {
 }
 
 std::string values_text(std::span<const double> values) {
-    const bool grey = std::all_of(values.begin(), values.end(),
-                                  [&values](double value) { return value == values.front(); });
-    return grey ? fmt::format("{}", values.front()) : fmt::format("[{}]", fmt::join(values, ", "));
+    // Equal ones, too, each by itself: a scene that names no channels has as many as its lists are long.
+    return values.size() == 1 ? fmt::format("{}", values.front())
+                              : fmt::format("[{}]", fmt::join(values, ", "));
 }
 
 /// Puts a member into an object, in place of one of that name or behind all else.
@@ -114,6 +116,33 @@ void write(const std::filesystem::path& path, std::string_view text) {
     OutputFile file(path);
     file.write(text);
     file.commit();
+}
+
+/// Reads a text as the scene that it would be.
+/// @throws InvalidArgument where it would be none
+void try_scene(const std::filesystem::path& path, std::string_view text) {
+    const std::filesystem::path tried =
+        path.parent_path() / fmt::format(".{}.tried.json", path.stem().string()); // meshes are beside it
+    struct Removed {
+        const std::filesystem::path& file;
+        ~Removed() {
+            std::error_code ignored;
+            std::filesystem::remove(file, ignored);
+        }
+    } const removed{tried};
+    write(tried, text);
+    SceneReaderOptions options;
+    options.allow_outside = true;
+    options.adiabatic = true;
+    Diagnostics ignored;
+    try {
+        (void)read_json_scene(tried, options, ignored);
+    } catch (const InputError& error) {
+        std::string why = error.what();
+        why.erase(0, why.starts_with(tried.string()) ? tried.string().size() + 2 : 0);
+        throw InvalidArgument(
+            fmt::format("{}: not written, since it could not be read any more: {}", path.string(), why));
+    }
 }
 
 } // namespace
@@ -161,7 +190,7 @@ void write_scene_materials(const std::filesystem::path& path, std::span<const Ma
                        fmt::format(R"({{"exitance": {}}})", values_text(environment)), ",\n  ");
         }
     }
-    (void)parse_json(text, path.string()); // what is not sound is not written
+    try_scene(path, text);
     write(path, text);
 }
 
