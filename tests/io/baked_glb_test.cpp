@@ -150,7 +150,8 @@ TEST_CASE("Baked glTF: a lightmap holds the radiosity of every vertex where that
     const auto json = nlohmann::json::parse(bytes.substr(20, json_bytes));
     const auto texture = json["materials"][0]["emissiveTexture"];
     CHECK(texture["texCoord"] == 1);
-    const auto image = json["images"][json["textures"][texture["index"].get<int>()]["source"].get<int>()];
+    const auto image =
+        json["images"][json["textures"][texture["index"].get<std::size_t>()]["source"].get<std::size_t>()];
     CHECK(image["mimeType"] == "image/png");
     const auto view = json["bufferViews"][image["bufferView"].get<std::size_t>()];
     const auto offset = view["byteOffset"].get<std::size_t>();
