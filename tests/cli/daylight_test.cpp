@@ -136,8 +136,9 @@ TEST_CASE("hemi solve: the sky lights black surfaces, too", "[cli][solve][sky]")
     INFO(run.err);
     REQUIRE(run.status == 0);
     CHECK_FALSE(run.err_has("nothing radiates"));
-    CHECK(run.json()["balance"]["absorbed"].get<double>() == Approx(8000.0).epsilon(1e-3));
-    for (const Json& group : run.json()["light"]) {
+    const Json solved = run.json();
+    CHECK(solved["balance"]["absorbed"].get<double>() == Approx(8000.0).epsilon(1e-3));
+    for (const Json& group : solved["light"]) {
         CHECK(group["irradiance"].get<double>() > 100.0);
     }
     CHECK(directory.read("p.csv").find(",\n") == std::string::npos); // no empty cell at the end of a line
