@@ -4,6 +4,7 @@
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/scene/imprint.hpp"
 
+#include "support/dice.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -12,10 +13,11 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <random>
 #include <string>
 
 namespace hemi {
+
+using test::Dice;
 
 namespace {
 
@@ -55,19 +57,6 @@ Lit solve_imprinted(const std::string& file) {
     }
     return lit;
 }
-
-/// Numbers between limits, the same everywhere.
-class Dice {
-public:
-    explicit Dice(std::uint32_t seed) : engine_(seed) {}
-    double operator()(double low, double high) {
-        return low + (high - low) * static_cast<double>(engine_()) * 0x1p-32;
-    }
-    int pick(int count) { return static_cast<int>(engine_() % static_cast<std::uint32_t>(count)); }
-
-private:
-    std::mt19937 engine_;
-};
 
 /// A closed room of 4 x 3 x 2 with a lamp in its ceiling, which lies over it in its plane, boxes that stand
 /// on the floor and on each other's places or hang through walls, sheets that stand and float, and rugs.

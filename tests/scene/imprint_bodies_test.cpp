@@ -2,17 +2,20 @@
 
 #include "hemi/scene/imprint.hpp"
 
+#include "support/dice.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace hemi {
+
+using test::Dice;
 
 namespace {
 
@@ -41,19 +44,6 @@ std::vector<double> areas_left(const std::vector<Surface>& surfaces, double patc
     }
     return areas;
 }
-
-/// Numbers between limits, the same everywhere.
-class Dice {
-public:
-    explicit Dice(std::uint32_t seed) : engine_(seed) {}
-    double operator()(double low, double high) {
-        return low + (high - low) * static_cast<double>(engine_()) * 0x1p-32;
-    }
-    int pick(int count) { return static_cast<int>(engine_() % static_cast<std::uint32_t>(count)); }
-
-private:
-    std::mt19937 engine_;
-};
 
 /// A box that is turned about the vertical.
 struct Box {

@@ -25,9 +25,8 @@ struct Lightmap {
 /// @param mesh       N patches
 /// @param radiosity  red, green, blue of corner k of patch i at [(i·4 + k)·3], as corner_values() has them
 /// @param size       of the texture, 16 to 16384 texels
-/// @throws InvalidArgument for another length of `radiosity` and other sizes; where not even one texel a
-/// patch
-///   fits, which names a size that does
+/// @throws InvalidArgument for another length of `radiosity` and other sizes; where not even one texel for
+///   a patch fits, which names a size that does
 [[nodiscard]] Lightmap make_lightmap(const PatchMesh& mesh, std::span<const float> radiosity,
                                      std::uint32_t size);
 
