@@ -4,6 +4,7 @@
 #include "hemi/matrix/form_factor_matrix.hpp"
 
 #include <cstdint>
+#include <span>
 
 namespace hemi {
 
@@ -16,16 +17,25 @@ enum class RowQuantity : std::uint32_t {
 /// A row as accumulators make it, workers send it and checkpoints store it, whatever it means: one layout, so
 /// that shared memory, files and blocks exist once. Users of the engine see RowView or VisibilityRow, which
 /// are views of the same memory.
-using RawRow = RowView;
+struct RawRow : RowView {
+    RawRow() = default;
+    RawRow(const RowView& row) : RowView(row) {}
+
+    std::span<const JointVisibility> joint; ///< of a VisibilityRow; neither sent nor stored
+    const PatchSets* sets = nullptr;
+};
 /// Hands out raw rows.
 using RawRowProvider = BasicRowProvider<RawRow>;
 
 /// The row as it is stored.
-[[nodiscard]] inline const RawRow& raw_row(const RowView& row) {
+[[nodiscard]] inline RawRow raw_row(const RowView& row) {
     return row;
 }
 [[nodiscard]] inline RawRow raw_row(const VisibilityRow& row) {
-    return {row.columns, row.shares, row.texels, row.environment, row.blocked};
+    RawRow raw = RowView{row.columns, row.shares, row.texels, row.environment, row.blocked};
+    raw.joint = row.joint;
+    raw.sets = row.sets;
+    return raw;
 }
 
 /// A stored row as what it means: a RowView or a VisibilityRow.
@@ -37,7 +47,7 @@ template <>
 }
 template <>
 [[nodiscard]] inline VisibilityRow row_from_raw(const RawRow& raw) {
-    return {raw.columns, raw.values, raw.visibility, raw.environment, raw.blocked};
+    return {raw.columns, raw.values, raw.visibility, raw.environment, raw.blocked, raw.joint, raw.sets};
 }
 
 } // namespace hemi

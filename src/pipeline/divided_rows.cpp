@@ -78,8 +78,9 @@ void for_rows(const Bytes& bytes, const Visit& visit) {
         const auto* const values = reinterpret_cast<const float*>(columns + count);
         const auto* const visibility = reinterpret_cast<const std::uint8_t*>(values + count);
         const std::size_t codes = head.with_visibility != 0 ? count : 0;
-        visit(head.patch,
-              RawRow{{columns, count}, {values, count}, {visibility, codes}, head.environment, head.blocked});
+        visit(
+            head.patch,
+            RowView{{columns, count}, {values, count}, {visibility, codes}, head.environment, head.blocked});
         at += sizeof(head) + count * (sizeof(std::uint32_t) + sizeof(float)) + codes;
         at = (at + sizeof(double) - 1) / sizeof(double) * sizeof(double);
     }

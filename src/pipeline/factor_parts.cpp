@@ -216,7 +216,7 @@ struct KeptRow {
           values(row.values.begin(), row.values.end()),
           visibility(row.visibility.begin(), row.visibility.end()), environment(row.environment),
           blocked(row.blocked) {}
-    [[nodiscard]] RawRow view() const { return {columns, values, visibility, environment, blocked}; }
+    [[nodiscard]] RowView view() const { return {columns, values, visibility, environment, blocked}; }
 };
 
 /// The rows of all parts, one part in memory at a time; collects their better rows on the way.

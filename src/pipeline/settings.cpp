@@ -106,6 +106,7 @@ RowPlan plan_clustered_rows(const FactorSettings& settings, std::uint32_t patche
     if (!settings.eye_points && settings.preset == Preset::standard) {
         plan.hemicube.eye_points = eye_points_for(standard_hemicubes, patches, 1, 16);
     }
+    plan.hemicube.joint = true;
     if (plan.weighted) {
         plan.weighted->shadow_rays = 0;
     }

@@ -23,6 +23,10 @@ struct HemicubeSettings {
     std::uint32_t eye_points = 1;
     /// Up to so many where a surface hovers close above a patch or stands on it; 1: none more.
     std::uint32_t near_eye_points = 1;
+    /// Whether rows of visibility of one hemicube may tell of many patches by one number, see
+    /// JointVisibility, which spares drawing what is hidden. The CPU rasteriser does; OpenGL tells of every
+    /// patch.
+    bool joint = false;
 
     bool operator==(const HemicubeSettings&) const = default; ///< member by member
 };

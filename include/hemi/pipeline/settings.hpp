@@ -62,7 +62,7 @@ struct RowPlan {
 /// hemicubes out among the patches.
 [[nodiscard]] RowPlan plan_rows(const FactorSettings& settings, std::uint32_t patches);
 /// The same where far patches are seen in clusters, which many patches make up for single ones: fewer sample
-/// points are enough, and no pair gets shadow rays.
+/// points are enough, no pair gets shadow rays, and what is hidden or in full view as a whole is told so.
 [[nodiscard]] RowPlan plan_clustered_rows(const FactorSettings& settings, std::uint32_t patches);
 /// The same for a baseline method.
 /// @throws InvalidArgument if the method is hemicube

@@ -2,8 +2,8 @@
 
 #include "core/parallel_for.hpp"
 #include "engine/clusters/cluster_tree.hpp"
+#include "engine/clusters/row_maker.hpp"
 #include "engine/environment_verdict.hpp"
-#include "engine/visibility_weighted/pair_visibility.hpp"
 #include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/ranks.hpp"
@@ -28,214 +28,6 @@ namespace hemi {
 
 namespace {
 
-/// What is known of one source of a row.
-struct Entry {
-    std::uint32_t column;
-    float value;
-    std::uint8_t visibility;
-};
-
-/// One row while all are computed.
-struct ClusteredRow {
-    std::vector<Entry> near; ///< patches, ascending
-    std::vector<Entry> far;  ///< clusters, ascending
-    double environment = 0.0;
-    double blocked = 0.0;
-    bool hides = false; ///< whether it sees nothing of some patch that faces it
-
-    [[nodiscard]] std::size_t bytes() const {
-        return sizeof(ClusteredRow) + (near.capacity() + far.capacity()) * sizeof(Entry);
-    }
-};
-
-/// A row of visibility, kept.
-struct SeenRow {
-    std::uint32_t patch = 0;
-    std::vector<std::uint32_t> columns;
-    std::vector<float> shares;
-    std::vector<std::uint8_t> texels;
-    double environment = 0.0;
-    double blocked = 0.0;
-};
-
-std::uint8_t code_of(double visibility, bool clear) {
-    return clear ? PairVisibility::clear().stored() : PairVisibility::from(visibility).stored();
-}
-
-/// Makes rows of factors of rows of visibility. One a thread.
-class RowMaker {
-public:
-    /// All must outlive this.
-    RowMaker(const PatchMesh& mesh, const ClusterTree& tree, const ExchangeAreas& exchange, double opening)
-        : mesh_(mesh), tree_(tree), exchange_(exchange), opening_(opening), share_(mesh.size(), unknown) {}
-
-    [[nodiscard]] ClusteredRow make(const SeenRow& seen) {
-        stand_at(seen.patch);
-        sums_.assign(parts_.size(), {});
-        ClusteredRow row{{}, {}, seen.environment, seen.blocked, false};
-        double shares = 0.0;
-        for (std::size_t k = 0; k < seen.columns.size(); ++k) {
-            const std::uint32_t j = seen.columns[k];
-            const auto share = static_cast<double>(seen.shares[k]);
-            share_[tree_.position(j)] = seen.shares[k];
-            const std::uint32_t part = part_at(tree_.position(j));
-            ++sums_[part].known;
-            sums_[part].area += mesh_.areas()[j];
-            sums_[part].shares += share;
-            shares += share;
-            if (share > 0.0) {
-                add(row, part, j, share, seen.texels[k] == visibility_clear);
-            } else {
-                row.hides = true;
-            }
-        }
-        const double mean = seen.columns.empty() ? 1.0 : shares / static_cast<double>(seen.columns.size());
-        add_unknown(row, mean);
-        for (const std::uint32_t j : seen.columns) {
-            share_[tree_.position(j)] = unknown;
-        }
-        finish(row);
-        return row;
-    }
-
-private:
-    static constexpr float unknown = -1.0F;
-    /// Patches of a cluster that no texel covers, each of which is asked.
-    static constexpr std::uint32_t most_asked = 16;
-
-    /// Of one part of what a row sees.
-    struct Sum {
-        std::uint32_t known = 0; ///< patches that texels say something of
-        double area = 0.0;       ///< of these
-        double shares = 0.0;     ///< of these, together
-        double factor = 0.0;     ///< F of a far part
-        double unoccluded = 0.0; ///< F0 of its patches that are not hidden
-        bool clear = true;       ///< whether nothing of these is hidden
-    };
-
-    void stand_at(std::uint32_t patch) {
-        patch_ = patch;
-        area_ = mesh_.areas()[patch];
-        tree_.seen_from(patch, opening_, parts_);
-        begins_.clear();
-        for (const ClusterTree::Part& part : parts_) {
-            begins_.push_back(tree_.clusters()->nodes()[part.node].begin);
-        }
-    }
-
-    /// The part that holds a position in the tree.
-    [[nodiscard]] std::uint32_t part_at(std::uint32_t position) const {
-        const auto after = std::upper_bound(begins_.begin(), begins_.end(), position);
-        return static_cast<std::uint32_t>(after - begins_.begin()) - 1;
-    }
-
-    void add(ClusteredRow& row, std::uint32_t part, std::uint32_t j, double share, bool clear) {
-        const double unoccluded = exchange_(patch_, j) / area_;
-        if (!(unoccluded > 0.0)) {
-            return;
-        }
-        if (parts_[part].far) {
-            Sum& sum = sums_[part];
-            sum.factor += unoccluded * share;
-            sum.unoccluded += unoccluded;
-            sum.clear = sum.clear && clear;
-        } else {
-            row.near.push_back({j, static_cast<float>(unoccluded * share), code_of(share, clear)});
-        }
-    }
-
-    /// Patches that no texel covers: as visible as the others of their part, or as all that the row knows.
-    void add_unknown(ClusteredRow& row, double mean) {
-        for (std::uint32_t part = 0; part < parts_.size(); ++part) {
-            const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
-            const Sum& sum = sums_[part];
-            const std::uint32_t left = node.end - node.begin - sum.known;
-            if (left == 0) {
-                continue;
-            }
-            const double share = sum.known > 0 ? sum.shares / sum.known : mean;
-            if (!(share > 0.0) || (sum.known == 0 && !may_face(tree_.shape(parts_[part].node)))) {
-                continue;
-            }
-            if (left > most_asked) {
-                add_sampled(part, node, share);
-                continue;
-            }
-            for (std::uint32_t at = node.begin; at < node.end; ++at) {
-                const std::uint32_t j = tree_.clusters()->order()[at];
-                if (share_[at] < 0.0F && j != patch_) {
-                    add(row, part, j, share, false);
-                }
-            }
-        }
-    }
-
-    /// Of many patches that no texel covers: a cluster is small and far, so that a few of them, anywhere in
-    /// it, say what all receive an area.
-    void add_sampled(std::uint32_t part, const SourceClusters::Node& node, double share) {
-        double area = 0.0;
-        double exchange = 0.0;
-        const double step = static_cast<double>(node.end - node.begin) / most_asked;
-        for (std::uint32_t k = 0; k < most_asked; ++k) {
-            const auto at = node.begin + static_cast<std::uint32_t>((k + 0.5) * step);
-            const std::uint32_t j = tree_.clusters()->order()[at];
-            area += mesh_.areas()[j];
-            exchange += exchange_(patch_, j);
-        }
-        if (!(exchange > 0.0)) {
-            return;
-        }
-        Sum& sum = sums_[part];
-        const double left = std::max(0.0, tree_.area(parts_[part].node) - sum.area);
-        const double unoccluded = exchange / area * left / area_;
-        sum.factor += unoccluded * share;
-        sum.unoccluded += unoccluded;
-        sum.clear = false;
-    }
-
-    /// Whether some patch of a cluster may have its front towards this one's.
-    [[nodiscard]] bool may_face(const ClusterShape& cluster) const {
-        const Vec3 here = mesh_.centres()[patch_];
-        if (glm::dot(cluster.centre - here, mesh_.normal(patch_)) <= -cluster.radius) {
-            return false;
-        }
-        const Vec3 way = here - cluster.centre;
-        const double distance = glm::length(way);
-        const double size = cluster.radius + tree_.radius_of(patch_);
-        if (distance <= size) {
-            return true;
-        }
-        const double cosine = std::clamp(glm::dot(way, cluster.axis) / distance, -1.0, 1.0);
-        return std::acos(cosine) - cluster.cone - std::asin(size / distance) < 0.5 * std::numbers::pi;
-    }
-
-    void finish(ClusteredRow& row) {
-        const auto by_column = [](const Entry& a, const Entry& b) { return a.column < b.column; };
-        std::sort(row.near.begin(), row.near.end(), by_column);
-        for (std::uint32_t part = 0; part < parts_.size(); ++part) {
-            const Sum& sum = sums_[part];
-            if (sum.factor > 0.0) {
-                row.far.push_back({mesh_.size() + parts_[part].node, static_cast<float>(sum.factor),
-                                   code_of(sum.factor / sum.unoccluded, sum.clear)});
-            }
-        }
-        std::sort(row.far.begin(), row.far.end(), by_column);
-        row.near.shrink_to_fit();
-        row.far.shrink_to_fit();
-    }
-
-    const PatchMesh& mesh_;
-    const ClusterTree& tree_;
-    const ExchangeAreas& exchange_;
-    double opening_;
-    std::uint32_t patch_ = 0;              ///< of the row
-    double area_ = 0.0;                    ///< of it
-    std::vector<ClusterTree::Part> parts_; ///< what it sees
-    std::vector<std::uint32_t> begins_;    ///< of the parts: positions of their first patches
-    std::vector<float> share_;             ///< V by position in the tree, or `unknown`
-    std::vector<Sum> sums_;                ///< by part
-};
-
 /// Rows of visibility in, rows of factors out, many at a time in threads.
 class RowCollector {
 public:
@@ -244,10 +36,14 @@ public:
           max_memory_(settings.max_memory), rows_(mesh.size()) {}
 
     void take(std::uint32_t patch, const VisibilityRow& row) {
+        if (row.sets != nullptr && !places_) {
+            places_.emplace(*row.sets, tree_, mesh_);
+        }
         kept_.push_back({patch,
                          {row.columns.begin(), row.columns.end()},
                          {row.shares.begin(), row.shares.end()},
                          {row.texels.begin(), row.texels.end()},
+                         {row.joint.begin(), row.joint.end()},
                          row.environment,
                          row.blocked});
         if (kept_.size() == rows_at_once) {
@@ -312,7 +108,7 @@ private:
         bytes_ = 0;
         for (std::uint64_t first = 0; first < most; first += rows_at_once) {
             std::vector<Head> heads;
-            std::vector<Entry> entries;
+            std::vector<ClusterEntry> entries;
             for (std::uint64_t k = first; k < std::min<std::uint64_t>(own, first + rows_at_once); ++k) {
                 const ClusteredRow& row = rows_[made_[k]];
                 heads.push_back({made_[k], row.near.size(), row.far.size(), row.environment, row.blocked,
@@ -321,7 +117,7 @@ private:
                 entries.insert(entries.end(), row.far.begin(), row.far.end());
             }
             heads = gather_values(ranks(), std::span<const Head>(heads));
-            entries = gather_values(ranks(), std::span<const Entry>(entries));
+            entries = gather_values(ranks(), std::span<const ClusterEntry>(entries));
             auto next = entries.begin();
             for (const Head& head : heads) {
                 const auto far = next + static_cast<std::ptrdiff_t>(head.near);
@@ -338,7 +134,8 @@ private:
     [[nodiscard]] std::shared_ptr<RowMaker> take_maker() {
         const std::lock_guard lock(mutex_);
         if (makers_.empty()) {
-            return std::make_shared<RowMaker>(mesh_, tree_, exchange_, opening_);
+            return std::make_shared<RowMaker>(mesh_, tree_, exchange_, opening_,
+                                              places_ ? &*places_ : nullptr);
         }
         auto maker = std::move(makers_.back());
         makers_.pop_back();
@@ -353,6 +150,7 @@ private:
     const ClusterTree& tree_;
     ExchangeAreas exchange_;
     double opening_;
+    std::optional<SetPlaces> places_; ///< where rows tell of sets
     std::uint64_t max_memory_;
     std::uint64_t bytes_ = 0;
     std::vector<SeenRow> kept_;
@@ -362,7 +160,7 @@ private:
     std::vector<std::shared_ptr<RowMaker>> makers_; ///< idle
 };
 
-void append(RowBlock& block, const Entry& entry) {
+void append(RowBlock& block, const ClusterEntry& entry) {
     block.columns.push_back(entry.column);
     block.values.push_back(entry.value);
     block.visibility.push_back(entry.visibility);
@@ -392,7 +190,7 @@ FormFactorMatrix near_pairs(std::vector<ClusteredRow>& rows, std::span<const std
             RowBlock& block = blocks[b];
             for (std::uint32_t local = 0; local < block.rows(); ++local) {
                 ClusteredRow& row = rows[block.first_row + local];
-                for (const Entry& entry : std::exchange(row.near, {})) {
+                for (const ClusterEntry& entry : std::exchange(row.near, {})) {
                     append(block, entry);
                 }
                 block.begin[local + 1] = block.columns.size();
@@ -447,9 +245,9 @@ public:
     }
 
 private:
-    static double sum_of(std::span<const Entry> entries) {
+    static double sum_of(std::span<const ClusterEntry> entries) {
         double sum = 0.0;
-        for (const Entry& entry : entries) {
+        for (const ClusterEntry& entry : entries) {
             sum += static_cast<double>(entry.value);
         }
         return sum;
@@ -475,10 +273,10 @@ private:
         for (std::size_t k = 0; k < near.columns.size() && shared; ++k) {
             variances += variance(static_cast<double>(near.values[k]), near.visibility[k]);
         }
-        for (const Entry& entry : row.far) {
+        for (const ClusterEntry& entry : row.far) {
             variances += variance(static_cast<double>(entry.value), entry.visibility);
         }
-        for (Entry& entry : row.far) {
+        for (ClusterEntry& entry : row.far) {
             const auto value = static_cast<double>(entry.value);
             entry.value = static_cast<float>(
                 std::max(0.0, value + missing * variance(value, entry.visibility) / variances));
@@ -509,13 +307,13 @@ public:
         if (space_ && space_->encloses(i)) {
             return {.texels = row.environment, .enclosed = true};
         }
-        return of_row(i, rule_, [](const Entry& entry) { return entry.value; });
+        return of_row(i, rule_, [](const ClusterEntry& entry) { return entry.value; });
     }
 
     /// The same with factors by the exact rule.
     [[nodiscard]] EnvironmentEvidence exactly(std::uint32_t i) const {
         const ExchangeAreas exact(mesh_, ExchangeRule::exact);
-        return of_row(i, ExchangeRule::exact, [&](const Entry& entry) {
+        return of_row(i, ExchangeRule::exact, [&](const ClusterEntry& entry) {
             double exchange = 0.0;
             if (entry.column < mesh_.size()) {
                 exchange = exact(i, entry.column);
@@ -535,7 +333,7 @@ private:
         std::vector<std::uint32_t> columns;
         std::vector<float> values;
         std::vector<std::uint8_t> visibility;
-        const auto add = [&](const Entry& entry) {
+        const auto add = [&](const ClusterEntry& entry) {
             columns.push_back(entry.column);
             values.push_back(value(entry));
             visibility.push_back(entry.visibility);
@@ -582,7 +380,7 @@ bool settle_environment(std::vector<ClusteredRow>& rows, const Evidence& evidenc
 double last_change(const ClusteredRow& row, double near_sum) {
     constexpr double rounding = 1e-6;
     double sum = near_sum;
-    for (const Entry& entry : row.far) {
+    for (const ClusterEntry& entry : row.far) {
         sum += static_cast<double>(entry.value);
     }
     const double missing = 1.0 - row.environment - row.blocked - sum;
@@ -655,7 +453,7 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
                         const double value = change * static_cast<double>(pairs.values[k]);
                         append(block, {pairs.columns[k], static_cast<float>(value), pairs.visibility[k]});
                     }
-                    for (const Entry& entry : rows[i].far) {
+                    for (const ClusterEntry& entry : rows[i].far) {
                         append(block, entry);
                     }
                     block.environment[local] = rows[i].environment;

@@ -51,16 +51,18 @@ private:
     std::uint64_t hemicubes_ = 0;
 };
 
-/// Rows of an engine as rows of visibility.
-class VisibilityEngine final : public VisibilityProvider {
+/// Rows of an engine as what they mean.
+template <class Row>
+class MeaningfulRows final : public BasicRowProvider<Row> {
 public:
-    explicit VisibilityEngine(std::unique_ptr<RawRowProvider> engine) : engine_(std::move(engine)) {}
+    explicit MeaningfulRows(std::unique_ptr<RawRowProvider> engine) : engine_(std::move(engine)) {}
 
     [[nodiscard]] std::uint32_t size() const override { return engine_->size(); }
     [[nodiscard]] std::string renderer() const override { return engine_->renderer(); }
-    void rows(std::span<const std::uint32_t> patches, const Sink& sink) override {
+    void rows(std::span<const std::uint32_t> patches,
+              const typename BasicRowProvider<Row>::Sink& sink) override {
         engine_->rows(patches, [&sink](std::uint32_t patch, const RawRow& row) {
-            sink(patch, row_from_raw<VisibilityRow>(row));
+            sink(patch, row_from_raw<Row>(row));
         });
     }
     [[nodiscard]] std::uint64_t hemicubes() const override { return engine_->hemicubes(); }
@@ -128,15 +130,19 @@ EyePoints eyes_at(std::span<const SurfacePoint> points, const PatchMesh& mesh, D
 std::unique_ptr<RowProvider> make_hemicube_engine(const PatchMesh& mesh, const HemicubeSettings& settings,
                                                   const EngineSettings& engine) {
     auto images = std::make_unique<const ImageMesh>(mesh);
-    auto rows = make_raw_engine(images->mesh(), settings, RowQuantity::form_factors, engine);
-    return images->any() ? fold_images(std::move(images), std::move(rows)) : std::move(rows);
+    auto rows = std::make_unique<MeaningfulRows<RowView>>(
+        make_raw_engine(images->mesh(), settings, RowQuantity::form_factors, engine));
+    if (!images->any()) {
+        return rows;
+    }
+    return fold_images(std::move(images), std::move(rows));
 }
 
 std::unique_ptr<VisibilityProvider> make_visibility_engine(const PatchMesh& mesh,
                                                            const HemicubeSettings& settings,
                                                            const EngineSettings& engine) {
     const ImageMesh images(mesh);
-    return std::make_unique<VisibilityEngine>(
+    return std::make_unique<MeaningfulRows<VisibilityRow>>(
         make_raw_engine(images.mesh(), settings, RowQuantity::visibility, engine));
 }
 
@@ -152,7 +158,7 @@ std::unique_ptr<VisibilityProvider> make_point_visibility_engine(const PatchMesh
     geometry->eyes = eyes_at(points, mesh, measure);
     geometry->patches = images.mesh().size();
     geometry->measure = measure;
-    return std::make_unique<VisibilityEngine>(
+    return std::make_unique<MeaningfulRows<VisibilityRow>>(
         make_raw_engine(std::move(geometry), settings, RowQuantity::visibility, engine));
 }
 

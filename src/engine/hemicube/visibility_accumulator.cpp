@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -24,6 +25,9 @@ constexpr std::int64_t max_window = 7; // cells either way
 // Only so many texels, none of them hidden, make a pair clear in a polygon that is partly hidden: fewer may
 // miss what hides a part of the patch. Chosen, not fitted.
 constexpr std::uint32_t clear_texels = 12;
+// A side of a polygon with more cells than so many a texel is pooled as a whole where a row may tell of it
+// so.
+constexpr std::uint32_t cells_a_texel = 4;
 // Numbers of texels are kept in a byte, of which one value means clear.
 constexpr std::uint32_t max_evidence = visibility_clear - 1;
 
@@ -32,6 +36,15 @@ std::uint32_t texels(std::uint64_t tally) {
 }
 double weight(std::uint64_t tally) {
     return static_cast<double>(tally >> 32);
+}
+
+/// Share that is visible of what is covered. Texels at the horizon may weigh nothing; then their number must
+/// do.
+float share_of(std::uint64_t visible, std::uint64_t hidden) {
+    const double covered = weight(visible) + weight(hidden);
+    return static_cast<float>(covered > 0.0 ? weight(visible) / covered
+                                            : static_cast<double>(texels(visible)) /
+                                                  (texels(visible) + texels(hidden)));
 }
 
 /// Position in a grid of `cells` cells: the cell and what is left.
@@ -105,7 +118,12 @@ void VisibilityAccumulator::add_tiles(std::span<const std::uint32_t> ids, const 
     total_ += weights.sum;
 }
 
-VisibilityRow VisibilityAccumulator::take(Coverage& coverage) {
+VisibilityRow VisibilityAccumulator::take(Coverage& coverage, const SideSets* sets) {
+    sets_ = sets;
+    joint_.clear();
+    if (sets_ != nullptr) {
+        add_hidden_sets(coverage);
+    }
     for (const std::uint32_t id : coverage.single_ids) {
         take_single(id, std::exchange(coverage.of_id[id], Tally{0}));
     }
@@ -126,6 +144,8 @@ VisibilityRow VisibilityAccumulator::take(Coverage& coverage) {
 }
 
 VisibilityRow VisibilityAccumulator::take(std::span<const TexelTally> covered) {
+    sets_ = nullptr;
+    joint_.clear();
     for (std::uint32_t p = 0; p < list_.polygons.size(); ++p) {
         const DrawPolygon& polygon = list_.polygons[p];
         for (const bool back : {false, true}) {
@@ -151,6 +171,26 @@ VisibilityRow VisibilityAccumulator::take(std::span<const TexelTally> covered) {
         }
     }
     return take();
+}
+
+void VisibilityAccumulator::add_joint(std::uint32_t set, float share, std::uint32_t texels) {
+    joint_.push_back({set, share, static_cast<std::uint8_t>(texels)});
+}
+
+/// What was skipped, since others hide all of it.
+void VisibilityAccumulator::add_hidden_sets(Coverage& coverage) {
+    for (const std::uint32_t part : coverage.hidden_parts) {
+        add_joint(sets_->of_part(part), 0.0f, max_evidence);
+    }
+    for (const std::uint32_t polygon : coverage.hidden_polygons) {
+        for (const bool back : {false, true}) {
+            if (const std::uint32_t side = SideSets::of_side(polygon, back); sets_->any(side)) {
+                add_joint(side, 0.0f, max_evidence);
+            }
+        }
+    }
+    coverage.hidden_parts.clear();
+    coverage.hidden_polygons.clear();
 }
 
 /// A polygon of one cell: there is nothing to pool.
@@ -293,10 +333,7 @@ void VisibilityAccumulator::set(std::uint32_t id, Tally visible, Tally hidden) {
     }
     const std::uint32_t patch = item - item_first_patch;
     const bool clear = texels(hidden) == 0 && count >= clear_texels;
-    // Texels at the horizon may weigh nothing; then their number must do.
-    const double covered = weight(visible) + weight(hidden);
-    share_[patch] = static_cast<float>(covered > 0.0 ? weight(visible) / covered
-                                                     : static_cast<double>(texels(visible)) / count);
+    share_[patch] = share_of(visible, hidden);
     evidence_[patch] =
         static_cast<std::uint8_t>(clear ? std::uint32_t{visibility_clear} : std::min(count, max_evidence));
 }
@@ -319,7 +356,11 @@ void VisibilityAccumulator::pool(const Side& side) {
         visible += visible_[id];
         hidden += hidden_[id];
     }
-    if (texels(hidden) > 0) {
+    if (const std::uint32_t all = texels(visible) + texels(hidden);
+        sets_ != nullptr && all > 0 && (texels(hidden) == 0 || cells_a_texel * all <= count)) {
+        const std::uint32_t evidence = texels(hidden) == 0 ? visibility_clear : std::min(all, max_evidence);
+        add_joint(SideSets::of_side(side.polygon, side.back), share_of(visible, hidden), evidence);
+    } else if (texels(hidden) > 0) {
         pool_cells(polygon, first);
     } else if (texels(visible) > 0) {
         for (std::uint32_t id = first; id < first + count; ++id) {
@@ -391,17 +432,32 @@ VisibilityRow VisibilityAccumulator::take() {
     }
     sides_.clear();
     std::size_t entries = 0;
-    for (std::uint32_t patch = 0; patch < patches_; ++patch) {
-        if (evidence_[patch] != 0) {
-            columns_[entries] = patch;
-            shares_[entries] = share_[patch];
-            texels_[entries] = std::exchange(evidence_[patch], std::uint8_t{0});
-            ++entries;
+    // Most patches of a large scene are not in view: many are passed over at once.
+    constexpr std::uint32_t at_once = 8;
+    for (std::uint32_t first = 0; first < patches_; first += at_once) {
+        std::uint64_t any = 1;
+        if (first + at_once <= patches_) {
+            std::memcpy(&any, evidence_.data() + first, at_once);
+        }
+        if (any == 0) {
+            continue;
+        }
+        for (std::uint32_t patch = first; patch < std::min(first + at_once, patches_); ++patch) {
+            if (evidence_[patch] != 0) {
+                columns_[entries] = patch;
+                shares_[entries] = share_[patch];
+                texels_[entries] = std::exchange(evidence_[patch], std::uint8_t{0});
+                ++entries;
+            }
         }
     }
     row.columns = {columns_.data(), entries};
     row.shares = {shares_.data(), entries};
     row.texels = {texels_.data(), entries};
+    if (sets_ != nullptr) {
+        row.joint = joint_;
+        row.sets = &sets_->sets();
+    }
     return row;
 }
 

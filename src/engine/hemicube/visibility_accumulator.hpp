@@ -5,6 +5,7 @@
 #include "engine/hemicube/grid_map.hpp"
 #include "engine/hemicube/view_builder.hpp"
 #include "engine/rasteriser/rasteriser.hpp"
+#include "engine/rasteriser/side_sets.hpp"
 #include "hemi/engine/delta_form_factors.hpp"
 #include "hemi/engine/visibility_provider.hpp"
 
@@ -41,7 +42,10 @@ public:
     /// @param ids  in the order of TexelTiles
     void add_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights);
     /// The row of hemicubes that add_tiles() added. The coverage is empty afterwards.
-    [[nodiscard]] VisibilityRow take(Coverage& coverage);
+    /// @param sets  sides and parts of which it tells as a whole, in VisibilityRow::joint; null: of every
+    /// patch
+    ///   by itself. Must live as long as the view.
+    [[nodiscard]] VisibilityRow take(Coverage& coverage, const SideSets* sets = nullptr);
 
 private:
     using Tally = TexelTally;
@@ -54,6 +58,8 @@ private:
     void take_single(std::uint32_t id, Tally covered);
     void pool(const Side& side);
     void pool_cells(const DrawPolygon& polygon, std::uint32_t first_id);
+    void add_joint(std::uint32_t set, float share, std::uint32_t texels);
+    void add_hidden_sets(Coverage& coverage);
     void set(std::uint32_t id, Tally visible, Tally hidden);
 
     const DrawList& list_;
@@ -84,6 +90,8 @@ private:
     std::vector<std::uint32_t> columns_;
     std::vector<float> shares_;
     std::vector<std::uint8_t> texels_;
+    const SideSets* sets_ = nullptr; ///< that the row being taken tells of
+    std::vector<JointVisibility> joint_;
 };
 
 } // namespace hemi

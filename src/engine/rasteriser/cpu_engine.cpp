@@ -10,6 +10,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -21,7 +22,8 @@ namespace {
 struct RowChunk {
     struct Head {
         std::uint32_t patch;
-        std::size_t end; ///< of its entries
+        std::size_t end;       ///< of its entries
+        std::size_t joint_end; ///< of what it tells of sets
         double environment;
         double blocked;
     };
@@ -29,21 +31,28 @@ struct RowChunk {
     std::vector<std::uint32_t> columns;
     std::vector<float> values;
     std::vector<std::uint8_t> visibility;
+    std::vector<JointVisibility> joint;
+    const PatchSets* sets = nullptr;
 
     void add(std::uint32_t patch, const RawRow& row) {
         columns.insert(columns.end(), row.columns.begin(), row.columns.end());
         values.insert(values.end(), row.values.begin(), row.values.end());
         visibility.insert(visibility.end(), row.visibility.begin(), row.visibility.end());
-        heads.push_back({patch, columns.size(), row.environment, row.blocked});
+        joint.insert(joint.end(), row.joint.begin(), row.joint.end());
+        sets = row.sets != nullptr ? row.sets : sets;
+        heads.push_back({patch, columns.size(), joint.size(), row.environment, row.blocked});
     }
     [[nodiscard]] RawRow row(std::size_t k) const {
         const std::size_t begin = k == 0 ? 0 : heads[k - 1].end;
         const std::size_t count = heads[k].end - begin;
-        RawRow row{std::span(columns).subspan(begin, count),
-                   std::span(values).subspan(begin, count),
-                   {},
-                   heads[k].environment,
-                   heads[k].blocked};
+        RawRow row = RowView{std::span(columns).subspan(begin, count),
+                             std::span(values).subspan(begin, count),
+                             {},
+                             heads[k].environment,
+                             heads[k].blocked};
+        const std::size_t joint_begin = k == 0 ? 0 : heads[k - 1].joint_end;
+        row.joint = std::span(joint).subspan(joint_begin, heads[k].joint_end - joint_begin);
+        row.sets = sets;
         if (!visibility.empty()) {
             row.visibility = std::span(visibility).subspan(begin, count);
         }
@@ -153,9 +162,13 @@ public:
     CpuEngine(std::unique_ptr<const EngineGeometry> geometry, const HemicubeSettings& settings,
               RowQuantity quantity, std::uint32_t threads)
         : geometry_(std::move(geometry)), scene_(geometry_->list) {
+        if (settings.joint && quantity == RowQuantity::visibility) {
+            sets_.emplace(scene_);
+        }
         const std::uint32_t count = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
         for (std::uint32_t k = 0; k < count; ++k) {
-            makers_.push_back(std::make_unique<CpuRows>(*geometry_, scene_, settings, quantity));
+            makers_.push_back(
+                std::make_unique<CpuRows>(*geometry_, scene_, settings, quantity, sets_ ? &*sets_ : nullptr));
         }
     }
 
@@ -180,6 +193,7 @@ public:
 private:
     std::unique_ptr<const EngineGeometry> geometry_;
     RasterScene scene_;
+    std::optional<SideSets> sets_;                 ///< where rows may tell of them
     std::vector<std::unique_ptr<CpuRows>> makers_; ///< one a thread
     std::uint64_t hemicubes_ = 0;
 };

@@ -12,8 +12,8 @@ namespace hemi {
 
 struct CpuRows::State {
     State(const EngineGeometry& the_geometry, const RasterScene& scene, const HemicubeSettings& the_settings,
-          RowQuantity quantity)
-        : geometry(the_geometry), settings(the_settings),
+          RowQuantity quantity, const SideSets* the_sets)
+        : geometry(the_geometry), settings(the_settings), sets(the_sets),
           delta(the_settings.resolution, the_geometry.measure), tiles(the_settings.resolution),
           rasteriser(make_rasteriser(scene, tiles)) {
         if (quantity == RowQuantity::visibility) {
@@ -47,6 +47,7 @@ struct CpuRows::State {
 
     const EngineGeometry& geometry;
     HemicubeSettings settings;
+    const SideSets* sets;
     DeltaFormFactors delta;
     TexelTiles tiles;
     std::unique_ptr<Rasteriser> rasteriser;
@@ -57,14 +58,19 @@ struct CpuRows::State {
 };
 
 CpuRows::CpuRows(const EngineGeometry& geometry, const RasterScene& scene, const HemicubeSettings& settings,
-                 RowQuantity quantity)
-    : state_(std::make_unique<State>(geometry, scene, settings, quantity)) {}
+                 RowQuantity quantity, const SideSets* sets)
+    : state_(std::make_unique<State>(geometry, scene, settings, quantity, sets)) {}
 
 CpuRows::~CpuRows() = default;
 
 RawRow CpuRows::row(std::uint32_t patch) {
     State& state = *state_;
     const auto eyes = state.geometry.eyes.of(patch);
+    // What one eye does not see, another may.
+    const SideSets* const sets = eyes.size() == 1 ? state.sets : nullptr;
+    if (state.coverage) {
+        state.coverage->skip_hidden = sets != nullptr;
+    }
     for (std::uint32_t eye = 0; eye < eyes.size(); ++eye) {
         const TileWeights& weights = state.weights_for(eyes[eye].share);
         const EyeFrame frame = state.frame(patch, eye);
@@ -76,7 +82,10 @@ RawRow CpuRows::row(std::uint32_t patch) {
             state.accumulator->add_tiles(state.rasteriser->ids(), weights);
         }
     }
-    return state.visibility ? raw_row(state.visibility->take(*state.coverage)) : state.accumulator->take();
+    if (state.visibility) {
+        return raw_row(state.visibility->take(*state.coverage, sets));
+    }
+    return state.accumulator->take();
 }
 
 std::vector<std::uint32_t> CpuRows::items(std::uint32_t patch, std::uint32_t eye) {

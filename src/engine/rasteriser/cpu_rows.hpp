@@ -2,6 +2,7 @@
 
 #include "engine/hemicube/engine_geometry.hpp"
 #include "engine/rasteriser/rasteriser.hpp"
+#include "engine/rasteriser/side_sets.hpp"
 #include "engine/raw_row.hpp"
 
 #include <cstdint>
@@ -16,8 +17,11 @@ class CpuRows {
 public:
     /// @param geometry  and `scene`, which is made of its draw list, must outlive this
     /// @param quantity  what the rows mean
+    /// @param sets      what rows of visibility of one eye point tell of as a whole; null: nothing. Must
+    /// outlive
+    ///   this.
     CpuRows(const EngineGeometry& geometry, const RasterScene& scene, const HemicubeSettings& settings,
-            RowQuantity quantity);
+            RowQuantity quantity, const SideSets* sets = nullptr);
     ~CpuRows();
     CpuRows(const CpuRows&) = delete;
     CpuRows& operator=(const CpuRows&) = delete;

@@ -26,6 +26,15 @@ std::vector<DrawTriangle> collect_triangles(const DrawList& list,
     return triangles;
 }
 
+/// Which of the six directions along the axes a direction is nearest to: 0 to 5.
+int main_way(const Vec3& direction) {
+    int axis = 0;
+    for (const int other : {1, 2}) {
+        axis = std::abs(direction[other]) > std::abs(direction[axis]) ? other : axis;
+    }
+    return 2 * axis + (direction[axis] < 0.0 ? 1 : 0);
+}
+
 /// Finds the sides of a polygon: corners where the outline does not turn lie along them.
 /// @return where each corner lies on its side, from 0 to 1; empty where there are other than 3 or 4 sides
 std::vector<double> find_sides(const DrawList& list, double scale, RasterScene::GridPolygon& drawn) {
@@ -124,6 +133,17 @@ private:
             scene_.back_id[first + t] = polygon.back_id;
             scene_.polygon[first + t] = triangle.polygon;
         }
+        std::vector<std::uint32_t> polygons;
+        for (const DrawTriangle& triangle : triangles) {
+            polygons.push_back(triangle.polygon);
+        }
+        std::sort(polygons.begin(), polygons.end());
+        for (auto here = polygons.begin(); here != polygons.end();) {
+            const auto next = std::upper_bound(here, polygons.end(), *here);
+            cluster.whole =
+                cluster.whole && scene_.list.polygons[*here].triangle_count == std::uint32_t(next - here);
+            here = next;
+        }
         scene_.clusters.push_back(cluster);
     }
 
@@ -148,8 +168,31 @@ RasterScene::RasterScene(const DrawList& the_list) : list(the_list), coordinates
 
 /// Sorts the grid polygons into groups, and fills in what depends on that.
 void RasterScene::add_groups() {
+    // In large scenes what looks the same way stands together, as in clusters of sources: they take in whole
+    // groups then.
+    constexpr std::size_t least_apart = 1024;
+    if (grid_polygons.size() < least_apart) {
+        add_groups(grid_polygons);
+        return;
+    }
+    const auto way = [this](const GridPolygon& drawn) {
+        return main_way(list.polygons[drawn.polygon].normal);
+    };
+    std::stable_sort(grid_polygons.begin(), grid_polygons.end(),
+                     [&way](const GridPolygon& a, const GridPolygon& b) { return way(a) < way(b); });
+    for (auto here = grid_polygons.begin(); here != grid_polygons.end();) {
+        const auto next =
+            std::find_if(here, grid_polygons.end(), [&way, first = way(*here)](const GridPolygon& drawn) {
+                return way(drawn) != first;
+            });
+        add_groups(std::span(here, next));
+        here = next;
+    }
+}
+
+void RasterScene::add_groups(std::span<GridPolygon> polygons) {
     for_each_cluster(
-        std::span(grid_polygons), group_size,
+        polygons, group_size,
         [this](const GridPolygon& drawn) {
             return std::pair(list.polygons[drawn.polygon].centre, drawn.polygon);
         },
@@ -188,6 +231,23 @@ void RasterScene::add_groups() {
             }
             add_bounds(vertices);
         });
+}
+
+std::vector<std::uint32_t> RasterScene::polygons_of(std::uint32_t part) const {
+    std::vector<std::uint32_t> polygons;
+    if (part < groups.size()) {
+        for (std::uint32_t k = 0; k < groups[part].count; ++k) {
+            polygons.push_back(grid_polygons[groups[part].first + k].polygon);
+        }
+    } else {
+        const std::size_t cluster = part - groups.size();
+        for (std::uint32_t t = 0; t < clusters[cluster].triangles; ++t) {
+            polygons.push_back(polygon[cluster * cluster_size + t]);
+        }
+    }
+    std::sort(polygons.begin(), polygons.end());
+    polygons.erase(std::unique(polygons.begin(), polygons.end()), polygons.end());
+    return polygons;
 }
 
 void RasterScene::add_bounds(std::span<const Vec3> vertices) {

@@ -38,6 +38,7 @@ using CacheLineVector = std::vector<T, CacheLineAllocator<T>>;
 struct TriangleCluster {
     std::uint32_t triangles = 0; ///< in slots [64 c, 64 c + triangles) of cluster c
     std::uint32_t vertices = 0;  ///< in slots [64 c, 64 c + vertices)
+    bool whole = true;           ///< whether no polygon has triangles in other clusters, too
 };
 
 /// The draw list as the CPU rasteriser takes it, shared by all threads: polygons that show one draw id as
@@ -101,11 +102,19 @@ struct RasterScene {
     /// Half the edges of boxes along the axes that hold the parts, about the same centres.
     std::vector<std::array<float, 3>> extents;
 
+    /// Whether a part holds whole polygons.
+    [[nodiscard]] bool is_whole(std::uint32_t part) const {
+        return part < groups.size() || clusters[part - groups.size()].whole;
+    }
+    /// Polygons of a part, ascending, each once.
+    [[nodiscard]] std::vector<std::uint32_t> polygons_of(std::uint32_t part) const;
+
     /// Adds the bounds of a part that has these vertices, in scene units.
     void add_bounds(std::span<const Vec3> vertices);
 
 private:
     void add_groups();
+    void add_groups(std::span<GridPolygon> polygons);
 };
 
 } // namespace hemi

@@ -68,16 +68,20 @@ private:
     template <bool covering>
     void draw_all() {
         parts_.find();
-        // What is hidden counts where coverage is wanted.
-        const bool occlusion = !covering && occlusion_.is_on();
+        // What is hidden counts where coverage is wanted, unless that may be told of all of it.
+        const bool occlusion = covering ? target_.coverage()->skip_hidden : occlusion_.is_on();
         if (occlusion) {
             parts_.sort();
         }
         for (const VisiblePart& part : parts_.parts()) {
             std::uint32_t faces = part.faces;
-            if (occlusion) {
+            if (occlusion && (!covering || scene_.is_whole(part.part))) {
                 points_.set_box(projection_, part.centre, scene_.extents[part.part]);
-                faces = unhidden_faces(faces, points_, projection_, target_, slack_);
+                const Sight sight = sight_of(faces, points_, projection_, target_, slack_);
+                if (covering && sight.is_hidden()) {
+                    target_.coverage()->hidden_parts.push_back(part.part);
+                }
+                faces = faces_to_draw<covering>(faces, sight);
                 occlusion_.count(faces == 0);
             }
             if (faces == 0) {
@@ -94,6 +98,13 @@ private:
         if constexpr (covering) {
             target_.count_hidden();
         }
+    }
+
+    /// Faces on which something is drawn. Its texels are counted on all, hidden or not, unless it is hidden
+    /// on all.
+    template <bool covering>
+    static std::uint32_t faces_to_draw(std::uint32_t faces, const Sight& sight) {
+        return covering && sight.faces != 0 ? faces : sight.faces;
     }
 
     /// Positions of vertices in the eye's frame. The same arithmetic as FramePoints::set_corners().
@@ -506,7 +517,11 @@ private:
         const bool front = height > 0.0;
         bool drawn_once = false;
         if (occlusion) {
-            faces = unhidden_faces(faces, points_, projection_, target_, slack_);
+            const Sight sight = sight_of(faces, points_, projection_, target_, slack_);
+            if (covering && sight.is_hidden()) {
+                target_.coverage()->hidden_polygons.push_back(drawn.polygon);
+            }
+            faces = faces_to_draw<covering>(faces, sight);
             if (faces == 0) {
                 return;
             }

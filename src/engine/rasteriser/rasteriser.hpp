@@ -28,6 +28,12 @@ struct Coverage {
         bool back;
     };
     std::vector<Side> sides; ///< once a hemicube
+
+    /// Whether parts and polygons that are hidden as a whole need not be drawn: they stand below, and nothing
+    /// else is known of them.
+    bool skip_hidden = false;
+    std::vector<std::uint32_t> hidden_parts;    ///< of the RasterScene
+    std::vector<std::uint32_t> hidden_polygons; ///< of the draw list
 };
 
 /// Fills the item buffers of one hemicube after another on the calling thread, by SIMD instructions.

@@ -232,13 +232,22 @@ struct FramePoints {
     }
 };
 
-/// Those of `faces` on which something of the convex hull of some points may be seen, behind all that was
-/// drawn so far.
+/// What may be seen of something.
+struct Sight {
+    std::uint32_t faces;     ///< on which something of it may be seen
+    bool covers_any = false; ///< whether it may cover texels at all; of faces on which nothing is seen
+
+    /// Whether others cover all texels that it covers.
+    [[nodiscard]] bool is_hidden() const { return faces == 0 && covers_any; }
+};
+/// What may be seen of the convex hull of some points, behind all that was drawn so far.
+/// @param faces  the only ones that matter
 /// @param slack  texels that rounding may move points by
-inline std::uint32_t unhidden_faces(std::uint32_t faces, const FramePoints& points,
-                                    const Projection& projection, const ItemTarget& target, float slack) {
+inline Sight sight_of(std::uint32_t faces, const FramePoints& points,
+                      const Projection& projection, const ItemTarget& target, float slack) {
     constexpr FramePoints::Tag tag;
     constexpr float rounding = 1e-5f; // of 1 / depth, with the bias of fronts
+    bool covers_any = false;
     for (std::uint32_t left = faces; left != 0; left &= left - 1) {
         const int face = std::countr_zero(left);
         const FaceAxes& axes = face_axes[static_cast<std::size_t>(face)];
@@ -275,11 +284,13 @@ inline std::uint32_t unhidden_faces(std::uint32_t faces, const FramePoints& poin
         const auto [y0, y1] =
             texels(hn::GetLane(hn::MinOfLanes(tag, y_low)), hn::GetLane(hn::MaxOfLanes(tag, y_high)),
                    projection.offset_y(face), projection.height(face) - 1.0f);
-        if (x0 > x1 || y0 > y1 || target.hides(face, {x0, x1, y0, y1}, (1.0f + rounding) / depth)) {
+        const bool covers = x0 <= x1 && y0 <= y1;
+        if (!covers || target.hides(face, {x0, x1, y0, y1}, (1.0f + rounding) / depth)) {
             faces &= ~(1u << face);
+            covers_any = covers_any || covers;
         }
     }
-    return faces;
+    return {faces, covers_any};
 }
 
 } // namespace

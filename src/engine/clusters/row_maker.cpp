@@ -1,0 +1,240 @@
+#include "engine/clusters/row_maker.hpp"
+
+#include "engine/visibility_weighted/pair_visibility.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace hemi {
+
+namespace {
+
+std::uint8_t code_of(double visibility, bool clear) {
+    return clear ? PairVisibility::clear().stored() : PairVisibility::from(visibility).stored();
+}
+
+} // namespace
+
+SetPlaces::SetPlaces(const PatchSets& sets, const ClusterTree& tree, const PatchMesh& mesh) {
+    first_.reserve(std::size_t{sets.size()} + 1);
+    first_.push_back(0);
+    const auto add = [&](std::uint32_t set) {
+        for (const std::uint32_t patch : sets.patches_of(set)) {
+            positions_.push_back(tree.position(patch));
+        }
+    };
+    for (std::uint32_t set = 0; set < sets.size(); ++set) {
+        add(set);
+        for (const std::uint32_t member : sets.members_of(set)) {
+            add(member);
+        }
+        std::sort(positions_.begin() + static_cast<std::ptrdiff_t>(first_.back()), positions_.end());
+        double area = 0.0;
+        area_before_.push_back(area);
+        for (std::size_t k = first_.back(); k < positions_.size(); ++k) {
+            area += mesh.areas()[tree.clusters()->order()[positions_[k]]];
+            area_before_.push_back(area);
+        }
+        first_.push_back(positions_.size());
+    }
+}
+
+ClusteredRow RowMaker::make(const SeenRow& seen) {
+    stand_at(seen.patch);
+    ClusteredRow row{{}, {}, seen.environment, seen.blocked, false};
+    for (std::size_t k = 0; k < seen.columns.size(); ++k) {
+        add_patch(row, seen.columns[k],
+                  {static_cast<double>(seen.shares[k]), seen.texels[k] == visibility_clear});
+    }
+    for (const JointVisibility& joint : seen.joint) {
+        add_set(row, joint.set, {static_cast<double>(joint.share), joint.texels == visibility_clear});
+    }
+    const double mean = known_ == 0 ? 1.0 : shares_ / static_cast<double>(known_);
+    for (std::uint32_t part = 0; part < parts_.size(); ++part) {
+        if (parts_[part].far) {
+            add_far(row, part, mean);
+        } else if (sums_[part].known == 0) {
+            const std::uint32_t patch = tree_.clusters()->order()[begins_[part]];
+            if (patch != patch_ && may_face(tree_.shape(parts_[part].node))) {
+                add_near(row, patch, {mean, false});
+            }
+        }
+    }
+    finish(row);
+    return row;
+}
+
+void RowMaker::stand_at(std::uint32_t patch) {
+    patch_ = patch;
+    area_ = mesh_.areas()[patch];
+    shares_ = 0.0;
+    known_ = 0;
+    tree_.seen_from(patch, opening_, parts_);
+    begins_.clear();
+    sums_.assign(parts_.size(), {});
+    std::uint32_t strata = 0;
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+        const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
+        begins_.push_back(node.begin);
+        sums_[part].first_stratum = strata;
+        sums_[part].strata = parts_[part].far ? std::min(node.end - node.begin, most_strata) : 0;
+        strata += sums_[part].strata;
+    }
+    strata_.assign(strata, {});
+}
+
+/// The part that holds a position in the tree.
+/// @param not_before  a part before which it is not
+std::uint32_t RowMaker::part_at(std::uint32_t position, std::uint32_t not_before) const {
+    const auto after = std::upper_bound(begins_.begin() + not_before, begins_.end(), position);
+    return static_cast<std::uint32_t>(after - begins_.begin()) - 1;
+}
+
+/// The stratum of a far part that holds a position: as many patches in each, but for one more or less.
+std::uint32_t RowMaker::stratum_at(std::uint32_t part, std::uint32_t position) const {
+    const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
+    const Sum& sum = sums_[part];
+    return sum.first_stratum + static_cast<std::uint32_t>(std::uint64_t{position - node.begin} * sum.strata /
+                                                          (node.end - node.begin));
+}
+
+void RowMaker::add_patch(ClusteredRow& row, std::uint32_t patch, Share share) {
+    const std::uint32_t position = tree_.position(patch);
+    const std::uint32_t part = part_at(position);
+    Sum& sum = sums_[part];
+    ++sum.known;
+    sum.shares += share.value;
+    shares_ += share.value;
+    ++known_;
+    row.hides = row.hides || !(share.value > 0.0);
+    if (parts_[part].far) {
+        add_to_strata(part, position, position, mesh_.areas()[patch], share);
+    } else {
+        add_near(row, patch, share);
+    }
+}
+
+/// Part by part: those of a far one together.
+void RowMaker::add_set(ClusteredRow& row, std::uint32_t set, Share share) {
+    const std::span<const std::uint32_t> positions = places_->of(set);
+    shares_ += static_cast<double>(positions.size()) * share.value;
+    known_ += positions.size();
+    row.hides = row.hides || !(share.value > 0.0);
+    std::uint32_t part = 0;
+    for (std::size_t begin = 0; begin < positions.size();) {
+        part = part_at(positions[begin], part);
+        const std::uint32_t part_end = tree_.clusters()->nodes()[parts_[part].node].end;
+        const std::size_t end =
+            positions.back() < part_end
+                ? positions.size()
+                : static_cast<std::size_t>(
+                      std::lower_bound(positions.begin() + static_cast<std::ptrdiff_t>(begin),
+                                       positions.end(), part_end) -
+                      positions.begin());
+        Sum& sum = sums_[part];
+        sum.known += static_cast<std::uint32_t>(end - begin);
+        sum.shares += static_cast<double>(end - begin) * share.value;
+        if (parts_[part].far) {
+            add_to_strata(part, positions[begin], positions[end - 1], places_->area(set, begin, end), share);
+        } else {
+            add_near(row, tree_.clusters()->order()[positions[begin]], share);
+        }
+        begin = end;
+    }
+}
+
+/// Patches of a far part, spread evenly over the strata from that of the first to that of the last one.
+void RowMaker::add_to_strata(std::uint32_t part, std::uint32_t low, std::uint32_t high, double area,
+                             Share share) {
+    const std::uint32_t first = stratum_at(part, low);
+    const std::uint32_t last = low == high ? first : stratum_at(part, high);
+    area /= last - first + 1;
+    for (std::uint32_t k = first; k <= last; ++k) {
+        Stratum& stratum = strata_[k];
+        stratum.known += area;
+        if (share.value > 0.0) {
+            stratum.seen += area;
+            stratum.lit += area * share.value;
+        }
+    }
+    sums_[part].clear = sums_[part].clear && (share.clear || !(share.value > 0.0));
+}
+
+void RowMaker::add_near(ClusteredRow& row, std::uint32_t patch, Share share) {
+    if (!(share.value > 0.0)) {
+        return;
+    }
+    const double unoccluded = exchange_(patch_, patch) / area_;
+    if (unoccluded > 0.0) {
+        row.near.push_back(
+            {patch, static_cast<float>(unoccluded * share.value), code_of(share.value, share.clear)});
+    }
+}
+
+/// @param mean  visibility of all patches that the row tells of
+void RowMaker::add_far(ClusteredRow& row, std::uint32_t part, double mean) {
+    const std::uint32_t k = parts_[part].node;
+    const SourceClusters::Node& node = tree_.clusters()->nodes()[k];
+    const Sum& sum = sums_[part];
+    const std::uint32_t count = node.end - node.begin;
+    const double share = sum.known == 0      ? (may_face(tree_.shape(k)) ? mean : 0.0)
+                         : sum.known < count ? sum.shares / sum.known
+                                             : 0.0;
+    if (!(sum.shares > 0.0) && !(share > 0.0)) {
+        return; // all of it is hidden, or looks away
+    }
+    double factor = 0.0;
+    double unoccluded = 0.0;
+    for (std::uint32_t s = 0; s < sum.strata; ++s) {
+        const Stratum& stratum = strata_[sum.first_stratum + s];
+        // The first positions whose stratum_at() is this one and the next.
+        const auto begin_of = [&](std::uint32_t at) {
+            return node.begin +
+                   static_cast<std::uint32_t>((std::uint64_t{at} * count + sum.strata - 1) / sum.strata);
+        };
+        const std::uint32_t begin = begin_of(s);
+        const std::uint32_t end = begin_of(s + 1);
+        const double left = std::max(0.0, tree_.area_between(begin, end) - stratum.known);
+        const double lit = stratum.lit + (sum.known < count ? left * share : 0.0);
+        if (!(lit > 0.0)) {
+            continue;
+        }
+        const std::uint32_t middle = tree_.clusters()->order()[begin + (end - begin) / 2];
+        const double of_area = exchange_(patch_, middle) / (mesh_.areas()[middle] * area_);
+        factor += of_area * lit;
+        unoccluded += of_area * (stratum.seen + (share > 0.0 ? left : 0.0));
+    }
+    if (factor > 0.0) {
+        const bool clear = sum.clear && sum.known == count;
+        row.far.push_back(
+            {mesh_.size() + k, static_cast<float>(factor), code_of(factor / unoccluded, clear)});
+    }
+}
+
+void RowMaker::finish(ClusteredRow& row) {
+    const auto by_column = [](const ClusterEntry& a, const ClusterEntry& b) { return a.column < b.column; };
+    std::sort(row.near.begin(), row.near.end(), by_column);
+    std::sort(row.far.begin(), row.far.end(), by_column);
+    row.near.shrink_to_fit();
+    row.far.shrink_to_fit();
+}
+
+/// Whether some patch of a cluster may have its front towards this one's.
+bool RowMaker::may_face(const ClusterShape& cluster) const {
+    const Vec3 here = mesh_.centres()[patch_];
+    if (glm::dot(cluster.centre - here, mesh_.normal(patch_)) <= -cluster.radius) {
+        return false;
+    }
+    const Vec3 way = here - cluster.centre;
+    const double distance = glm::length(way);
+    const double size = cluster.radius + tree_.radius_of(patch_);
+    if (distance <= size) {
+        return true;
+    }
+    const double cosine = std::clamp(glm::dot(way, cluster.axis) / distance, -1.0, 1.0);
+    return std::acos(cosine) - cluster.cone - std::asin(size / distance) < 0.5 * std::numbers::pi;
+}
+
+} // namespace hemi

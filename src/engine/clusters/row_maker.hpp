@@ -1,0 +1,130 @@
+#pragma once
+
+#include "engine/clusters/cluster_tree.hpp"
+#include "hemi/engine/exchange_area.hpp"
+#include "hemi/engine/visibility_provider.hpp"
+#include "hemi/scene/patch_mesh.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hemi {
+
+/// What is known of one source of a row.
+struct ClusterEntry {
+    std::uint32_t column;
+    float value;
+    std::uint8_t visibility;
+};
+
+/// One row while all are computed.
+struct ClusteredRow {
+    std::vector<ClusterEntry> near; ///< patches, ascending
+    std::vector<ClusterEntry> far;  ///< clusters, ascending
+    double environment = 0.0;
+    double blocked = 0.0;
+    bool hides = false; ///< whether it sees nothing of some patch that faces it
+
+    [[nodiscard]] std::size_t bytes() const {
+        return sizeof(ClusteredRow) + (near.capacity() + far.capacity()) * sizeof(ClusterEntry);
+    }
+};
+
+/// A row of visibility, kept.
+struct SeenRow {
+    std::uint32_t patch = 0;
+    std::vector<std::uint32_t> columns;
+    std::vector<float> shares;
+    std::vector<std::uint8_t> texels;
+    std::vector<JointVisibility> joint;
+    double environment = 0.0;
+    double blocked = 0.0;
+};
+
+/// Where the patches of sets stand in a tree. Memory: 24 bytes a patch.
+class SetPlaces {
+public:
+    SetPlaces(const PatchSets& sets, const ClusterTree& tree, const PatchMesh& mesh);
+
+    /// Positions in the tree of the patches of a set, or of those that make it up, ascending.
+    [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t set) const {
+        return std::span(positions_).subspan(first_[set], first_[set + 1] - first_[set]);
+    }
+    /// Area of some patches of a set, scene units squared.
+    /// @param begin  into of(), and one behind the last
+    [[nodiscard]] double area(std::uint32_t set, std::size_t begin, std::size_t end) const {
+        return area_before_[first_[set] + set + end] - area_before_[first_[set] + set + begin];
+    }
+
+private:
+    std::vector<std::size_t> first_; ///< sets + 1: where those of a set begin
+    std::vector<std::uint32_t> positions_;
+    std::vector<double> area_before_; ///< of a set: those of no patch, of the first, of the first two …
+};
+
+/// Makes rows of factors of rows of visibility: F0 V patch by patch near the receiver; far away, cluster by
+/// cluster. Patches of a far cluster stand together in up to 16 strata, and receive an area what the middle
+/// one of theirs does. Patches that no texel covers are as visible as the others of their cluster.
+/// One a thread. Memory: about 500 bytes a source of a row.
+class RowMaker {
+public:
+    /// All must outlive this.
+    /// @param places  of what rows tell as a whole; null: nothing
+    RowMaker(const PatchMesh& mesh, const ClusterTree& tree, const ExchangeAreas& exchange, double opening,
+             const SetPlaces* places)
+        : mesh_(mesh), tree_(tree), exchange_(exchange), opening_(opening), places_(places) {}
+
+    [[nodiscard]] ClusteredRow make(const SeenRow& seen);
+
+private:
+    static constexpr std::uint32_t most_strata = 16; ///< of a cluster
+
+    /// Of one part of what a row sees.
+    struct Sum {
+        std::uint32_t first_stratum = 0;
+        std::uint32_t strata = 0;
+        std::uint32_t known = 0; ///< patches that the row tells of
+        bool clear = true;       ///< whether nothing of these is hidden
+        double shares = 0.0;     ///< of these, together
+    };
+    /// Of some patches side by side in a far part; areas in scene units squared.
+    struct Stratum {
+        double known = 0.0; ///< area that the row tells of
+        double seen = 0.0;  ///< area of what is not hidden as a whole
+        double lit = 0.0;   ///< area times visibility
+    };
+    /// What is known of the visibility of patches.
+    struct Share {
+        double value;
+        bool clear;
+    };
+
+    void stand_at(std::uint32_t patch);
+    [[nodiscard]] std::uint32_t part_at(std::uint32_t position, std::uint32_t not_before = 0) const;
+    [[nodiscard]] std::uint32_t stratum_at(std::uint32_t part, std::uint32_t position) const;
+    void add_patch(ClusteredRow& row, std::uint32_t patch, Share share);
+    void add_set(ClusteredRow& row, std::uint32_t set, Share share);
+    void add_to_strata(std::uint32_t part, std::uint32_t low, std::uint32_t high, double area, Share share);
+    void add_near(ClusteredRow& row, std::uint32_t patch, Share share);
+    void add_far(ClusteredRow& row, std::uint32_t part, double mean);
+    void finish(ClusteredRow& row);
+    [[nodiscard]] bool may_face(const ClusterShape& cluster) const;
+
+    const PatchMesh& mesh_;
+    const ClusterTree& tree_;
+    const ExchangeAreas& exchange_;
+    double opening_;
+    const SetPlaces* places_;
+    std::uint32_t patch_ = 0;              ///< of the row
+    double area_ = 0.0;                    ///< of it
+    double shares_ = 0.0;                  ///< of all patches that the row tells of
+    std::uint64_t known_ = 0;              ///< number of these
+    std::vector<ClusterTree::Part> parts_; ///< what it sees
+    std::vector<std::uint32_t> begins_;    ///< of the parts: positions of their first patches
+    std::vector<Sum> sums_;                ///< by part
+    std::vector<Stratum> strata_;          ///< part by part
+};
+
+} // namespace hemi
