@@ -17,6 +17,7 @@ struct PatchSets {
     std::vector<std::uint32_t> first_members; ///< sets + 1: where those of a set begin in `members`
     std::vector<std::uint32_t> members;       ///< of sets that others make up: these
 
+    /// Number of sets.
     [[nodiscard]] std::uint32_t size() const noexcept {
         return first.empty() ? 0 : static_cast<std::uint32_t>(first.size() - 1);
     }
@@ -32,9 +33,9 @@ struct PatchSets {
 
 /// What is known of the visibility of all patches of a set, as VisibilityRow has it of one.
 struct JointVisibility {
-    std::uint32_t set; ///< of PatchSets
-    float share;
-    std::uint8_t texels;
+    std::uint32_t set;   ///< of PatchSets
+    float share;         ///< V
+    std::uint8_t texels; ///< how many it rests on
 };
 
 /// What the hemicubes of patch i found of the visibility of the other patches, seen but not owned. It has an
