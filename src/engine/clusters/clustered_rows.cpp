@@ -113,8 +113,11 @@ private:
                 const ClusteredRow& row = rows_[made_[k]];
                 heads.push_back({made_[k], row.near.size(), row.far.size(), row.environment, row.blocked,
                                  row.hides ? 1u : 0u});
-                entries.insert(entries.end(), row.near.begin(), row.near.end());
-                entries.insert(entries.end(), row.far.begin(), row.far.end());
+                for (const EntryList* const list : {&row.near, &row.far}) {
+                    for (std::uint32_t e = 0; e < list->size(); ++e) {
+                        entries.push_back((*list)[e]);
+                    }
+                }
             }
             heads = gather_values(ranks(), std::span<const Head>(heads));
             entries = gather_values(ranks(), std::span<const ClusterEntry>(entries));
@@ -122,8 +125,8 @@ private:
             for (const Head& head : heads) {
                 const auto far = next + static_cast<std::ptrdiff_t>(head.near);
                 const auto end = far + static_cast<std::ptrdiff_t>(head.far);
-                rows_[head.patch] = {
-                    {next, far}, {far, end}, head.environment, head.blocked, head.hides != 0};
+                rows_[head.patch] = {EntryList({next, far}), EntryList({far, end}), head.environment,
+                                     head.blocked, head.hides != 0};
                 bytes_ += rows_[head.patch].bytes();
                 next = end;
             }
@@ -166,6 +169,18 @@ void append(RowBlock& block, const ClusterEntry& entry) {
     block.visibility.push_back(entry.visibility);
 }
 
+void append(RowBlock& block, const EntryList& entries) {
+    for (std::uint32_t k = 0; k < entries.size(); ++k) {
+        append(block, entries[k]);
+    }
+}
+
+void reserve(RowBlock& block, std::size_t entries) {
+    block.columns.reserve(entries);
+    block.values.reserve(entries);
+    block.visibility.reserve(entries);
+}
+
 /// Those of the patches whose rows this rank computes: whole blocks, in turn.
 std::vector<std::uint32_t> share_of(std::span<const std::uint32_t> patches) {
     std::vector<std::uint32_t> own;
@@ -188,11 +203,13 @@ FormFactorMatrix near_pairs(std::vector<ClusteredRow>& rows, std::span<const std
     parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
             RowBlock& block = blocks[b];
+            std::size_t entries = 0;
             for (std::uint32_t local = 0; local < block.rows(); ++local) {
-                ClusteredRow& row = rows[block.first_row + local];
-                for (const ClusterEntry& entry : std::exchange(row.near, {})) {
-                    append(block, entry);
-                }
+                entries += rows[block.first_row + local].near.size();
+            }
+            reserve(block, entries);
+            for (std::uint32_t local = 0; local < block.rows(); ++local) {
+                append(block, std::exchange(rows[block.first_row + local].near, {}));
                 block.begin[local + 1] = block.columns.size();
             }
             matrix.set_block(std::move(block));
@@ -230,7 +247,7 @@ public:
         for (RowBlock& block : blocks) {
             for (std::uint32_t local = 0; local < block.rows(); ++local) {
                 const ClusteredRow& row = rows_[block.first_row + local];
-                block.environment[local] = block.known[local] != 0 ? row.environment + sum_of(row.far) : 0.0;
+                block.environment[local] = block.known[local] != 0 ? row.environment + row.far.sum() : 0.0;
                 block.blocked[local] = block.known[local] != 0 ? row.blocked : 0.0;
             }
             near_.set_block(std::move(block));
@@ -245,14 +262,6 @@ public:
     }
 
 private:
-    static double sum_of(std::span<const ClusterEntry> entries) {
-        double sum = 0.0;
-        for (const ClusterEntry& entry : entries) {
-            sum += static_cast<double>(entry.value);
-        }
-        return sum;
-    }
-
     /// Of a factor F0 V: that of a share of samples that are hidden or not, and of F0.
     [[nodiscard]] double variance(double value, std::uint8_t code) const {
         const double visibility = std::max<double>(code, 0.5) / visibility_clear;
@@ -264,7 +273,7 @@ private:
     /// @param shared  whether the near pairs take their share of what is missing, or are as they stay
     void balance_far(ClusteredRow& row, const RowView& near, bool shared) {
         const double most = std::max(0.0, 1.0 - row.blocked);
-        const double sum = near.sum() + sum_of(row.far);
+        const double sum = near.sum() + row.far.sum();
         if (open_ && row.environment > 0.0) {
             row.environment = std::max(0.0, most - sum);
         }
@@ -273,13 +282,14 @@ private:
         for (std::size_t k = 0; k < near.columns.size() && shared; ++k) {
             variances += variance(static_cast<double>(near.values[k]), near.visibility[k]);
         }
-        for (const ClusterEntry& entry : row.far) {
-            variances += variance(static_cast<double>(entry.value), entry.visibility);
+        for (std::uint32_t k = 0; k < row.far.size(); ++k) {
+            variances += variance(static_cast<double>(row.far[k].value), row.far[k].visibility);
         }
-        for (ClusterEntry& entry : row.far) {
-            const auto value = static_cast<double>(entry.value);
-            entry.value = static_cast<float>(
-                std::max(0.0, value + missing * variance(value, entry.visibility) / variances));
+        for (std::uint32_t k = 0; k < row.far.size(); ++k) {
+            const auto value = static_cast<double>(row.far[k].value);
+            row.far.set_value(
+                k, static_cast<float>(
+                       std::max(0.0, value + missing * variance(value, row.far[k].visibility) / variances)));
         }
     }
 
@@ -343,7 +353,9 @@ private:
             add({near.columns[k], near.values[k], near.visibility[k]});
         }
         const ClusteredRow& row = rows_[i];
-        std::for_each(row.far.begin(), row.far.end(), add);
+        for (std::uint32_t k = 0; k < row.far.size(); ++k) {
+            add(row.far[k]);
+        }
         return evidence_of({columns, values, visibility, row.environment, row.blocked}, row.hides, rule);
     }
 
@@ -379,15 +391,42 @@ bool settle_environment(std::vector<ClusteredRow>& rows, const Evidence& evidenc
 /// there, or not enough. The row's pairs are then reciprocal only as far as visibility is known.
 double last_change(const ClusteredRow& row, double near_sum) {
     constexpr double rounding = 1e-6;
-    double sum = near_sum;
-    for (const ClusterEntry& entry : row.far) {
-        sum += static_cast<double>(entry.value);
-    }
+    const double sum = near_sum + row.far.sum();
     const double missing = 1.0 - row.environment - row.blocked - sum;
     if (!(near_sum > 0.0) || std::abs(missing) < rounding || row.blocked > buried_above) {
         return 1.0;
     }
     return std::max(0.0, 1.0 + missing / near_sum);
+}
+
+/// Near pairs with the far entries of the same rows behind them. Takes these out of the rows.
+RowBlock whole_block(const RowBlock& pairs, std::vector<ClusteredRow>& rows) {
+    RowBlock block;
+    block.first_row = pairs.first_row;
+    block.known = pairs.known;
+    block.begin.assign(1, 0);
+    std::size_t entries = pairs.columns.size();
+    for (std::uint32_t local = 0; local < pairs.rows(); ++local) {
+        entries += rows[pairs.first_row + local].far.size();
+    }
+    reserve(block, entries);
+    for (std::uint32_t local = 0; local < pairs.rows(); ++local) {
+        const ClusteredRow row = std::exchange(rows[pairs.first_row + local], {});
+        double sum = 0.0;
+        for (std::uint64_t k = pairs.begin[local]; k < pairs.begin[local + 1]; ++k) {
+            sum += static_cast<double>(pairs.values[k]);
+        }
+        const double change = last_change(row, sum);
+        for (std::uint64_t k = pairs.begin[local]; k < pairs.begin[local + 1]; ++k) {
+            const double value = change * static_cast<double>(pairs.values[k]);
+            append(block, {pairs.columns[k], static_cast<float>(value), pairs.visibility[k]});
+        }
+        append(block, row.far);
+        block.begin.push_back(block.columns.size());
+        block.environment.push_back(row.environment);
+        block.blocked.push_back(row.blocked);
+    }
+    return block;
 }
 
 /// Areas as far as they exchange light with others: what reaches backs counts for nobody. All of a patch
@@ -439,33 +478,11 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
     RowBalancer(rows, near, mesh, settings.rule, open).run();
     FormFactorMatrix matrix(
         mesh.size(), std::make_shared<SourceClusters>(tree.clusters()->with_weights(seen_areas(rows, mesh))));
-    std::vector<RowBlock> blocks = matrix.take_blocks();
-    parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<RowBlock> pairs = near.take_blocks();
+    parallel_for(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t b = begin; b < end; ++b) {
-            RowBlock& block = blocks[b];
-            for (std::uint32_t local = 0; local < block.rows(); ++local) {
-                const std::uint32_t i = block.first_row + local;
-                if (near.known(i)) {
-                    block.known[local] = 1;
-                    const RowView pairs = near.row(i);
-                    const double change = last_change(rows[i], pairs.sum());
-                    for (std::size_t k = 0; k < pairs.columns.size(); ++k) {
-                        const double value = change * static_cast<double>(pairs.values[k]);
-                        append(block, {pairs.columns[k], static_cast<float>(value), pairs.visibility[k]});
-                    }
-                    for (const ClusterEntry& entry : rows[i].far) {
-                        append(block, entry);
-                    }
-                    block.environment[local] = rows[i].environment;
-                    block.blocked[local] = rows[i].blocked;
-                    rows[i] = {};
-                }
-                block.begin[local + 1] = block.columns.size();
-            }
-            block.columns.shrink_to_fit();
-            block.values.shrink_to_fit();
-            block.visibility.shrink_to_fit();
-            matrix.set_block(std::move(block));
+            const RowBlock of_block = std::exchange(pairs[b], {}); // whose memory is soon needed for others
+            matrix.set_block(whole_block(of_block, rows));
         }
     });
     return matrix;

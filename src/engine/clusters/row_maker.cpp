@@ -43,27 +43,27 @@ SetPlaces::SetPlaces(const PatchSets& sets, const ClusterTree& tree, const Patch
 
 ClusteredRow RowMaker::make(const SeenRow& seen) {
     stand_at(seen.patch);
-    ClusteredRow row{{}, {}, seen.environment, seen.blocked, false};
     for (std::size_t k = 0; k < seen.columns.size(); ++k) {
-        add_patch(row, seen.columns[k],
-                  {static_cast<double>(seen.shares[k]), seen.texels[k] == visibility_clear});
+        add_patch(seen.columns[k], {static_cast<double>(seen.shares[k]), seen.texels[k] == visibility_clear});
     }
     for (const JointVisibility& joint : seen.joint) {
-        add_set(row, joint.set, {static_cast<double>(joint.share), joint.texels == visibility_clear});
+        add_set(joint.set, {static_cast<double>(joint.share), joint.texels == visibility_clear});
     }
     const double mean = known_ == 0 ? 1.0 : shares_ / static_cast<double>(known_);
     for (std::uint32_t part = 0; part < parts_.size(); ++part) {
         if (parts_[part].far) {
-            add_far(row, part, mean);
+            add_far(part, mean);
         } else if (sums_[part].known == 0) {
             const std::uint32_t patch = tree_.clusters()->order()[begins_[part]];
             if (patch != patch_ && may_face(tree_.shape(parts_[part].node))) {
-                add_near(row, patch, {mean, false});
+                add_near(patch, {mean, false});
             }
         }
     }
-    finish(row);
-    return row;
+    const auto by_column = [](const ClusterEntry& a, const ClusterEntry& b) { return a.column < b.column; };
+    std::sort(near_.begin(), near_.end(), by_column);
+    std::sort(far_.begin(), far_.end(), by_column);
+    return {EntryList(near_), EntryList(far_), seen.environment, seen.blocked, hides_};
 }
 
 void RowMaker::stand_at(std::uint32_t patch) {
@@ -71,6 +71,9 @@ void RowMaker::stand_at(std::uint32_t patch) {
     area_ = mesh_.areas()[patch];
     shares_ = 0.0;
     known_ = 0;
+    hides_ = false;
+    near_.clear();
+    far_.clear();
     tree_.seen_from(patch, opening_, parts_);
     begins_.clear();
     sums_.assign(parts_.size(), {});
@@ -100,7 +103,7 @@ std::uint32_t RowMaker::stratum_at(std::uint32_t part, std::uint32_t position) c
                                                           (node.end - node.begin));
 }
 
-void RowMaker::add_patch(ClusteredRow& row, std::uint32_t patch, Share share) {
+void RowMaker::add_patch(std::uint32_t patch, Share share) {
     const std::uint32_t position = tree_.position(patch);
     const std::uint32_t part = part_at(position);
     Sum& sum = sums_[part];
@@ -108,20 +111,20 @@ void RowMaker::add_patch(ClusteredRow& row, std::uint32_t patch, Share share) {
     sum.shares += share.value;
     shares_ += share.value;
     ++known_;
-    row.hides = row.hides || !(share.value > 0.0);
+    hides_ = hides_ || !(share.value > 0.0);
     if (parts_[part].far) {
         add_to_strata(part, position, position, mesh_.areas()[patch], share);
     } else {
-        add_near(row, patch, share);
+        add_near(patch, share);
     }
 }
 
 /// Part by part: those of a far one together.
-void RowMaker::add_set(ClusteredRow& row, std::uint32_t set, Share share) {
+void RowMaker::add_set(std::uint32_t set, Share share) {
     const std::span<const std::uint32_t> positions = places_->of(set);
     shares_ += static_cast<double>(positions.size()) * share.value;
     known_ += positions.size();
-    row.hides = row.hides || !(share.value > 0.0);
+    hides_ = hides_ || !(share.value > 0.0);
     std::uint32_t part = 0;
     for (std::size_t begin = 0; begin < positions.size();) {
         part = part_at(positions[begin], part);
@@ -139,7 +142,7 @@ void RowMaker::add_set(ClusteredRow& row, std::uint32_t set, Share share) {
         if (parts_[part].far) {
             add_to_strata(part, positions[begin], positions[end - 1], places_->area(set, begin, end), share);
         } else {
-            add_near(row, tree_.clusters()->order()[positions[begin]], share);
+            add_near(tree_.clusters()->order()[positions[begin]], share);
         }
         begin = end;
     }
@@ -162,19 +165,19 @@ void RowMaker::add_to_strata(std::uint32_t part, std::uint32_t low, std::uint32_
     sums_[part].clear = sums_[part].clear && (share.clear || !(share.value > 0.0));
 }
 
-void RowMaker::add_near(ClusteredRow& row, std::uint32_t patch, Share share) {
+void RowMaker::add_near(std::uint32_t patch, Share share) {
     if (!(share.value > 0.0)) {
         return;
     }
     const double unoccluded = exchange_(patch_, patch) / area_;
     if (unoccluded > 0.0) {
-        row.near.push_back(
+        near_.push_back(
             {patch, static_cast<float>(unoccluded * share.value), code_of(share.value, share.clear)});
     }
 }
 
 /// @param mean  visibility of all patches that the row tells of
-void RowMaker::add_far(ClusteredRow& row, std::uint32_t part, double mean) {
+void RowMaker::add_far(std::uint32_t part, double mean) {
     const std::uint32_t k = parts_[part].node;
     const SourceClusters::Node& node = tree_.clusters()->nodes()[k];
     const Sum& sum = sums_[part];
@@ -208,17 +211,8 @@ void RowMaker::add_far(ClusteredRow& row, std::uint32_t part, double mean) {
     }
     if (factor > 0.0) {
         const bool clear = sum.clear && sum.known == count;
-        row.far.push_back(
-            {mesh_.size() + k, static_cast<float>(factor), code_of(factor / unoccluded, clear)});
+        far_.push_back({mesh_.size() + k, static_cast<float>(factor), code_of(factor / unoccluded, clear)});
     }
-}
-
-void RowMaker::finish(ClusteredRow& row) {
-    const auto by_column = [](const ClusterEntry& a, const ClusterEntry& b) { return a.column < b.column; };
-    std::sort(row.near.begin(), row.near.end(), by_column);
-    std::sort(row.far.begin(), row.far.end(), by_column);
-    row.near.shrink_to_fit();
-    row.far.shrink_to_fit();
 }
 
 /// Whether some patch of a cluster may have its front towards this one's.

@@ -5,8 +5,10 @@
 #include "hemi/engine/visibility_provider.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -19,17 +21,52 @@ struct ClusterEntry {
     std::uint8_t visibility;
 };
 
+/// Entries of a row, 9 bytes each: all rows together are what takes most of the memory.
+class EntryList {
+public:
+    EntryList() = default;
+    explicit EntryList(std::span<const ClusterEntry> entries)
+        : size_(static_cast<std::uint32_t>(entries.size())),
+          words_(entries.empty() ? nullptr : std::make_unique<std::uint32_t[]>(word_count())) {
+        for (std::uint32_t k = 0; k < size_; ++k) {
+            words_[k] = entries[k].column;
+            set_value(k, entries[k].value);
+            reinterpret_cast<std::uint8_t*>(&words_[2 * std::size_t{size_}])[k] = entries[k].visibility;
+        }
+    }
+
+    [[nodiscard]] std::uint32_t size() const noexcept { return size_; }
+    [[nodiscard]] ClusterEntry operator[](std::uint32_t k) const {
+        return {words_[k], std::bit_cast<float>(words_[size_ + k]),
+                reinterpret_cast<const std::uint8_t*>(&words_[2 * std::size_t{size_}])[k]};
+    }
+    void set_value(std::uint32_t k, float value) { words_[size_ + k] = std::bit_cast<std::uint32_t>(value); }
+    /// Of all values, in double, in their order.
+    [[nodiscard]] double sum() const {
+        double sum = 0.0;
+        for (std::uint32_t k = 0; k < size_; ++k) {
+            sum += static_cast<double>((*this)[k].value);
+        }
+        return sum;
+    }
+    [[nodiscard]] std::size_t bytes() const { return size_ > 0 ? word_count() * sizeof(std::uint32_t) : 0; }
+
+private:
+    [[nodiscard]] std::size_t word_count() const { return 2 * std::size_t{size_} + (size_ + 3) / 4; }
+
+    std::uint32_t size_ = 0;
+    std::unique_ptr<std::uint32_t[]> words_; ///< columns, values, and four codes of visibility in each
+};
+
 /// One row while all are computed.
 struct ClusteredRow {
-    std::vector<ClusterEntry> near; ///< patches, ascending
-    std::vector<ClusterEntry> far;  ///< clusters, ascending
+    EntryList near; ///< patches, ascending
+    EntryList far;  ///< clusters, ascending
     double environment = 0.0;
     double blocked = 0.0;
     bool hides = false; ///< whether it sees nothing of some patch that faces it
 
-    [[nodiscard]] std::size_t bytes() const {
-        return sizeof(ClusteredRow) + (near.capacity() + far.capacity()) * sizeof(ClusterEntry);
-    }
+    [[nodiscard]] std::size_t bytes() const { return sizeof(ClusteredRow) + near.bytes() + far.bytes(); }
 };
 
 /// A row of visibility, kept.
@@ -104,12 +141,11 @@ private:
     void stand_at(std::uint32_t patch);
     [[nodiscard]] std::uint32_t part_at(std::uint32_t position, std::uint32_t not_before = 0) const;
     [[nodiscard]] std::uint32_t stratum_at(std::uint32_t part, std::uint32_t position) const;
-    void add_patch(ClusteredRow& row, std::uint32_t patch, Share share);
-    void add_set(ClusteredRow& row, std::uint32_t set, Share share);
+    void add_patch(std::uint32_t patch, Share share);
+    void add_set(std::uint32_t set, Share share);
     void add_to_strata(std::uint32_t part, std::uint32_t low, std::uint32_t high, double area, Share share);
-    void add_near(ClusteredRow& row, std::uint32_t patch, Share share);
-    void add_far(ClusteredRow& row, std::uint32_t part, double mean);
-    void finish(ClusteredRow& row);
+    void add_near(std::uint32_t patch, Share share);
+    void add_far(std::uint32_t part, double mean);
     [[nodiscard]] bool may_face(const ClusterShape& cluster) const;
 
     const PatchMesh& mesh_;
@@ -125,6 +161,9 @@ private:
     std::vector<std::uint32_t> begins_;    ///< of the parts: positions of their first patches
     std::vector<Sum> sums_;                ///< by part
     std::vector<Stratum> strata_;          ///< part by part
+    bool hides_ = false;                   ///< see ClusteredRow
+    std::vector<ClusterEntry> near_;       ///< of the row, in any order
+    std::vector<ClusterEntry> far_;
 };
 
 } // namespace hemi
