@@ -37,12 +37,13 @@ struct StoredRow {
 
 std::vector<StoredRow> rows_of(const PatchMesh& mesh, const std::vector<SurfacePoint>& points,
                                std::uint32_t shadow_rays, std::uint32_t jobs = 1,
-                               DirectionMeasure measure = DirectionMeasure::projected_solid_angle) {
+                               DirectionMeasure measure = DirectionMeasure::projected_solid_angle,
+                               std::uint32_t resolution = 128, std::uint32_t singly = points_ask_singly) {
     FactorSettings settings;
     settings.engine.device = test_device();
     settings.engine.jobs = jobs;
     HemicubeSettings hemicube;
-    hemicube.resolution = 128;
+    hemicube.resolution = resolution;
     const auto engine = make_point_visibility_provider(mesh, points, hemicube, settings, measure);
     std::vector<StoredRow> rows(points.size());
     compute_point_rows(
@@ -53,8 +54,22 @@ std::vector<StoredRow> rows_of(const PatchMesh& mesh, const std::vector<SurfaceP
                            row.environment,
                            row.blocked};
         },
-        {}, measure);
+        {}, measure, singly);
     return rows;
+}
+
+/// A square of ground with blocks of several heights all over it.
+Scene field_of_blocks(std::uint32_t blocks_a_side) {
+    Scene scene = empty_scene();
+    const double side = blocks_a_side;
+    add_polygon(scene, "ground", {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}}, {8, 8});
+    for (std::uint32_t y = 0; y < blocks_a_side; ++y) {
+        for (std::uint32_t x = 0; x < blocks_a_side; ++x) {
+            const double height = 0.1 + 0.1 * ((7 * x + 5 * y) % 6);
+            add_block(scene, "blocks", Vec3(x + 0.3, y + 0.3, 0.0), Vec3(x + 0.7, y + 0.7, height), 1);
+        }
+    }
+    return scene;
 }
 
 } // namespace
@@ -190,6 +205,57 @@ TEST_CASE("point rows: of spheres they are the exact solid angles of what is see
     }
 }
 
+TEST_CASE("point rows: patches too small for a texel give about the same light by parts as one by one",
+          "[engine][every-device]") {
+    const DirectionMeasure measure =
+        GENERATE(DirectionMeasure::projected_solid_angle, DirectionMeasure::solid_angle);
+    Scene scene = field_of_blocks(30);
+    if (measure == DirectionMeasure::solid_angle) {
+        scene = field_of_blocks(15);
+        scene.symmetry.emplace().mirrors = {{0, 0.0}, {1, 0.0}};
+    }
+    const PatchMesh mesh(scene);
+    std::vector<SurfacePoint> points;
+    std::vector<double> light;
+    for (std::uint32_t j = 0; j < mesh.size(); ++j) {
+        const Vec3& at = mesh.centres()[j];
+        light.push_back(1.0 + 0.8 * std::sin(at.x) * std::cos(2.0 * at.y) + 0.5 * mesh.normal(j).z);
+        if (j % 149 == 0 || (j < 64 && j % 3 == 0)) {
+            points.push_back({at + 0.02 * mesh.normal(j), mesh.normal(j), no_surface});
+        }
+    }
+    const auto finely = rows_of(mesh, points, 0, 1, measure, 256);
+    const auto singly = rows_of(mesh, points, 0, 1, measure, 32);
+    const auto by_parts = rows_of(mesh, points, 0, 1, measure, 32, 0);
+    const auto gathered = [&](const StoredRow& row) {
+        double sum = row.environment;
+        for (std::size_t entry = 0; entry < row.columns.size(); ++entry) {
+            sum += static_cast<double>(row.values[entry]) * light[row.columns[entry]];
+        }
+        return sum;
+    };
+    double all = 0.0;
+    double error_singly = 0.0;
+    double error_by_parts = 0.0;
+    double change = 0.0;
+    std::size_t entries = 0;
+    std::size_t entries_by_parts = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        REQUIRE(by_parts[k].sum() + by_parts[k].environment + by_parts[k].blocked ==
+                Approx(1.0).margin(1e-6));
+        REQUIRE(std::is_sorted(by_parts[k].columns.begin(), by_parts[k].columns.end()));
+        all += std::pow(gathered(finely[k]), 2.0);
+        error_singly += std::pow(gathered(singly[k]) - gathered(finely[k]), 2.0);
+        error_by_parts += std::pow(gathered(by_parts[k]) - gathered(finely[k]), 2.0);
+        change += std::pow(gathered(singly[k]) - gathered(by_parts[k]), 2.0);
+        entries += singly[k].columns.size();
+        entries_by_parts += by_parts[k].columns.size();
+    }
+    CHECK(std::sqrt(change / all) < (measure == DirectionMeasure::solid_angle ? 2e-3 : 3e-4));
+    CHECK(std::sqrt(error_by_parts) < 1.03 * std::sqrt(error_singly));
+    CHECK(10 * entries_by_parts < 9 * entries);
+}
+
 TEST_CASE("point rows: the same bits by one and by two jobs", "[engine][every-device]") {
     const PatchMesh mesh(room_with_blocks(4));
     std::vector<SurfacePoint> points;
@@ -197,8 +263,10 @@ TEST_CASE("point rows: the same bits by one and by two jobs", "[engine][every-de
         const std::uint32_t patch = i * (mesh.size() - 1) / 199;
         points.push_back({mesh.centres()[patch], mesh.normal(patch), mesh.surface_of()[patch]});
     }
-    const auto one = rows_of(mesh, points, 16, 1);
-    const auto two = rows_of(mesh, points, 16, 2);
+    const std::uint32_t singly = GENERATE(0u, points_ask_singly);
+    const auto measure = DirectionMeasure::projected_solid_angle;
+    const auto one = rows_of(mesh, points, 16, 1, measure, 128, singly);
+    const auto two = rows_of(mesh, points, 16, 2, measure, 128, singly);
     for (std::size_t k = 0; k < points.size(); ++k) {
         REQUIRE(one[k].columns == two[k].columns);
         REQUIRE(one[k].values == two[k].values);

@@ -44,6 +44,9 @@ make_point_visibility_engine(const PatchMesh& mesh, std::span<const SurfacePoint
 /// Receives the row of point `index`: factors from it to the patches. The view is valid during the call only.
 using PointRowSink = std::function<void(std::uint32_t index, const RowView& row)>;
 
+/// Patches of a scene up to which each that no texel covers is asked for its factor from a point.
+inline constexpr std::uint32_t points_ask_singly = 32768;
+
 /// Factors from points to all patches, as F(k, j) = F0(k, j)·V(k, j): what a small area at the point and
 /// facing along its normal sees of patch j. F0 is exact or by Gauss points (ExchangeAreas::at_point), V is
 /// the visible share of the texels that j covers in the point's hemicube, with shadow rays to those few
@@ -51,6 +54,10 @@ using PointRowSink = std::function<void(std::uint32_t index, const RowView& row)
 /// nothing of the environment is seen (as compute_visibility_weighted() has it) the factors are scaled for
 /// it, else e is what is left. Rows of small spheres are shares of the full solid angle: F0 is then the exact
 /// solid angle of the patch over 4 pi.
+///
+/// In scenes of many patches those that no texel covers are taken by parts of the scene: near ones singly, of
+/// a part far away up to 16 that stand for all. What a row costs then depends on what texels cover, and
+/// hardly on N; gathered light changes by less than 0.1 % (rms).
 /// @param visibility  see make_point_visibility_engine()
 /// @param mesh        N patches
 /// @param points      that `visibility` is of
@@ -60,11 +67,13 @@ using PointRowSink = std::function<void(std::uint32_t index, const RowView& row)
 /// @param sink        gets the rows, block by block in any order; not from several threads at once
 /// @param progress    called after every batch of rows; may be empty
 /// @param measure     that `visibility` was made with
+/// @param singly      patches, with their images, up to which all are taken singly
 /// @throws Cancelled; InvalidArgument if `weights` does not fit
 void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
                         std::span<const SurfacePoint> points, const VisibilityWeightedSettings& settings,
                         Enclosure enclosure, std::span<const double> weights, const PointRowSink& sink,
                         const Progress& progress = {},
-                        DirectionMeasure measure = DirectionMeasure::projected_solid_angle);
+                        DirectionMeasure measure = DirectionMeasure::projected_solid_angle,
+                        std::uint32_t singly = points_ask_singly);
 
 } // namespace hemi

@@ -45,6 +45,20 @@ double angle_between(const Vec3& a, const Vec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
+/// Whether some patch of a cluster may have its front towards a point, and be above the point's horizon.
+bool may_face(const ClusterShape& cluster, const Vec3& at, const std::optional<Vec3>& normal) {
+    const Vec3 way = at - cluster.centre;
+    if (normal && glm::dot(way, *normal) >= cluster.radius) {
+        return false;
+    }
+    const double distance = glm::length(way);
+    if (distance <= cluster.radius) {
+        return true;
+    }
+    const double cosine = std::clamp(glm::dot(way, cluster.axis) / distance, -1.0, 1.0);
+    return std::acos(cosine) - cluster.cone - std::asin(cluster.radius / distance) < 0.5 * std::numbers::pi;
+}
+
 struct Tree {
     std::vector<std::uint32_t> order;
     std::vector<SourceClusters::Node> nodes;
@@ -196,6 +210,32 @@ void ClusterTree::seen_from(std::uint32_t patch, double opening, std::vector<Par
         // Both radii: what is near one way is near the other way, too. A part of a far cluster is smaller and
         // not nearer.
         const bool far = shape.one_direction && std::max(receiver.radius, shape.radius) < opening * gap;
+        if (far || child == 0) {
+            parts.push_back({k, far});
+        } else {
+            open.push_back(child + 1);
+            open.push_back(child);
+        }
+    }
+}
+
+void ClusterTree::seen_from(const Vec3& at, const std::optional<Vec3>& normal, double opening,
+                            std::vector<Part>& parts) const {
+    parts.clear();
+    std::vector<std::uint32_t> open;
+    if (!shapes_.empty()) {
+        open.push_back(0);
+    }
+    while (!open.empty()) {
+        const std::uint32_t k = open.back();
+        open.pop_back();
+        const ClusterShape& shape = shapes_[k];
+        if (!may_face(shape, at, normal)) {
+            continue;
+        }
+        const std::uint32_t child = clusters_->nodes()[k].child;
+        const double gap = glm::distance(at, shape.centre) - shape.radius;
+        const bool far = shape.one_direction && shape.radius < opening * gap;
         if (far || child == 0) {
             parts.push_back({k, far});
         } else {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,14 @@ public:
     ///   their spheres
     /// @param parts    overwritten
     void seen_from(std::uint32_t patch, double opening, std::vector<Part>& parts) const;
+
+    /// How a point sees the patches: nodes in the order of their patches, far ones and single patches. Those
+    /// of which nothing can face the point are left out.
+    /// @param normal   of the point, of unit length; without it sees all ways
+    /// @param opening  a cluster is far where its radius is below this share of its sphere's distance
+    /// @param parts    overwritten
+    void seen_from(const Vec3& at, const std::optional<Vec3>& normal, double opening,
+                   std::vector<Part>& parts) const;
 
 private:
     std::vector<ClusterShape> shapes_;
