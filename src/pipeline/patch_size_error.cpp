@@ -5,8 +5,8 @@
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/display/vertex_colours.hpp"
-#include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/matrix/error_estimate.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 #include "hemi/pipeline/daylight.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/solver/solver.hpp"
@@ -14,8 +14,8 @@
 #include "pipeline/error_sample.hpp"
 #include "pipeline/group_factor_errors.hpp"
 #include "pipeline/group_importance.hpp"
-#include "pipeline/image_count.hpp"
 #include "pipeline/patch_error_model.hpp"
+#include "pipeline/quarter_rows.hpp"
 #include "pipeline/vertex_bends.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
@@ -26,6 +26,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -45,21 +46,6 @@ constexpr double least_doubt = 0.03;
 constexpr double widest_sharp_sun = 1.0;
 // Variance of a linear field over that of its means over four equal parts.
 constexpr double linear_over_quarters = 4.0 / 3.0;
-
-/// At most what rows of factors with visibility and their table of pairs take, and the finer mesh.
-std::uint64_t bytes_of(std::uint64_t rows, std::uint64_t columns) {
-    constexpr std::uint64_t pair = 4 + 9;
-    constexpr std::uint64_t patch = 500; // with what the engine knows of it
-    return rows * columns * pair + columns * patch;
-}
-
-/// Progress of one of four parts of the estimate: rows, pairs, factors, importance for groups.
-Progress part(Observer& observer, std::size_t index) {
-    return [&observer, index](std::size_t done, std::size_t total) {
-        return observer.progress(Phase::patch_size, 25 * index + 25 * done / std::max<std::size_t>(total, 1),
-                                 100);
-    };
-}
 
 class PatchSizeEstimator {
 public:
@@ -94,15 +80,10 @@ public:
     [[nodiscard]] std::optional<PatchSizeError> run(const FactorSettings& settings, Gather gather,
                                                     double effort, Observer& observer) {
         const std::vector<DrawnPatch> sample = draw(effort);
-        const auto [fine, parents] = mesh_.split(all_patches(mesh_.size()), Cut::in_four);
-        const std::vector<std::array<std::uint32_t, 4>> quarters = find_quarters(sample, parents);
-        std::vector<std::uint32_t> rows;
-        for (const auto& four : quarters) {
-            rows.insert(rows.end(), four.begin(), four.end());
-        }
-        std::sort(rows.begin(), rows.end());
-        if (const auto bytes = bytes_of(rows.size(), fine.size() * image_count(fine));
-            bytes > memory_limit(settings)) {
+        const bool clusters = factors_.matrix.clusters() != nullptr;
+        cut_ = cut_sample(mesh_, sample, !clusters);
+        const std::uint64_t bytes = quarter_row_bytes(*cut_, clusters);
+        if (bytes > memory_limit(settings)) {
             observer.warning(fmt::format("what the patches' size does is not estimated: that needs about {}",
                                          memory_text(bytes)),
                              "max-memory");
@@ -112,18 +93,16 @@ public:
         if (gather == Gather::on && solution_.vertex_radiosity.empty()) {
             gather_sample(sample, settings, observer);
         }
-        RowPlan plan = plan_rows(settings, mesh_.size());
-        plan.hemicube.seed = ~plan.hemicube.seed; // not the rows that the solution rests on
-        const auto engine = make_visibility_provider(fine, plan.hemicube, settings);
-        const FormFactorMatrix factors =
-            compute_visibility_weighted(*engine, fine, rows, {ExchangeRule::standard, 0}, scene_.enclosure,
-                                        part(observer, 0), part(observer, 1), part(observer, 2));
-        direct_ = direct_irradiances(scene_, fine, factors, rows);
-        rows_ = std::move(rows);
-        if (factors_.matrix.clusters() == nullptr) { // one-way rows cannot be solved backwards
-            find_importance(bytes_of(rows_.size(), fine.size() * image_count(fine)), settings, observer);
+        const FormFactorMatrix factors = compute_quarter_rows(*cut_, plan_rows(settings, mesh_.size()),
+                                                              settings, scene_.enclosure, clusters, observer);
+        direct_ = direct_irradiances(scene_, cut_->mesh, factors, cut_->rows);
+        if (clusters) { // rows that cannot be solved backwards
+            observer.detail("errors of groups are not estimated where far patches stand in clusters");
+        } else {
+            find_importance(bytes, settings, observer);
         }
-        find_variation(fine, parents);
+        find_sources(factors.clusters().get());
+        find_variation(factors.clusters().get());
         std::vector<SampledErrors> vertices(channels_);
         std::vector<SampledErrors> field(channels_);
         std::vector<SampledSum> groups(std::size_t{importance_.groups()} * channels_);
@@ -134,7 +113,7 @@ public:
                 before.push_back(vertices[c].squares());
                 before.push_back(field[c].squares());
             }
-            add_patch(sample[k], quarters[k], fine, parents, factors, vertices, field, groups);
+            add_patch(sample[k], cut_->quarters[k], factors, vertices, field, groups);
             const double area = sample[k].weight * mesh_.areas()[sample[k].patch];
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 squares.push_back(vertices_over_quarters() * (vertices[c].squares() - before[2 * c]) / area);
@@ -224,22 +203,6 @@ private:
         const double count = effort * std::clamp(sampled_share * static_cast<double>(patches_.size()),
                                                  min_sampled, max_sampled);
         return draw_sample(patches_, importance, count);
-    }
-
-    static std::vector<std::array<std::uint32_t, 4>>
-    find_quarters(const std::vector<DrawnPatch>& sample, const std::vector<std::uint32_t>& parents) {
-        std::vector<std::array<std::uint32_t, 4>> quarters(sample.size());
-        std::vector<std::uint32_t> found(sample.size(), 0);
-        for (std::uint32_t k = 0; k < parents.size(); ++k) {
-            const auto drawn = std::lower_bound(
-                sample.begin(), sample.end(), parents[k],
-                [](const DrawnPatch& entry, std::uint32_t patch) { return entry.patch < patch; });
-            if (drawn != sample.end() && drawn->patch == parents[k]) {
-                const auto index = static_cast<std::size_t>(drawn - sample.begin());
-                quarters[index][found[index]++ % 4] = k;
-            }
-        }
-        return quarters;
     }
 
     /// What makes the error of a patch large, squared and absolute: how fast the radiosity changes there, how
@@ -362,7 +325,8 @@ private:
             return;
         }
         try {
-            importance_ = GroupImportance(factors_, reflectance_, channels_, part(observer, 3));
+            importance_ =
+                GroupImportance(factors_, reflectance_, channels_, quarter_of_progress(observer, 3));
         } catch (const NotConverged& error) {
             observer.detail(fmt::format("errors of groups are not estimated: {}", error.what()));
             return;
@@ -379,13 +343,12 @@ private:
 
     /// What a quarter gets of a field of the patches by its own row. What the row's factors miss of the share
     /// that its texels leave for them is made up for.
-    /// @param field  values of a patch, as many for each
+    /// @param field  values of a column, as many for each
     template <class Field>
-    static std::vector<double> gathered(const RowView& row, const std::vector<std::uint32_t>& parents,
-                                        std::size_t values, const Field& field) {
+    static std::vector<double> gathered(const RowView& row, std::size_t values, const Field& field) {
         std::vector<double> light(values, 0.0);
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            const std::span<const double> source = field(parents[row.columns[k]]);
+            const std::span<const double> source = field(row.columns[k]);
             for (std::size_t c = 0; c < values; ++c) {
                 light[c] += static_cast<double>(row.values[k]) * source[c];
             }
@@ -399,10 +362,9 @@ private:
     }
 
     /// G of a quarter, a value a channel.
-    [[nodiscard]] std::vector<double> irradiance_at(std::uint32_t quarter, const RowView& row,
-                                                    const std::vector<std::uint32_t>& parents) const {
-        std::vector<double> light = gathered(row, parents, channels_, [this](std::uint32_t patch) {
-            return std::span(solution_.radiosity).subspan(at(patch, 0), channels_);
+    [[nodiscard]] std::vector<double> irradiance_at(std::uint32_t quarter, const RowView& row) const {
+        std::vector<double> light = gathered(row, channels_, [this](std::uint32_t column) {
+            return std::span(sources_).subspan(at(column, 0), channels_);
         });
         for (std::uint32_t c = 0; c < channels_; ++c) {
             light[c] += scene_.environment.empty() ? 0.0 : row.environment * scene_.environment[c];
@@ -415,10 +377,28 @@ private:
         return light;
     }
 
+    /// Means of the clusters behind values of fine patches.
+    void fill_clusters(const SourceClusters* clusters, std::vector<double>& values) const {
+        if (clusters != nullptr) {
+            values.resize((std::size_t{cut_->mesh.size()} + clusters->nodes().size()) * channels_);
+            clusters->fill(values, channels_);
+        }
+    }
+
+    /// What leaves the columns of the quarters' rows.
+    void find_sources(const SourceClusters* clusters) {
+        sources_.reserve(std::size_t{cut_->mesh.size()} * channels_);
+        for (const std::uint32_t parent : cut_->parents) {
+            const auto own = std::span(solution_.radiosity).subspan(at(parent, 0), channels_);
+            sources_.insert(sources_.end(), own.begin(), own.end());
+        }
+        fill_clusters(clusters, sources_);
+    }
+
     /// Of a quarter among those with rows: where its values in direct_ begin.
     [[nodiscard]] std::size_t direct_at(std::uint32_t quarter) const {
-        const auto found = std::lower_bound(rows_.begin(), rows_.end(), quarter);
-        return static_cast<std::size_t>(found - rows_.begin()) * channels_;
+        const auto found = std::lower_bound(cut_->rows.begin(), cut_->rows.end(), quarter);
+        return static_cast<std::size_t>(found - cut_->rows.begin()) * channels_;
     }
 
     /// A part of a quarter in which the light is even, and by how much of the sun's normal irradiance that
@@ -451,36 +431,40 @@ private:
                                      solution_.exitance, solution_.back_face_share);
     }
 
-    /// How the radiosity varies within the patches, where it is known well enough: at gathered vertices. A
-    /// gather takes patches for even, which is the error that it leaves.
-    void find_variation(const PatchMesh& fine, const std::vector<std::uint32_t>& parents) {
+    /// How the radiosity varies within the patches that are cut, where it is known well enough: at gathered
+    /// vertices. A gather takes patches for even, which is the error that it leaves.
+    void find_variation(const SourceClusters* clusters) {
         if (!gathered_) {
             return;
         }
         if (visible_.empty()) {
             find_visible();
         }
+        const PatchMesh& fine = cut_->mesh;
         variation_.assign(std::size_t{fine.size()} * channels_, 0.0);
         std::vector<double> means(std::size_t{mesh_.size()} * channels_, 0.0);
         for (std::uint32_t k = 0; k < fine.size(); ++k) {
-            const std::uint32_t patch = parents[k];
+            if (cut_->whole[k] != 0) {
+                continue;
+            }
+            const std::uint32_t patch = cut_->parents[k];
             const auto weights = shown_.weights(patch, fine.corners(k));
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 double value = 0.0;
                 for (std::uint32_t corner = 0; corner < mesh_.corners(patch).count; ++corner) {
                     value += weights[corner] * shown_.at_corner(patch, corner, c);
                 }
-                variation_[std::size_t{k} * channels_ + c] = value;
+                variation_[at(k, c)] = value;
                 means[at(patch, c)] += value * fine.areas()[k] / mesh_.areas()[patch];
             }
         }
         for (std::uint32_t k = 0; k < fine.size(); ++k) {
             for (std::uint32_t c = 0; c < channels_; ++c) {
-                const std::size_t parent = at(parents[k], c);
-                variation_[std::size_t{k} * channels_ + c] +=
-                    visible_[parent] - solution_.radiosity[parent] - means[parent];
+                const std::size_t parent = at(cut_->parents[k], c);
+                variation_[at(k, c)] += visible_[parent] - solution_.radiosity[parent] - means[parent];
             }
         }
+        fill_clusters(clusters, variation_);
     }
 
     /// What a quarter gets of the variation within the patches, a value a channel.
@@ -488,8 +472,7 @@ private:
         std::vector<double> light(channels_, 0.0);
         for (std::size_t k = 0; k < row.columns.size() && !variation_.empty(); ++k) {
             for (std::uint32_t c = 0; c < channels_; ++c) {
-                light[c] += static_cast<double>(row.values[k]) *
-                            variation_[std::size_t{row.columns[k]} * channels_ + c];
+                light[c] += static_cast<double>(row.values[k]) * variation_[at(row.columns[k], c)];
             }
         }
         return light;
@@ -542,16 +525,16 @@ private:
     }
 
     void add_patch(const DrawnPatch& drawn, const std::array<std::uint32_t, 4>& quarters,
-                   const PatchMesh& fine, const std::vector<std::uint32_t>& parents,
                    const FormFactorMatrix& factors, std::vector<SampledErrors>& vertices,
                    std::vector<SampledErrors>& field, std::vector<SampledSum>& groups) const {
         const std::uint32_t patch = drawn.patch;
+        const PatchMesh& fine = cut_->mesh;
         std::array<std::vector<double>, 4> light;
         std::array<double, 4> seen{}; // area that nothing stands on
         std::vector<double> mean(channels_, 0.0);
         for (std::size_t q = 0; q < 4; ++q) {
             const RowView row = factors.row(quarters[q]);
-            light[q] = irradiance_at(quarters[q], row, parents);
+            light[q] = irradiance_at(quarters[q], row);
             seen[q] = fine.areas()[quarters[q]] * (1.0 - covered(patch, row.blocked));
             for (std::uint32_t c = 0; c < channels_; ++c) {
                 mean[c] += light[q][c] * fine.areas()[quarters[q]];
@@ -569,8 +552,9 @@ private:
             if (row.blocked > buried_above) {
                 continue; // nobody sees it; the patch's mean has its part of it all the same
             }
-            const std::vector<double> importance = gathered(
-                row, parents, groups.size(), [this](std::uint32_t source) { return importance_.of(source); });
+            const std::vector<double> importance = gathered(row, groups.size(), [this](std::uint32_t column) {
+                return importance_.of(cut_->parents[column]);
+            });
             const std::vector<double> varying = varying_light(row);
             const auto weights = shown_.weights(patch, fine.corners(quarters[q]));
             const double to_seen = fine.areas()[quarters[q]] / seen[q];
@@ -623,10 +607,11 @@ private:
     std::vector<double> visible_;        // see visible_radiosity(); where vertices are gathered
     std::vector<double> bends_;          // see vertex_bends(); empty: not all vertices are gathered
     GroupImportance importance_;
-    std::vector<double> variation_;   // of fine patches, with their channels; empty: not known
-    std::vector<double> irradiance_;  // of all patches, N·channels; with the importance
-    std::vector<std::uint32_t> rows_; // quarters of the sample, ascending
-    DirectIrradiance direct_;         // of these
+    std::vector<double> variation_;  // of the same columns; empty: not known
+    std::vector<double> irradiance_; // of all patches, N·channels; with the importance
+    std::optional<CutSample> cut_;
+    std::vector<double> sources_; // radiosity of the columns of the quarters' rows, with their channels
+    DirectIrradiance direct_;     // of the quarters
 };
 
 } // namespace

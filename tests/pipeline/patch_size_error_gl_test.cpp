@@ -11,6 +11,7 @@
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/pipeline/vertex_gather.hpp"
+#include "pipeline/quarter_rows.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -466,4 +467,54 @@ TEST_CASE("patch size: groups without an error where there are too many of them"
     REQUIRE(error);
     CHECK(error->groups.empty());
     CHECK(error->field.rms > 0.01);
+}
+
+TEST_CASE(
+    "patch size error: where far patches stand in clusters, cutting the sample and what is near it says "
+    "what cutting all patches does",
+    "[pipeline]") {
+    const Scene scene = lit_room(5, 0.5, 0.2);
+    const Solved all = solved(scene, Preset::standard);
+    FactorSettings settings = settings_of(Preset::standard);
+    settings.clusters = Clusters::on;
+    Solved part{all.mesh, compute_form_factors(scene, all.mesh, settings), {}};
+    part.solution = solve_radiosity(scene, part.mesh, part.factors, {}, no_observer(), true);
+    for (const bool gathered : {false, true}) {
+        if (gathered) {
+            gather_at_vertices(scene, all.mesh, settings, Gather::on, part.solution);
+        }
+        // The same solution and sample, by both kinds of rows.
+        const auto by_all = estimate_patch_size_error(scene, all.mesh, all.factors, part.solution, settings);
+        const auto by_part =
+            estimate_patch_size_error(scene, part.mesh, part.factors, part.solution, settings);
+        REQUIRE(by_all);
+        REQUIRE(by_part);
+        CHECK(by_part->sampled == by_all->sampled);
+        CHECK(by_part->vertices.rms == Approx(by_all->vertices.rms).epsilon(0.05));
+        CHECK(by_part->field.rms == Approx(by_all->field.rms).epsilon(0.05));
+        CHECK(by_part->groups.empty());
+        CHECK(!by_all->groups.empty());
+    }
+    // All pairs of the cut sample would need more.
+    settings.max_memory = std::uint64_t{1} << 20;
+    CHECK(!estimate_patch_size_error(scene, all.mesh, all.factors, part.solution, settings));
+}
+
+TEST_CASE("patch size error: of a large scene only the sample and what is near it is cut", "[pipeline]") {
+    Scene scene = empty_scene();
+    add_room(scene, Vec3(0.0), Vec3(9.0, 9.0, 9.0), 40);
+    const PatchMesh mesh(scene);
+    const std::vector<DrawnPatch> sample{{700, 2.0}, {3000, 5.0}};
+    const CutSample cut = cut_sample(mesh, sample, false);
+    CHECK(cut.mesh.size() < mesh.size() + mesh.size() / 10);
+    REQUIRE(cut.rows.size() == 4 * sample.size());
+    for (std::size_t k = 0; k < sample.size(); ++k) {
+        for (const std::uint32_t quarter : cut.quarters[k]) {
+            CHECK(cut.parents[quarter] == sample[k].patch);
+            CHECK(cut.whole[quarter] == 0);
+            CHECK(4.0 * cut.mesh.areas()[quarter] == Approx(mesh.areas()[sample[k].patch]));
+        }
+    }
+    CHECK(std::count(cut.whole.begin(), cut.whole.end(), 1) > mesh.size() * 9 / 10);
+    CHECK(cut_sample(mesh, sample, true).mesh.size() == 4 * mesh.size());
 }

@@ -32,14 +32,18 @@ namespace hemi {
 /// a shadow of the sun crosses counts as two even parts, unless the sun is wider than a degree; where patches
 /// are as small as half-shadows are wide, that is too much.
 ///
+/// Where far patches stand in clusters (FormFactorMatrix::clusters()), only the sample and what is near it is
+/// cut, and the quarters' rows have clusters, too; errors of groups are not estimated then, and the observer
+/// is told.
+///
 /// Not included: errors of form factors; what the errors of other patches change in a patch's mean, which is
 /// of second order; whatever four rows do not see, such as light that falls through a gap between them.
 /// Quarters under other geometry do not count; of those that something stands on partly, the rest does.
 /// Memory: up to 768 rows over 4 N patches, 13 bytes an entry, and 8 bytes a patch, channel and group of up
-/// to 64. Source: I. H. Sloan, "Improvement by iteration for compact operator equations", Mathematics of
-/// Computation 30, 1976; M. F. Cohen et al., "An Efficient Radiosity Approach for Realistic Image Synthesis",
-/// IEEE CG&A 6, 1986 (patches as sources, their parts as receivers); B. Smits, J. Arvo, D. Salesin, "An
-/// Importance-Driven Radiosity Algorithm", SIGGRAPH 1992.
+/// to 64; with clusters less than 1 kB a patch. Source: I. H. Sloan, "Improvement by iteration for compact
+/// operator equations", Mathematics of Computation 30, 1976; M. F. Cohen et al., "An Efficient Radiosity
+/// Approach for Realistic Image Synthesis", IEEE CG&A 6, 1986 (patches as sources, their parts as receivers);
+/// B. Smits, J. Arvo, D. Salesin, "An Importance-Driven Radiosity Algorithm", SIGGRAPH 1992.
 /// @param scene     what the mesh was made of; gives reflectances
 /// @param mesh      N patches
 /// @param factors   N rows, those that the solution rests on
