@@ -473,11 +473,13 @@ TEST_CASE(
     "patch size error: where far patches stand in clusters, cutting the sample and what is near it says "
     "what cutting all patches does",
     "[pipeline]") {
-    const Scene scene = lit_room(5, 0.5, 0.2);
-    const Solved all = solved(scene, Preset::standard);
+    const Scene scene = lit_room(7, 0.5, 0.2);
     FactorSettings settings = settings_of(Preset::standard);
+    settings.engine.device = "cpu";
+    const PatchMesh mesh(scene);
+    const Solved all{mesh, compute_form_factors(scene, mesh, settings), {}};
     settings.clusters = Clusters::on;
-    Solved part{all.mesh, compute_form_factors(scene, all.mesh, settings), {}};
+    Solved part{mesh, compute_form_factors(scene, mesh, settings), {}};
     part.solution = solve_radiosity(scene, part.mesh, part.factors, {}, no_observer(), true);
     for (const bool gathered : {false, true}) {
         if (gathered) {
