@@ -36,6 +36,9 @@ constexpr std::uint32_t resolution_factor = 2;
 /// Corners that differ from their patch by less are not worth a gather; see corners_differ().
 constexpr double least_change = 2e-3;
 
+/// With more patches a picture shows most in a few pixels each: they are not worth a gather by itself.
+constexpr std::uint32_t most_gathered = 250'000;
+
 /// Rows that are kept: those of all points, one after the other.
 struct KeptRows {
     std::vector<std::vector<std::uint32_t>> columns;
@@ -336,7 +339,7 @@ bool should_gather(Gather wanted, const FactorSettings& settings, const PatchMes
         return wanted == Gather::on;
     }
     return settings.method == Method::hemicube && settings.preset != Preset::plain &&
-           settings.preset != Preset::fast && corners_differ(mesh, solution);
+           settings.preset != Preset::fast && mesh.size() <= most_gathered && corners_differ(mesh, solution);
 }
 
 void gather_at_vertices(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,

@@ -45,20 +45,6 @@ double angle_between(const Vec3& a, const Vec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-/// Whether some patch of a cluster may have its front towards a point, and be above the point's horizon.
-bool may_face(const ClusterShape& cluster, const Vec3& at, const std::optional<Vec3>& normal) {
-    const Vec3 way = at - cluster.centre;
-    if (normal && glm::dot(way, *normal) >= cluster.radius) {
-        return false;
-    }
-    const double distance = glm::length(way);
-    if (distance <= cluster.radius) {
-        return true;
-    }
-    const double cosine = std::clamp(glm::dot(way, cluster.axis) / distance, -1.0, 1.0);
-    return std::acos(cosine) - cluster.cone - std::asin(cluster.radius / distance) < 0.5 * std::numbers::pi;
-}
-
 struct Tree {
     std::vector<std::uint32_t> order;
     std::vector<SourceClusters::Node> nodes;
@@ -178,6 +164,20 @@ private:
 
 } // namespace
 
+bool may_face(const ClusterShape& cluster, const Vec3& at, const std::optional<Vec3>& normal, double reach) {
+    const Vec3 way = at - cluster.centre;
+    if (normal && glm::dot(way, *normal) >= cluster.radius) {
+        return false;
+    }
+    const double distance = glm::length(way);
+    const double size = cluster.radius + reach;
+    if (distance <= size) {
+        return true;
+    }
+    const double cosine = std::clamp(glm::dot(way, cluster.axis) / distance, -1.0, 1.0);
+    return std::acos(cosine) - cluster.cone - std::asin(size / distance) < 0.5 * std::numbers::pi;
+}
+
 ClusterTree::ClusterTree(const PatchMesh& mesh) : position_(mesh.size()), leaf_of_(mesh.size()) {
     Tree built = Builder(mesh).build();
     shapes_ = std::move(built.shapes);
@@ -230,7 +230,7 @@ void ClusterTree::seen_from(const Vec3& at, const std::optional<Vec3>& normal, d
         const std::uint32_t k = open.back();
         open.pop_back();
         const ClusterShape& shape = shapes_[k];
-        if (!may_face(shape, at, normal)) {
+        if (!may_face(shape, at, normal, 0.0)) {
             continue;
         }
         const std::uint32_t child = clusters_->nodes()[k].child;

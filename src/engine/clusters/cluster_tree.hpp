@@ -21,6 +21,13 @@ struct ClusterShape {
     bool one_direction = true; ///< whether the cone is narrow enough for one source
 };
 
+/// Whether some patch of a cluster may have its front towards a receiver, and be above its horizon.
+/// @param at      middle of the receiver, scene units
+/// @param normal  of it, of unit length; without it looks all ways
+/// @param reach   radius of a sphere about its middle that holds it, scene units
+[[nodiscard]] bool may_face(const ClusterShape& cluster, const Vec3& at, const std::optional<Vec3>& normal,
+                            double reach);
+
 /// Clusters of the patches of a mesh by direction and place. A receiver sees a patch far away in the largest
 /// cluster that is small and far enough to be one source. What is near is so both ways, so that pairs near
 /// each other can be made reciprocal.

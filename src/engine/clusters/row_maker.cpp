@@ -55,7 +55,7 @@ ClusteredRow RowMaker::make(const SeenRow& seen) {
             add_far(part, mean);
         } else if (sums_[part].known == 0) {
             const std::uint32_t patch = tree_.clusters()->order()[begins_[part]];
-            if (patch != patch_ && may_face(tree_.shape(parts_[part].node))) {
+            if (patch != patch_ && may_face_part(part)) {
                 add_near(patch, {mean, false});
             }
         }
@@ -182,7 +182,7 @@ void RowMaker::add_far(std::uint32_t part, double mean) {
     const SourceClusters::Node& node = tree_.clusters()->nodes()[k];
     const Sum& sum = sums_[part];
     const std::uint32_t count = node.end - node.begin;
-    const double share = sum.known == 0      ? (may_face(tree_.shape(k)) ? mean : 0.0)
+    const double share = sum.known == 0      ? (may_face_part(part) ? mean : 0.0)
                          : sum.known < count ? sum.shares / sum.known
                                              : 0.0;
     if (!(sum.shares > 0.0) && !(share > 0.0)) {
@@ -215,20 +215,10 @@ void RowMaker::add_far(std::uint32_t part, double mean) {
     }
 }
 
-/// Whether some patch of a cluster may have its front towards this one's.
-bool RowMaker::may_face(const ClusterShape& cluster) const {
-    const Vec3 here = mesh_.centres()[patch_];
-    if (glm::dot(cluster.centre - here, mesh_.normal(patch_)) <= -cluster.radius) {
-        return false;
-    }
-    const Vec3 way = here - cluster.centre;
-    const double distance = glm::length(way);
-    const double size = cluster.radius + tree_.radius_of(patch_);
-    if (distance <= size) {
-        return true;
-    }
-    const double cosine = std::clamp(glm::dot(way, cluster.axis) / distance, -1.0, 1.0);
-    return std::acos(cosine) - cluster.cone - std::asin(size / distance) < 0.5 * std::numbers::pi;
+/// Whether some patch of a part may have its front towards this one's.
+bool RowMaker::may_face_part(std::uint32_t part) const {
+    return may_face(tree_.shape(parts_[part].node), mesh_.centres()[patch_], mesh_.normal(patch_),
+                    tree_.radius_of(patch_));
 }
 
 } // namespace hemi

@@ -146,7 +146,7 @@ private:
     void add_to_strata(std::uint32_t part, std::uint32_t low, std::uint32_t high, double area, Share share);
     void add_near(std::uint32_t patch, Share share);
     void add_far(std::uint32_t part, double mean);
-    [[nodiscard]] bool may_face(const ClusterShape& cluster) const;
+    [[nodiscard]] bool may_face_part(std::uint32_t part) const;
 
     const PatchMesh& mesh_;
     const ClusterTree& tree_;
