@@ -3,6 +3,7 @@
 #include "hemi/matrix/form_factor_matrix.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -57,18 +58,16 @@ void visit_pairs(std::span<const RowBlock> blocks, std::uint32_t first, std::uin
     constexpr std::uint32_t block_rows = FormFactorMatrix::block_rows;
     // Rows i are taken by the tile, few enough for the caches. Row j's entries in the columns of a tile lie
     // side by side; each of them moves the cursor of its row i on to column j.
+    constexpr std::uint32_t tile_rows = 256;
     if (first >= last) {
         return;
     }
     const std::uint32_t size = blocks.back().first_row + blocks.back().rows();
-    // Every tile looks at all rows: of very many rows more are taken at once.
-    constexpr std::uint32_t many_rows = 1u << 17;
-    const std::uint32_t tile_rows = size < many_rows ? 256 : 4096;
     std::vector<std::uint64_t> left(size - first); // next entry of row j left of its diagonal
     for (std::uint32_t j = first; j < size; ++j) {
         left[j - first] = first_from(block_of(blocks, j), j % block_rows, first);
     }
-    std::vector<std::uint64_t> right(tile_rows); // next entry of row i right of its diagonal
+    std::array<std::uint64_t, tile_rows> right{}; // next entry of row i right of its diagonal
     for (std::uint32_t tile = first; tile < last; tile += std::min(tile_rows, last - tile)) {
         const std::uint32_t tile_end = tile + std::min(tile_rows, last - tile);
         for (std::uint32_t i = tile; i < tile_end; ++i) {
