@@ -67,6 +67,10 @@ void visit_pairs(std::span<const RowBlock> blocks, std::uint32_t first, std::uin
     for (std::uint32_t j = first; j < size; ++j) {
         left[j - first] = first_from(block_of(blocks, j), j % block_rows, first);
     }
+    // Least column of these entries in each block: tiles pass over blocks that have none of theirs, so that
+    // sparse matrices of many rows take no longer than their entries. At first every block is looked at.
+    constexpr std::uint32_t none = ~std::uint32_t{0};
+    std::vector<std::uint32_t> next_column(blocks.size(), 0);
     std::array<std::uint64_t, tile_rows> right{}; // next entry of row i right of its diagonal
     for (std::uint32_t tile = first; tile < last; tile += std::min(tile_rows, last - tile)) {
         const std::uint32_t tile_end = tile + std::min(tile_rows, last - tile);
@@ -85,18 +89,29 @@ void visit_pairs(std::span<const RowBlock> blocks, std::uint32_t first, std::uin
             }
             return k < end && block.columns[k] == j;
         };
-        for (std::uint32_t j = tile + 1; j < size; ++j) {
-            const RowBlock& block = block_of(blocks, j);
-            const std::uint64_t end = block.begin[j % block_rows + 1];
-            const std::uint32_t column_end = std::min(tile_end, j);
-            std::uint64_t& k = left[j - first];
-            for (; k < end && block.columns[k] < column_end; ++k) {
-                const std::uint32_t i = block.columns[k];
-                if (is_known(blocks, i)) {
-                    const bool partner = pass_until(i, j);
-                    visit(i, partner ? right[i - tile]++ : not_stored, j, k);
+        for (std::size_t b = (tile + 1) / block_rows; b < blocks.size(); ++b) {
+            if (next_column[b] >= tile_end) {
+                continue;
+            }
+            const RowBlock& block = blocks[b];
+            std::uint32_t least = none;
+            for (std::uint32_t j = std::max(tile + 1, block.first_row); j < block.first_row + block.rows();
+                 ++j) {
+                const std::uint64_t end = block.begin[j % block_rows + 1];
+                const std::uint32_t column_end = std::min(tile_end, j);
+                std::uint64_t& k = left[j - first];
+                for (; k < end && block.columns[k] < column_end; ++k) {
+                    const std::uint32_t i = block.columns[k];
+                    if (is_known(blocks, i)) {
+                        const bool partner = pass_until(i, j);
+                        visit(i, partner ? right[i - tile]++ : not_stored, j, k);
+                    }
+                }
+                if (k < end && block.columns[k] < j) {
+                    least = std::min(least, block.columns[k]);
                 }
             }
+            next_column[b] = least;
         }
         for (std::uint32_t i = tile; i < tile_end; ++i) {
             (void)pass_until(i, size);
