@@ -6,6 +6,7 @@
 #include "hemi/io/result_file.hpp"
 #include "hemi/io/scene_reader.hpp"
 #include "hemi/io/table_file.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 #include "io/factors/checkpoint_file.hpp"
 
 #include <zlib.h>
@@ -17,6 +18,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 
 /// Gives bytes to one reader, as a file. Whatever they are, it must read them or throw InputError.
@@ -88,6 +90,14 @@ void seed_hff(const fs::path& folder) {
     io::write_hff(folder / "judged.hff", file);
     file.cuts = {{{1, 1}}, {{{1, 0, 0}, {1, 0, 1}}}};
     io::write_hff(folder / "cut.hff", file);
+    const auto clusters = std::make_shared<const SourceClusters>(
+        std::vector<std::uint32_t>{1, 0}, std::vector<SourceClusters::Node>{{0, 2, 1}, {0, 1, 0}, {1, 2, 0}},
+        std::vector<double>{1.0, 0.5});
+    std::vector<RowBlock> blocks = file.matrix.take_blocks();
+    blocks[0].columns[0] = 2;
+    file.matrix = FormFactorMatrix(2, clusters);
+    file.matrix.set_block(std::move(blocks[0]));
+    io::write_hff(folder / "clusters.hff", file);
 }
 
 void seed_part(const fs::path& folder) {

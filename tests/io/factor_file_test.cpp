@@ -1,9 +1,12 @@
 #include "hemi/io/factor_file.hpp"
 
 #include "chunk_surgery.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 #include "io_fixtures.hpp"
 
+#include <cmath>
 #include <limits>
+#include <memory>
 
 namespace hemi::io_test {
 
@@ -160,6 +163,65 @@ TEST_CASE("HFF: how patches of a refined mesh are cut is kept, and must fit", "[
     require_parts(refusal(5, 0, 6), {"chunk CUTS: more parts than the 5 patches"});
     file.cuts.parts.pop_back();
     REQUIRE_THROWS_AS(io::write_hff(folder / "b.hff", file), InvalidArgument);
+}
+
+TEST_CASE("HFF: clusters are kept bit for bit, and must be a tree of all patches", "[io]") {
+    const Folder folder;
+    FormFactors file = judged_sample(4);
+    const auto clusters = std::make_shared<const SourceClusters>(
+        std::vector<std::uint32_t>{2, 0, 1, 3},
+        std::vector<SourceClusters::Node>{
+            {0, 4, 1}, {0, 2, 3}, {2, 4, 5}, {0, 1, 0}, {1, 2, 0}, {2, 3, 0}, {3, 4, 0}},
+        std::vector<double>{1.0, 2.0, 0.1, 6.0});
+    file.matrix = FormFactorMatrix(4, clusters);
+    RowBlock block;
+    block.begin = {0, 2, 3, 3, 3};
+    block.columns = {1, 6, 5};
+    block.values = {0.25F, 0.5F, 0.75F};
+    block.environment = {0.25, 0.25, 1.0, 1.0};
+    block.blocked.assign(4, 0.0);
+    block.known.assign(4, 1);
+    file.matrix.set_block(std::move(block));
+    io::write_hff(folder / "a.hff", file);
+    const std::string bytes = io::read_file(folder / "a.hff");
+    const FormFactors read = io::read_hff(folder / "a.hff");
+    require_equal(file, read);
+    REQUIRE(read.matrix.clusters() != nullptr);
+    CHECK(read.matrix.columns() == 11);
+    CHECK(read.matrix.clusters()->share(3, 2) == clusters->share(3, 2));
+    CHECK(read.matrix.clusters()->weight(1) == clusters->weight(1));
+    io::write_hff(folder / "b.hff", read);
+    CHECK(io::read_file(folder / "b.hff") == bytes);
+
+    const auto refuse = [&](const std::string& changed, const std::string& part) {
+        INFO(part);
+        const auto path = folder.write("bad.hff", changed);
+        require_parts(message_of<InputError>([&] { (void)io::read_hff(path); }), {"bad.hff:", part});
+    };
+    const auto tree = [&](std::size_t offset, const auto& value, const std::string& part) {
+        refuse(with_payload(bytes, 4, offset, raw(value)), "chunk TREE: " + part);
+    };
+    tree(0, 0u, "clusters of sources: patch 0 of 4 comes twice, or is none");
+    tree(0, 4u, "clusters of sources: patch 4 of 4 comes twice, or is none");
+    tree(16, 1u, "clusters of sources: node 0 is not what its children make up");
+    tree(16 + 12 + 8, 6u, "clusters of sources: node 1 is not what its children make up");
+    tree(16 + 12 + 8, 0u, "clusters of sources: node 1 is not what its children make up");
+    tree(16 + 84, -1.0, "the weight of patch 0 is -1; must be finite and not negative");
+    tree(16 + 84 + 8, std::nan(""), "the weight of patch 1 is nan");
+    const std::size_t count = bytes.find("\"cluster_nodes\":7") + 16 - chunk_start(bytes, 0) - 16;
+    refuse(with_payload(bytes, 0, count, "9"), "must be 7, as 4 patches have");
+    refuse(with_payload(bytes, 0, count - 16, "\"cluster_xxxxx"), "chunk");
+    refuse(with_payload(bytes, 5, 24 + 5 * 8 + 2 * 32 + 4, raw(11u)), "chunk ROWS: ");
+
+    file.reference = FormFactorMatrix(4, clusters);
+    REQUIRE_THROWS_AS(io::write_hff(folder / "c.hff", file), InvalidArgument);
+    Diagnostics diagnostics;
+    for (const char* const name : {"a.mtx", "a.csv", "a.npz", "a.npy", "a.txt", "a.vf", "a.dat", "a.bin"}) {
+        require_parts(
+            message_of<InvalidArgument>([&] { io::write_factors(folder / name, file, {}, diagnostics); }),
+            {name, "far patches stand in clusters"});
+        CHECK_FALSE(std::filesystem::exists(folder / name));
+    }
 }
 
 TEST_CASE("HFF: equal content gives equal bytes", "[io]") {

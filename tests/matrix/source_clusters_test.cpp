@@ -1,5 +1,6 @@
 #include "hemi/core/error.hpp"
 #include "hemi/matrix/balance.hpp"
+#include "hemi/matrix/expansion.hpp"
 #include "hemi/matrix/product.hpp"
 #include "hemi/matrix/repair.hpp"
 #include "hemi/matrix/source_clusters.hpp"
@@ -88,6 +89,33 @@ TEST_CASE("rows of clusters gather, and share out what comes from a cluster") {
     const GroupFactors groups = group_factors(matrix, std::vector<double>{1.0, 2.0, 3.0, 6.0},
                                               std::vector<std::uint32_t>{0, 1, 1, 1}, 2);
     CHECK(groups.factors[1] == Approx(0.75));
+}
+
+TEST_CASE("rows of clusters are expanded to single patches by weight, if these fit") {
+    const FormFactorMatrix matrix = rows_of_four();
+    CHECK_THROWS_WITH(expand_clusters(matrix, 5 * 8 - 1), Contains("far patches stand in clusters"));
+    const FormFactorMatrix single = expand_clusters(matrix, 5 * 8);
+    CHECK(single.clusters() == nullptr);
+    CHECK(single.columns() == 4);
+    CHECK(single.all_known());
+    const RowView first = single.row(0); // patch 1 on its own and in node 2, with a quarter of its weight
+    CHECK(std::vector<std::uint32_t>(first.columns.begin(), first.columns.end()) ==
+          std::vector<std::uint32_t>{1, 3});
+    CHECK(std::vector<float>(first.values.begin(), first.values.end()) == std::vector<float>{0.375F, 0.375F});
+    CHECK(first.environment == 0.25);
+    const RowView second = single.row(1);
+    CHECK(std::vector<std::uint32_t>(second.columns.begin(), second.columns.end()) ==
+          std::vector<std::uint32_t>{0, 2});
+    CHECK(second.values[0] == 0.1875F);
+    CHECK(second.sum() == Approx(0.75));
+    const std::vector<double> radiosity{10.0, 20.0, 30.0, 40.0};
+    std::vector<double> by_clusters(4);
+    std::vector<double> by_patches(4);
+    multiply(matrix, radiosity, 1, by_clusters);
+    multiply(single, radiosity, 1, by_patches);
+    for (std::size_t i = 0; i < 4; ++i) {
+        CHECK(by_patches[i] == Approx(by_clusters[i]));
+    }
 }
 
 TEST_CASE("what needs pairs of patches refuses clusters") {

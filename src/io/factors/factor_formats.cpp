@@ -95,7 +95,14 @@ const FactorFormat& factor_format(const std::filesystem::path& path) {
 
 void write_factors(const std::filesystem::path& path, const FormFactors& file, const FactorContext& context,
                    Diagnostics& diagnostics) {
-    factor_format(path).write(path, file, context, diagnostics);
+    const FactorFormat& format = factor_format(path);
+    // Groups are summed over clusters exactly; all other formats have a column a patch.
+    if (file.matrix.clusters() != nullptr && format.extension != ".hff" && format.extension != ".idf") {
+        throw InvalidArgument(fmt::format("{}: far patches stand in clusters; {} holds factors of single "
+                                          "patches",
+                                          path.string(), format.extension));
+    }
+    format.write(path, file, context, diagnostics);
 }
 
 FormFactors read_factors(const std::filesystem::path& path) {

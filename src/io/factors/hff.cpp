@@ -1,6 +1,8 @@
 #include "hemi/core/error.hpp"
+#include "hemi/core/text.hpp"
 #include "hemi/io/factor_file.hpp"
 #include "hemi/io/factor_part_file.hpp"
+#include "io/factors/clusters_chunk.hpp"
 #include "io/factors/patch_parts_chunk.hpp"
 #include "io/factors/provenance_json.hpp"
 #include "io/factors/row_block_chunk.hpp"
@@ -22,6 +24,11 @@ namespace {
 
 constexpr ChunkFormat hff_format{"HEMIFF\r\n", 4, "form factors (.hff)"};
 
+/// Whether columns are those of clusters; there are none of no patches.
+bool has_clusters(const FormFactors& file) {
+    return file.matrix.clusters() != nullptr && file.matrix.size() > 0;
+}
+
 Json header(const FormFactors& file) {
     Json head{{"size", file.matrix.size()},
               {"block_rows", FormFactorMatrix::block_rows},
@@ -37,6 +44,9 @@ Json header(const FormFactors& file) {
     if (file.cuts.any()) {
         head["cut_surfaces"] = file.cuts.grids.size();
         head["cut_into_parts"] = !file.cuts.parts.empty();
+    }
+    if (has_clusters(file)) {
+        head["cluster_nodes"] = file.matrix.clusters()->nodes().size();
     }
     if (file.error) {
         const FactorErrorEstimate& error = *file.error;
@@ -72,6 +82,12 @@ void check(const FormFactors& file) {
     if (!file.cuts.parts.empty() && file.cuts.parts.size() != file.cuts.grids.size()) {
         throw InvalidArgument(fmt::format("grids of {} surfaces, and parts of {}", file.cuts.grids.size(),
                                           file.cuts.parts.size()));
+    }
+    if (has_clusters(file) && file.matrix.clusters()->nodes().size() != cluster_nodes(file.matrix.size())) {
+        throw InvalidArgument("clusters of which some are not part of the tree");
+    }
+    if (file.reference.clusters() != nullptr) {
+        throw InvalidArgument("rows of reference with clusters; they must tell single patches apart");
     }
     const bool has_reference = !known_blocks(file.reference).empty();
     if ((has_reference && file.reference.size() != size) || (file.error && file.error->rows.size() != size)) {
@@ -115,6 +131,7 @@ struct Layout {
     std::optional<std::uint32_t> patches;        ///< that rows are parts of
     std::uint64_t cut_surfaces = 0;              ///< of a refined mesh
     bool cut_into_parts = false;                 ///< whether patches of these differ in size
+    bool clusters = false;                       ///< whether columns from N on are those of clusters
 };
 
 /// Everything but the rows. The matrix is made only after the file proved long enough for that many.
@@ -140,6 +157,14 @@ Layout read_header(ChunkReader& reader, FormFactors& file) {
     if (head.has("cut_surfaces")) {
         layout.cut_surfaces = integer32(head.member("cut_surfaces"));
         layout.cut_into_parts = head.member("cut_into_parts").boolean();
+    }
+    if (head.has("cluster_nodes")) {
+        const JsonNode nodes = head.member("cluster_nodes");
+        if (size == 0 || integer32(nodes) != cluster_nodes(size)) {
+            nodes.expect(
+                fmt::format("{}, as {} have", cluster_nodes(size), plural(size, "patch", "patches")));
+        }
+        layout.clusters = true;
     }
     layout.reference_blocks = read_first_rows(head.member("reference_blocks"), size);
 
@@ -202,6 +227,10 @@ Layout read_beginning(ChunkReader& reader, FormFactors& file) {
     if (layout.cut_surfaces > 0) {
         read_cuts(reader, layout, file);
     }
+    if (layout.clusters) {
+        const std::uint32_t size = file.matrix.size();
+        file.matrix = FormFactorMatrix(size, read_clusters(reader.chunk("TREE"), size));
+    }
     return layout;
 }
 
@@ -234,6 +263,9 @@ void write_hff(const std::filesystem::path& path, const FormFactors& file) {
     }
     if (!file.cuts.parts.empty()) {
         writer.chunk("CUTS", {bytes_of(stored_parts(file.cuts.parts))});
+    }
+    if (has_clusters(file)) {
+        write_clusters(writer, *file.matrix.clusters());
     }
     for (const RowBlock& block : file.matrix.blocks()) {
         write_row_block(writer.sink(), "ROWS", block);

@@ -1,5 +1,6 @@
 #include "hemi/core/error.hpp"
 #include "hemi/io/vtp_file.hpp"
+#include "hemi/matrix/product.hpp"
 #include "hemi/scene/thermal_exitance.hpp"
 
 #include <fmt/format.h>
@@ -127,10 +128,8 @@ CellArray row_array(const FormFactors& factors, std::uint32_t patch) {
             throw InvalidArgument(fmt::format("row {} was not computed", patch), {"row"});
         }
         const double share = parts.size() == 1 ? 1.0 : factors.areas[part] / area;
-        const RowView view = matrix.row(part);
-        for (std::size_t k = 0; k < view.columns.size(); ++k) {
-            array.values[view.columns[k]] += share * static_cast<double>(view.values[k]);
-        }
+        visit_sources(matrix, matrix.row(part),
+                      [&](std::uint32_t j, double factor) { array.values[j] += share * factor; });
     }
     return array;
 }
