@@ -2,6 +2,7 @@
 #include "hemi/io/paths.hpp"
 #include "hemi/io/vtp_file.hpp"
 #include "hemi/matrix/balance.hpp"
+#include "hemi/matrix/expansion.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
@@ -85,6 +86,7 @@ FactorsPointer prepared(ScenePointer scene, FormFactors raw, const FactorSetting
     result->factors = raw;
     result->raw = std::move(raw);
     prepare_form_factors(result->factors, settings.repair, observer);
+    result->factors.matrix = expand_clusters(result->factors.matrix, memory_limit(settings));
     return result;
 }
 

@@ -130,9 +130,40 @@ def _take_rows(path, payload):
             "known": rows.take("u1", count).astype(bool)}
 
 
+def _take_clusters(path, payload, size):
+    """What shares factors to patches and clusters, columns from `size` on, out among the patches by weight."""
+    tree = _Payload(path, payload)
+    order = tree.take("<u4", size)
+    nodes = tree.take("<u4", 3 * (2 * size - 1)).reshape(-1, 3)
+    weights = tree.take("<f8", size)
+    begin, end = nodes[:, 0].astype(numpy.int64), nodes[:, 1].astype(numpy.int64)
+
+    def spread(columns):
+        """A row for every one of `columns`, its shares of the patches."""
+        is_node = columns >= size
+        node = columns[is_node] - size
+        first = numpy.zeros(len(columns), numpy.int64)
+        last = numpy.ones(len(columns), numpy.int64)
+        first[is_node], last[is_node] = begin[node], end[node]
+        count = last - first
+        offsets = numpy.concatenate([[0], numpy.cumsum(count)])
+        within = numpy.arange(offsets[-1]) - numpy.repeat(offsets[:-1], count) + numpy.repeat(first, count)
+        patches = numpy.where(numpy.repeat(is_node, count), order[within], numpy.repeat(columns, count))
+        weight = numpy.where(numpy.repeat(is_node, count), weights[patches], 1.0)
+        row = numpy.repeat(numpy.arange(len(columns)), count)
+        sums = numpy.bincount(row, weight, len(columns))
+        share = weight / numpy.where(sums > 0.0, sums, 1.0)[row]
+        return scipy.sparse.csr_matrix((share, (row, patches)), shape=(len(columns), size))
+
+    return spread
+
+
 def read_hff(path):
-    """The Factors in a `.hff`. Raises FileError if it is none."""
-    head, areas, group_of, patch_of, blocks = None, None, None, None, []
+    """The Factors in a `.hff`, of single patches: factors to clusters are shared out by weight.
+
+    Raises FileError if it is none.
+    """
+    head, areas, group_of, patch_of, spread, blocks = None, None, None, None, None, []
     for tag, payload in _chunks(path, b"HEMIFF\r\n", 4):
         if tag == b"HEAD":
             head = json.loads(payload)
@@ -142,6 +173,8 @@ def read_hff(path):
             group_of = _Payload(path, payload).take("<u4", head["size"])
         elif tag == b"PART":
             patch_of = _Payload(path, payload).take("<u4", head["size"])
+        elif tag == b"TREE":
+            spread = _take_clusters(path, payload, head["size"])
         elif tag == b"ROWS":
             blocks.append(_take_rows(path, payload))
     size = head["size"]
@@ -154,8 +187,16 @@ def read_hff(path):
         [numpy.diff(block["begin"].astype(numpy.int64)) for block in blocks] or [numpy.empty(0, numpy.int64)]))
     values = joined("values", "<f4")
     visibility = joined("visibility", "u1")
+    columns = joined("columns", "<u4").astype(numpy.int64)
+    if spread is None:
+        factors = scipy.sparse.csr_matrix((values, columns, begin), shape=(size, size))
+    else:
+        used, place = numpy.unique(columns, return_inverse=True)
+        factors = (scipy.sparse.csr_matrix((values, place, begin), shape=(size, len(used)))
+                   @ spread(used)).astype("<f4")
+        visibility = numpy.empty(0, "u1")  # clusters have none of single patches
     return Factors(
-        factors=scipy.sparse.csr_matrix((values, joined("columns", "<u4"), begin), shape=(size, size)),
+        factors=factors,
         visibility=visibility if len(visibility) == len(values) else None,
         known=joined("known", bool), environment=joined("environment", "<f8"), blocked=joined("blocked", "<f8"),
         areas=areas, groups=head["groups"], group_of=group_of,
