@@ -1,3 +1,4 @@
+#include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/loaded_scene.hpp"
 #include "cli/output_paths.hpp"
@@ -27,6 +28,7 @@ FormFactors read_file(const CheckArguments& arguments) {
     refuse_all_but(arguments.common, std::vector<std::string>{"--enclosure", "--max-row-error", "--repair"},
                    path);
     FormFactors factors = io::read_hff(path);
+    refuse_clusters(factors, path, "check, which compares pairs,");
     factors.enclosure = arguments.scene.enclosure.value_or(factors.enclosure);
     return factors;
 }

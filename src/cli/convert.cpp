@@ -1,3 +1,4 @@
+#include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_paths.hpp"
 #include "cli/report/text.hpp"
@@ -165,6 +166,9 @@ ExitStatus run(const ConvertArguments& arguments, const Terminal& terminal) {
         file = merge_parts(std::move(file));
     }
     Diagnostics diagnostics;
+    if (format.extension != ".hff" && format.extension != ".idf") { // which has sums over groups
+        expand_clusters(file, arguments.output, memory_limit({}), diagnostics);
+    }
     io::write_factors(arguments.output, file, {{}, arguments.zone}, diagnostics);
     terminal.warn(diagnostics);
     if (format.extension != ".hff") {

@@ -1,5 +1,6 @@
 #include "cli/factor_source.hpp"
 
+#include "cli/cluster_settings.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/io/factor_file.hpp"
 
@@ -22,6 +23,25 @@ void check_setting(const CommonOptions& common, const std::filesystem::path& pat
     }
 }
 
+/// Whether rows have clusters is up to the file, unless the command line says what they must be.
+void check_clusters(const CommonOptions& common, const std::filesystem::path& path, Clusters wanted,
+                    bool stored) {
+    const auto given = [&common](const char* option) {
+        return std::find(common.given.begin(), common.given.end(), option) != common.given.end();
+    };
+    if (given("--cluster-error")) {
+        throw InvalidArgument(fmt::format("--cluster-error makes rows, but those of {} are there already; "
+                                          "leave one out",
+                                          path.string()));
+    }
+    if (given("--clusters") && wanted != Clusters::automatic && (wanted == Clusters::on) != stored) {
+        throw InvalidArgument(
+            fmt::format("--clusters {} conflicts with --factors {}, whose rows were made {} "
+                        "clusters; leave --clusters out, or name another file",
+                        to_word(wanted), path.string(), stored ? "with" : "without"));
+    }
+}
+
 std::string preset_word(const std::optional<Preset>& preset) {
     return preset ? std::string(to_word(*preset)) : "none";
 }
@@ -38,6 +58,7 @@ FormFactors read_rows(const std::filesystem::path& path, const LoadedScene& load
     check_setting(common, path, "--method", to_word(settings.method), to_word(made.method));
     check_setting(common, path, "--eye-points", settings.eye_points.value_or(0), made.eye_points);
     check_setting(common, path, "--shadow-rays", settings.shadow_rays.value_or(0), made.shadow_rays);
+    check_clusters(common, path, settings.clusters, factors.matrix.clusters() != nullptr);
     return factors;
 }
 
@@ -57,6 +78,7 @@ FormFactors rows_to_refine(const SolveArguments& arguments, const Scene& scene, 
         throw InvalidArgument(fmt::format("{}: rows by method {}; patches are cut with hemicubes only",
                                           path.string(), to_word(made.method)));
     }
+    refuse_clusters(factors, path, "cutting patches further");
     settings.preset = *made.preset;
     settings.seed = made.seed;
     if (!factors.matrix.all_known()) {

@@ -1,5 +1,6 @@
 #include "cli/factors.hpp"
 
+#include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/loaded_scene.hpp"
 #include "cli/report/balance_report.hpp"
@@ -41,6 +42,17 @@ Outputs check_outputs(const FactorsArguments& arguments) {
         throw InvalidArgument("an output to - and a table or --json cannot both go to standard output");
     }
     return outputs;
+}
+
+/// What of `factors` keeps rows from being those of clusters.
+std::optional<ClusterObstacle> cluster_obstacle(const FactorsArguments& arguments) {
+    if (arguments.selection) {
+        return {{"--rows", "whose parts are of single patches"}};
+    }
+    if (arguments.rows.error_target) {
+        return {{"--error-target", "which needs the pairs of patches"}};
+    }
+    return std::nullopt;
 }
 
 void check_point_options(const FactorsArguments& arguments, bool is_scene) {
@@ -101,7 +113,9 @@ void show_groups(const FactorsArguments& arguments, const FormFactors& factors, 
     }
 }
 
-ExitStatus run(const FactorsArguments& arguments, const Terminal& terminal) {
+ExitStatus run(const FactorsArguments& given, const Terminal& terminal) {
+    FactorsArguments arguments = given;
+    settle_clusters(arguments.common, arguments.rows, cluster_obstacle(arguments));
     refuse_chosen_settings(arguments.common, arguments.rows);
     const bool is_scene = io::is_scene_file(arguments.scene.path);
     const Outputs outputs = check_outputs(arguments);

@@ -1,3 +1,4 @@
+#include "cli/cluster_settings.hpp"
 #include "cli/factor_source.hpp"
 #include "cli/factors.hpp"
 #include "cli/loaded_scene.hpp"
@@ -86,13 +87,18 @@ void discard(RowCheckpoint* checkpoint) {
 }
 
 /// @param zone  the scene's name, where it is a zone
+/// @param max_memory  bytes that factors of single patches may take, where they stand in clusters
 void write_prepared(const std::filesystem::path& path, const FormFactors& factors, const LoadedScene& loaded,
-                    const std::string& zone, Diagnostics& diagnostics) {
+                    const std::string& zone, std::uint64_t max_memory, Diagnostics& diagnostics) {
     if (extension_of(path) == ".vtp") {
         io::write_vtp(path, loaded.mesh, io::factor_arrays(factors));
     } else {
         const std::vector<double> emissivity = emissivities(loaded.patches(), loaded.scene.materials);
-        io::write_factors(path, merge_parts(factors), {emissivity, zone}, diagnostics);
+        FormFactors merged = merge_parts(factors);
+        if (extension_of(path) != ".idf") { // which has sums over groups
+            expand_clusters(merged, path, max_memory, diagnostics);
+        }
+        io::write_factors(path, merged, {emissivity, zone}, diagnostics);
     }
 }
 
@@ -111,7 +117,7 @@ void show_summary(const FactorsArguments& arguments, const FormFactors& factors,
         report.add("written", arguments.output->string() + which);
     }
     report.select("hemi/factors/1",
-                  {"renderer", "patches", "parts", "groups", "entries", "memory", "row_sum",
+                  {"renderer", "patches", "parts", "groups", "entries", "memory", "clusters", "row_sum",
                    "environment_max", "blocked_max", "repair", "chosen_for", "error_estimate", "seconds"});
     outputs.show(report, arguments.common.json, terminal);
 }
@@ -138,7 +144,8 @@ ExitStatus all_rows(const FactorsArguments& arguments, const Outputs& outputs, c
     }
     if (writes_rows(arguments) && !raw) {
         const bool is_zone = arguments.scene.also.empty() && extension_of(arguments.scene.path) == ".epjson";
-        write_prepared(*arguments.output, factors, loaded, is_zone ? loaded.scene.name : "", diagnostics);
+        write_prepared(*arguments.output, factors, loaded, is_zone ? loaded.scene.name : "",
+                       memory_limit(arguments.rows.factors), diagnostics);
     }
     terminal.warn(diagnostics);
     discard(checkpoint);

@@ -1,5 +1,6 @@
 #include "cli/heat_factors.hpp"
 
+#include "cli/cluster_settings.hpp"
 #include "cli/factor_source.hpp"
 #include "cli/output_paths.hpp"
 #include "hemi/core/black_body.hpp"
@@ -302,6 +303,9 @@ FormFactors find_raw_rows(const CommonOptions& common, const RowOptions& rows, c
         with_checkpoint(input.factors, rows.resume, terminal, [&](RowCheckpoint* checkpoint) {
             return find_rows(arguments, loaded, patches, observer, terminal, checkpoint);
         });
+    if (input.factors) {
+        refuse_clusters(factors, *input.factors, "the exchange of heat");
+    }
     if (!factors.matrix.all_known()) {
         throw InputError(
             fmt::format("{}: rows are missing; those of all patches are needed", input.factors->string()));

@@ -62,9 +62,10 @@ Report file_info(const std::filesystem::path& path) {
         Report report = stored_factors_report(io::read_hff(path));
         report.json["kind"] = "factors";
         report.select("hemi/info/1",
-                      {"kind", "patches", "parts", "rows", "entries", "memory", "preset", "method",
-                       "resolution", "eye_points", "shadow_rays", "seed", "renderer", "enclosure",
-                       "geometry_hash", "row_sum", "chosen_for", "error_estimate", "groups"});
+                      {"kind",          "patches",     "parts",      "rows",           "entries",
+                       "memory",        "clusters",    "preset",     "method",         "resolution",
+                       "eye_points",    "shadow_rays", "seed",       "renderer",       "enclosure",
+                       "geometry_hash", "row_sum",     "chosen_for", "error_estimate", "groups"});
         return report;
     }
     if (io::factor_content(path)) {

@@ -1,3 +1,4 @@
+#include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/factor_source.hpp"
 #include "cli/output_paths.hpp"
@@ -50,27 +51,10 @@ Outputs check_outputs(const SolveArguments& arguments) {
     return outputs;
 }
 
-/// What keeps rows from being those of clusters.
-struct ClusterObstacle {
-    std::string_view option;
-    std::string_view why;
-};
+/// What of `solve` keeps rows from being those of clusters.
 std::optional<ClusterObstacle> cluster_obstacle(const SolveArguments& arguments) {
-    const FactorSettings& settings = arguments.rows.factors;
-    if (arguments.factors) {
-        return {{"--factors", "as files hold factors of single patches"}};
-    }
     if (arguments.refines() || arguments.rows.error_target) {
         return {{"--error-target and --refine", "which need the pairs of patches"}};
-    }
-    if (settings.preset == Preset::plain || settings.method != Method::hemicube) {
-        return {{"--preset plain and --method", "since clusters are made of visibility"}};
-    }
-    if (settings.repair && *settings.repair != Repair::none) {
-        return {{"--repair", "which needs the pairs of patches"}};
-    }
-    if (settings.shadow_rays && *settings.shadow_rays > 0) {
-        return {{"--shadow-rays", "which are those of single pairs"}};
     }
     if (arguments.solver.method == SolverMethod::conjugate_gradient) {
         return {{"--solver cg", "which needs reciprocal rows"}};
@@ -78,25 +62,8 @@ std::optional<ClusterObstacle> cluster_obstacle(const SolveArguments& arguments)
     return std::nullopt;
 }
 
-void check_clusters(const SolveArguments& arguments) {
-    const Clusters clusters = arguments.rows.factors.clusters;
-    const auto obstacle = cluster_obstacle(arguments);
-    if (obstacle && clusters == Clusters::on) {
-        throw InvalidArgument(
-            fmt::format("--clusters on excludes {}, {}; leave one out", obstacle->option, obstacle->why));
-    }
-    const std::vector<std::string>& given = arguments.common.given;
-    if ((obstacle || clusters == Clusters::off) &&
-        std::find(given.begin(), given.end(), "--cluster-error") != given.end()) {
-        throw InvalidArgument(
-            fmt::format("--cluster-error has no effect with {}: no clusters are made; leave one out",
-                        obstacle ? obstacle->option : "--clusters off"));
-    }
-}
-
 void check_input(const SolveArguments& arguments) {
     refuse_chosen_settings(arguments.common, arguments.rows);
-    check_clusters(arguments);
     if (arguments.parts && !arguments.refines() && !has_rows(arguments)) {
         throw InvalidArgument("--parts needs --error-target or --refine, by which patches are cut, or the "
                               "--factors of such patches");
@@ -312,11 +279,9 @@ Report draw(const SolveArguments& arguments, const LoadedScene& loaded, const So
 } // namespace
 
 ExitStatus run(const SolveArguments& given, const Terminal& terminal) {
-    check_input(given);
     SolveArguments arguments = given;
-    if (cluster_obstacle(arguments)) {
-        arguments.rows.factors.clusters = Clusters::off;
-    }
+    settle_clusters(arguments.common, arguments.rows, cluster_obstacle(arguments));
+    check_input(arguments);
     const Outputs outputs = check_outputs(arguments);
     Seconds seconds(
         {"load", "factors", "repair", "solve", "gather", "estimate", "search", "refine", "render"});

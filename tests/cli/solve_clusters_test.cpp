@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstdint>
 #include <string>
 
 using namespace hemi::cli_test;
@@ -57,7 +58,8 @@ TEST_CASE("solve: what needs single pairs refuses clusters", "[cli]") {
         CHECK(run.status == 2);
         return run.err;
     };
-    CHECK_THAT(refusal({"--factors", directory.path("a.hff")}), Contains("--clusters on excludes --factors"));
+    CHECK_THAT(refusal({"--factors", directory.path("a.hff"), "--resume"}),
+               Contains("--clusters on excludes --resume"));
     CHECK_FALSE(directory.has("a.hff"));
     CHECK_THAT(refusal({"--refine", "500"}), Contains("--clusters on excludes --error-target and --refine"));
     CHECK_THAT(refusal({"--error-target", "5%"}), Contains("--clusters on excludes --error-target"));
@@ -76,4 +78,87 @@ TEST_CASE("solve: what needs single pairs refuses clusters", "[cli]") {
     }
     CHECK_THAT(refusal({"--cluster-error", "0"}), Contains("--cluster-error"));
     CHECK_THAT(refusal({"--mirror", "x=-1"}), Contains("clusters are not made of a scene with symmetry"));
+}
+
+TEST_CASE("form factors with clusters: kept in a file, used again, written to other files", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(8));
+    const std::string file = directory.path("a.hff");
+    const auto run = [&](Words words) {
+        words.insert(words.end(), {"--json", "--quiet"});
+        return run_hemi(words);
+    };
+    const Words on{"--device", "cpu", "--preset", "fast", "--clusters", "on", "--cluster-error", "2%"};
+    const auto with = [](Words words, const Words& more) {
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    const auto solve = [&](const Words& more, const std::string& radiosity) {
+        return run(with({"solve", scene, "--radiosity", directory.path(radiosity)}, more));
+    };
+    REQUIRE(solve(on, "without.csv").status == 0);
+    const Outcome written = solve(with(on, {"--factors", file}), "written.csv");
+    INFO(written.err);
+    REQUIRE(written.json()["clusters"] == true);
+    const Outcome reused = solve({"--device", "cpu", "--clusters", "on", "--factors", file}, "reused.csv");
+    INFO(reused.err);
+    REQUIRE(reused.json()["clusters"] == true);
+    CHECK(directory.read("written.csv") == directory.read("without.csv"));
+    CHECK(directory.read("reused.csv") == directory.read("without.csv"));
+    CHECK(reused.json()["error_estimate"] == written.json()["error_estimate"]);
+
+    const auto refusal = [&](const Words& words) {
+        const Outcome outcome = run_hemi(words);
+        INFO(outcome.err);
+        CHECK((outcome.status == 2 || outcome.status == 3));
+        return outcome.err;
+    };
+    CHECK_THAT(refusal({"solve", scene, "--factors", file, "--clusters", "off"}),
+               Contains("--clusters off conflicts with --factors"));
+    CHECK_THAT(refusal({"solve", scene, "--factors", file, "--cluster-error", "1%"}),
+               Contains("--cluster-error makes rows"));
+    CHECK_THAT(refusal({"solve", scene, "--factors", file, "--refine", "2000"}),
+               Contains("a.hff: far patches stand in clusters"));
+    CHECK_THAT(refusal({"check", file}), Contains("a.hff: far patches stand in clusters"));
+
+    const Outcome made = run(with({"factors", scene, "-o", directory.path("b.hff")}, on));
+    INFO(made.err);
+    const Json summary = made.json();
+    CHECK(summary["clusters"] == true);
+    CHECK(directory.read("b.hff") == directory.read("a.hff"));
+    const Json info = run({"info", file}).json();
+    CHECK(info["clusters"] == true);
+    CHECK(info["entries"] == summary["entries"]);
+
+    const Outcome converted = run_hemi({"convert", file, directory.path("a.npz")});
+    CHECK_THAT(converted.err, Contains("factors to clusters are shared out among their patches"));
+    const Json single = run({"info", directory.path("a.npz")}).json();
+    CHECK_FALSE(single.contains("clusters"));
+    CHECK(single["entries"].get<std::uint64_t>() > info["entries"].get<std::uint64_t>());
+    CHECK(single["row_sum"]["min"].get<double>() == Approx(1.0).epsilon(1e-5));
+    REQUIRE(run_hemi({"convert", file, directory.path("copy.hff")}).status == 0);
+    CHECK(directory.read("copy.hff") == directory.read("a.hff"));
+
+    const Json clusters = run({"factors", file, "--by-group"}).json();
+    const Json pairs =
+        run({"factors", scene, "--device", "cpu", "--preset", "fast", "--clusters", "off", "--by-group"})
+            .json();
+    REQUIRE(clusters["factors"].size() == pairs["factors"].size());
+    for (std::size_t g = 0; g < pairs["factors"].size(); ++g) {
+        for (std::size_t h = 0; h < pairs["factors"].size(); ++h) {
+            CHECK(clusters["factors"][g][h].get<double>() ==
+                  Approx(pairs["factors"][g][h].get<double>()).margin(0.005));
+        }
+    }
+    double sum = 0.0;
+    const Json row = run({"factors", file, "--row", "7"}).json();
+    for (const Json& entry : row["entries"]) {
+        CHECK(entry["patch"].get<std::uint32_t>() < info["patches"].get<std::uint32_t>());
+        sum += entry["factor"].get<double>();
+    }
+    CHECK(sum == Approx(1.0).epsilon(1e-5));
+    CHECK_THAT(refusal(with({"factors", scene, "--rows", "0:64", "-o", directory.path("p.hff")}, on)),
+               Contains("--clusters on excludes --rows"));
+    CHECK_THAT(refusal(with({"factors", scene, "--error-target", "1%"}, {"--clusters", "on"})),
+               Contains("--clusters on excludes --error-target"));
 }

@@ -241,6 +241,7 @@ void add_factors(CLI::App& app, FactorsArguments& a) {
     add_rows(app, a.rows);
     add_repair(app, a.rows.factors.repair);
     add_estimate(app, a.rows);
+    add_clusters(app, a.rows);
     add_max_memory(app, a.rows);
     Options output(app, "Output");
     auto* file = output.path(

@@ -112,7 +112,8 @@ Report stored_factors_report(const FormFactors& file) {
             (file.parts.any() ? fmt::format(", in {}", plural(file.matrix.size(), "part", "parts")) : ""),
         {{"patches", file.patches()}, {"parts", file.matrix.size()}});
     report.add("rows", fmt::format("{} computed", count_text(sums.known)), {{"rows", sums.known}});
-    report.add(entries_report(file.matrix));
+    report.add(
+        entries_report(file.matrix, file.matrix.clusters() != nullptr ? " (far patches in clusters)" : ""));
     report.add(provenance_report(file.provenance));
     report.add("enclosure", to_word(file.enclosure), {{"enclosure", to_word(file.enclosure)}});
     report.add("geometry", hash, {{"geometry_hash", hash}});

@@ -2,11 +2,13 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/engine/baselines.hpp"
+#include "hemi/matrix/product.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace hemi::cli {
@@ -51,7 +53,13 @@ struct FactorList {
 
 Report row_report(const FormFactors& factors, std::uint32_t index, const PatchNames& names) {
     const RowView row = factors.matrix.row(index);
-    FactorList list{{row.columns.begin(), row.columns.end()}, {row.values.begin(), row.values.end()}};
+    std::map<std::uint32_t, double> sums; // patches of a cluster may be there on their own as well
+    visit_sources(factors.matrix, row, [&sums](std::uint32_t j, double factor) { sums[j] += factor; });
+    FactorList list;
+    for (const auto& [patch, factor] : sums) {
+        list.patches.push_back(patch);
+        list.factors.push_back(factor);
+    }
     list.sort();
     Report report{fmt::format("row {}: what leaves {}\n", index, names.describe(index)),
                   {{"renderer", factors.provenance.renderer},
