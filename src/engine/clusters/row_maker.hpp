@@ -102,7 +102,7 @@ private:
 };
 
 /// Makes rows of factors of rows of visibility: F0 V patch by patch near the receiver; far away, cluster by
-/// cluster. Patches of a far cluster stand together in up to 16 strata, and receive an area what the middle
+/// cluster. Patches of a far cluster stand together in up to four strata, and receive an area what the middle
 /// one of theirs does. Patches that no texel covers are as visible as the others of their cluster.
 /// One a thread. Memory: about 500 bytes a source of a row.
 class RowMaker {
@@ -116,7 +116,7 @@ public:
     [[nodiscard]] ClusteredRow make(const SeenRow& seen);
 
 private:
-    static constexpr std::uint32_t most_strata = 16; ///< of a cluster
+    static constexpr std::uint32_t most_strata = 4; ///< of a cluster
 
     /// Of one part of what a row sees.
     struct Sum {
