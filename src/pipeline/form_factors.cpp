@@ -88,6 +88,7 @@ FormFactors compute_rows_of_clusters(const Scene& scene, const PatchMesh& mesh,
     clusters.rule = factors.provenance.exchange_rule;
     clusters.opening = cluster_opening(settings.cluster_error);
     clusters.max_memory = memory_limit(settings);
+    clusters.apart = emitting_patches(scene, mesh);
     factors.matrix = compute_clustered(computation.rows_of_this_rank(), mesh, patches, clusters,
                                        scene.enclosure, computation.timed_progress(Phase::visibility));
     computation.finish(mesh, patches.size());

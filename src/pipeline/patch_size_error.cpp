@@ -94,7 +94,7 @@ public:
             gather_sample(sample, settings, observer);
         }
         const FormFactorMatrix factors = compute_quarter_rows(*cut_, plan_rows(settings, mesh_.size()),
-                                                              settings, scene_.enclosure, clusters, observer);
+                                                              settings, scene_, clusters, observer);
         direct_ = direct_irradiances(scene_, cut_->mesh, factors, cut_->rows);
         if (clusters) { // rows that cannot be solved backwards
             observer.detail("errors of groups are not estimated where far patches stand in clusters");

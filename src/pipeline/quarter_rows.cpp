@@ -5,6 +5,7 @@
 #include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "pipeline/image_count.hpp"
+#include "pipeline/row_computation.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -83,16 +84,18 @@ std::uint64_t quarter_row_bytes(const CutSample& cut, bool clusters) {
 }
 
 FormFactorMatrix compute_quarter_rows(const CutSample& cut, RowPlan plan, const FactorSettings& settings,
-                                      Enclosure enclosure, bool clusters, Observer& observer) {
+                                      const Scene& scene, bool clusters, Observer& observer) {
     plan.hemicube.seed = ~plan.hemicube.seed; // not the rows that the solution rests on
     const auto engine = make_visibility_provider(cut.mesh, plan.hemicube, settings);
     if (clusters) {
-        return compute_clustered(*engine, cut.mesh, cut.rows, {}, enclosure,
+        ClusterSettings apart;
+        apart.apart = emitting_patches(scene, cut.mesh);
+        return compute_clustered(*engine, cut.mesh, cut.rows, apart, scene.enclosure,
                                  quarter_of_progress(observer, 0));
     }
-    return compute_visibility_weighted(*engine, cut.mesh, cut.rows, {ExchangeRule::standard, 0}, enclosure,
-                                       quarter_of_progress(observer, 0), quarter_of_progress(observer, 1),
-                                       quarter_of_progress(observer, 2));
+    return compute_visibility_weighted(*engine, cut.mesh, cut.rows, {ExchangeRule::standard, 0},
+                                       scene.enclosure, quarter_of_progress(observer, 0),
+                                       quarter_of_progress(observer, 1), quarter_of_progress(observer, 2));
 }
 
 Progress quarter_of_progress(Observer& observer, std::size_t index) {

@@ -37,12 +37,12 @@ struct CutSample {
 /// @param cut        the sample
 /// @param plan       sample points and texels of a solution's rows; the random numbers are others
 /// @param settings   device, workers and memory
-/// @param enclosure  as the scene says
+/// @param scene      gives the enclosure, and what emits light
 /// @param clusters   what is far away stands together in clusters, as in compute_clustered(); else all pairs
 ///   are kept meanwhile
 /// @param observer   gets the first three quarters of the progress of Phase::patch_size, and may cancel
 [[nodiscard]] FormFactorMatrix compute_quarter_rows(const CutSample& cut, RowPlan plan,
-                                                    const FactorSettings& settings, Enclosure enclosure,
+                                                    const FactorSettings& settings, const Scene& scene,
                                                     bool clusters, Observer& observer);
 
 /// Progress of one of four parts of the estimate: rows, pairs, factors, importance for groups.

@@ -17,6 +17,18 @@ constexpr double reference_share = 0.08;
 
 } // namespace
 
+std::vector<std::uint8_t> emitting_patches(const Scene& scene, const PatchMesh& mesh) {
+    const std::vector<double> exitance = patch_values(mesh, scene.materials, &Material::exitance);
+    const std::size_t channels = mesh.size() > 0 ? exitance.size() / mesh.size() : 0;
+    std::vector<std::uint8_t> emits(mesh.size(), 0);
+    for (std::size_t k = 0; k < exitance.size(); ++k) {
+        if (exitance[k] > 0.0) {
+            emits[k / channels] = 1;
+        }
+    }
+    return emits;
+}
+
 FormFactors describe_form_factors(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings) {
     FormFactors factors;
     factors.areas.assign(mesh.areas().begin(), mesh.areas().end());

@@ -26,6 +26,10 @@ inline constexpr std::size_t unsampled_rows = 256;
 [[nodiscard]] FormFactors describe_form_factors(const Scene& scene, const PatchMesh& mesh,
                                                 const FactorSettings& settings);
 
+/// Of N patches those that emit light, 1 each; others 0. Their clusters would be brighter than what stands
+/// beside them.
+[[nodiscard]] std::vector<std::uint8_t> emitting_patches(const Scene& scene, const PatchMesh& mesh);
+
 /// What raw rows depend on, besides the renderer.
 [[nodiscard]] io::CheckpointKey raw_row_key(const FormFactors& factors, const FactorSettings& settings);
 

@@ -120,6 +120,37 @@ TEST_CASE("clusters look one way, and their spheres hold their patches") {
     }
 }
 
+TEST_CASE("lamps stand in clusters of their own") {
+    const PatchMesh mesh(room_with_floating_block(16));
+    std::vector<std::uint8_t> lamps(mesh.size(), 0);
+    std::vector<double> light(mesh.size(), 0.1);
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const Vec3 centre = mesh.centres()[i];
+        if (mesh.normal(i).z < -0.9 && std::abs(centre.x - 0.8) < 0.2 && std::abs(centre.y - 0.7) < 0.1) {
+            lamps[i] = 1;
+            light[i] = 20.0;
+        }
+    }
+    const ClusterTree tree(mesh, lamps);
+    for (std::uint32_t k = 0; k < tree.clusters()->nodes().size(); ++k) {
+        const auto patches = tree.clusters()->patches(k);
+        const auto count =
+            std::count_if(patches.begin(), patches.end(), [&](std::uint32_t i) { return lamps[i] != 0; });
+        CHECK((count == 0 || count == std::ptrdiff_t(patches.size()) || !tree.shape(k).one_direction));
+    }
+    const std::vector<double> truth =
+        gathered(in_pairs(mesh, {.resolution = 64, .eye_points = 4}, 16), light);
+    ClusterSettings settings;
+    settings.opening = cluster_opening(3e-3);
+    const double mixed = relative_rms(gathered(clustered(mesh, settings), light), truth);
+    settings.apart = lamps;
+    const double apart = relative_rms(gathered(clustered(mesh, settings), light), truth);
+    CAPTURE(mixed, apart);
+    CHECK(apart < 0.5 * mixed);
+    settings.apart.pop_back();
+    CHECK_THROWS_AS(clustered(mesh, settings), InvalidArgument);
+}
+
 TEST_CASE("clusters change the gathered light by less than they may, and need fewer entries") {
     const PatchMesh mesh(room_with_floating_block(16));
     const std::vector<double> light = smooth_light(mesh);

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace hemi {
 
@@ -18,6 +19,8 @@ struct ClusterSettings {
     /// A cluster is far where its radius is below this share of its distance from the receivers.
     double opening = 0.2;
     std::uint64_t max_memory = ~std::uint64_t{0}; ///< bytes that the rows may take
+    /// Patches that stand in no cluster with others than theirs, such as lamps: 1 each, of N. Empty: none.
+    std::vector<std::uint8_t> apart = {};
 };
 
 /// The opening with which clusters change the light that rows gather by about so much, relative, rms, where
@@ -42,7 +45,7 @@ struct ClusterSettings {
 /// @param settings     how
 /// @param enclosure    as the scene says
 /// @param progress     called after every row of this rank; may be empty
-/// @throws Cancelled; OutOfMemory if the rows do not fit
+/// @throws Cancelled; OutOfMemory if the rows do not fit; InvalidArgument for settings that do not fit
 [[nodiscard]] FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMesh& mesh,
                                                  std::span<const std::uint32_t> patches,
                                                  const ClusterSettings& settings, Enclosure enclosure,

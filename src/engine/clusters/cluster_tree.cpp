@@ -53,7 +53,7 @@ struct Tree {
 
 class Builder {
 public:
-    explicit Builder(const PatchMesh& mesh) : mesh_(mesh) {
+    Builder(const PatchMesh& mesh, std::span<const std::uint8_t> apart) : mesh_(mesh), apart_(apart) {
         normals_.reserve(mesh.size());
         for (std::uint32_t i = 0; i < mesh.size(); ++i) {
             normals_.push_back(mesh.normal(i));
@@ -79,8 +79,8 @@ public:
     }
 
 private:
-    /// Cone and, unless it is a leaf, children of a node: by direction until its cone is narrow, then by
-    /// place.
+    /// Cone and, unless it is a leaf, children of a node: what stands apart first, then by direction until
+    /// its cone is narrow, then by place.
     void divide(std::uint32_t k) {
         const std::uint32_t begin = tree_.nodes[k].begin;
         const std::uint32_t end = tree_.nodes[k].end;
@@ -99,16 +99,31 @@ private:
         for (const std::uint32_t i : patches) {
             shape.cone = std::max(shape.cone, angle_between(shape.axis, normals_[i]));
         }
-        shape.one_direction = shape.cone <= widest_cone;
+        const bool mixed = is_mixed(patches);
+        shape.one_direction = shape.cone <= widest_cone && !mixed;
         if (patches.size() == 1) {
             return;
         }
-        const std::uint32_t middle =
-            shape.one_direction ? halve(begin, end, places) : part(begin, end, normals);
+        const std::uint32_t middle = mixed                 ? set_apart(begin, end)
+                                     : shape.one_direction ? halve(begin, end, places)
+                                                           : part(begin, end, normals);
         tree_.nodes[k].child = static_cast<std::uint32_t>(tree_.nodes.size());
         tree_.nodes.push_back({begin, middle, 0});
         tree_.nodes.push_back({middle, end, 0});
         tree_.shapes.resize(tree_.nodes.size());
+    }
+
+    [[nodiscard]] bool is_mixed(std::span<const std::uint32_t> patches) const {
+        return !apart_.empty() && std::any_of(patches.begin(), patches.end(), [&](std::uint32_t i) {
+            return apart_[i] != apart_[patches.front()];
+        });
+    }
+
+    /// Behind all others.
+    std::uint32_t set_apart(std::uint32_t begin, std::uint32_t end) {
+        const auto found = std::stable_partition(tree_.order.begin() + begin, tree_.order.begin() + end,
+                                                 [&](std::uint32_t i) { return apart_[i] == 0; });
+        return static_cast<std::uint32_t>(found - tree_.order.begin());
     }
 
     /// At the median along the longest side: the tree stays flat.
@@ -158,6 +173,7 @@ private:
     }
 
     const PatchMesh& mesh_;
+    std::span<const std::uint8_t> apart_;
     std::vector<Vec3> normals_;
     Tree tree_;
 };
@@ -178,8 +194,9 @@ bool may_face(const ClusterShape& cluster, const Vec3& at, const std::optional<V
     return std::acos(cosine) - cluster.cone - std::asin(size / distance) < 0.5 * std::numbers::pi;
 }
 
-ClusterTree::ClusterTree(const PatchMesh& mesh) : position_(mesh.size()), leaf_of_(mesh.size()) {
-    Tree built = Builder(mesh).build();
+ClusterTree::ClusterTree(const PatchMesh& mesh, std::span<const std::uint8_t> apart)
+    : position_(mesh.size()), leaf_of_(mesh.size()) {
+    Tree built = Builder(mesh, apart).build();
     shapes_ = std::move(built.shapes);
     for (std::uint32_t k = 0; k < built.nodes.size(); ++k) {
         if (built.nodes[k].child == 0) {

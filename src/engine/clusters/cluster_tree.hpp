@@ -33,7 +33,8 @@ struct ClusterShape {
 /// each other can be made reciprocal.
 class ClusterTree {
 public:
-    explicit ClusterTree(const PatchMesh& mesh);
+    /// @param apart  see ClusterSettings; may be empty
+    explicit ClusterTree(const PatchMesh& mesh, std::span<const std::uint8_t> apart = {});
 
     /// For a matrix.
     [[nodiscard]] const std::shared_ptr<const SourceClusters>& clusters() const noexcept { return clusters_; }

@@ -454,7 +454,11 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
         throw InvalidArgument(
             fmt::format("opening of clusters {}; it must be finite and above 0", settings.opening));
     }
-    const ClusterTree tree(mesh);
+    if (!settings.apart.empty() && settings.apart.size() != mesh.size()) {
+        throw InvalidArgument(fmt::format("clusters: {} patches are said to stand apart or not, of {}",
+                                          settings.apart.size(), mesh.size()));
+    }
+    const ClusterTree tree(mesh, settings.apart);
     std::vector<ClusteredRow> rows;
     {
         RowCollector collector(mesh, tree, settings);
