@@ -3,6 +3,7 @@
 #include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/loaded_scene.hpp"
+#include "cli/output_paths.hpp"
 #include "cli/report/balance_report.hpp"
 #include "cli/report/factor_report.hpp"
 #include "cli/report/factor_tables.hpp"
@@ -42,6 +43,12 @@ Outputs check_outputs(const FactorsArguments& arguments) {
         throw InvalidArgument("an output to - and a table or --json cannot both go to standard output");
     }
     return outputs;
+}
+
+/// Whether a file holds what clusters say: as they are, or summed over groups or patches.
+bool holds_clusters(const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
+    return extension == ".hff" || extension == ".idf" || extension == ".vtp";
 }
 
 /// What of `factors` keeps rows from being those of clusters.
@@ -116,6 +123,10 @@ void show_groups(const FactorsArguments& arguments, const FormFactors& factors, 
 ExitStatus run(const FactorsArguments& given, const Terminal& terminal) {
     FactorsArguments arguments = given;
     settle_clusters(arguments.common, arguments.rows, cluster_obstacle(arguments));
+    if (arguments.rows.factors.clusters == Clusters::automatic && arguments.output &&
+        !holds_clusters(*arguments.output)) {
+        arguments.rows.factors.clusters = Clusters::off; // they would have to be expanded in the end
+    }
     refuse_chosen_settings(arguments.common, arguments.rows);
     const bool is_scene = io::is_scene_file(arguments.scene.path);
     const Outputs outputs = check_outputs(arguments);

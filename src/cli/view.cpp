@@ -1,3 +1,4 @@
+#include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/factor_source.hpp"
 #include "cli/loaded_scene.hpp"
@@ -231,6 +232,7 @@ private:
     [[nodiscard]] FormFactors stored_factors(const std::filesystem::path& path,
                                              const LoadedScene& loaded) const {
         FormFactors factors = read_rows(path, loaded, arguments_.rows.factors, arguments_.common);
+        refuse_clusters(factors, path, "the window, which shows what single patches get from each other,");
         if (!factors.matrix.all_known()) {
             throw InputError(
                 fmt::format("{}: rows are missing; the window needs those of all patches", path.string()));

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace hemi {
@@ -85,6 +86,9 @@ void SourceClusters::add_weights(std::span<const double> weights) {
         const Node& node = nodes_[k];
         weights_[k] =
             node.child == 0 ? weights[order_[node.begin]] : weights_[node.child] + weights_[node.child + 1];
+    }
+    if (!weights_.empty() && !std::isfinite(weights_.front())) {
+        throw InvalidArgument("clusters of sources: their weights add up to more than a number can be");
     }
 }
 

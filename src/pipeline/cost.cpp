@@ -130,7 +130,8 @@ void measure_clusters(FactorCost& cost, const PatchMesh& mesh, const FactorSetti
     const auto time = [&](std::uint32_t samples) {
         const std::vector<std::uint32_t> rows = spread(samples, mesh.size());
         const Stopwatch watch;
-        FormFactorMatrix matrix = compute_clustered(*provider, mesh, rows, clusters, Enclosure::automatic);
+        FormFactorMatrix matrix =
+            compute_clustered(rows_of_rank(*provider), mesh, rows, clusters, Enclosure::automatic);
         return std::pair(watch.seconds(),
                          static_cast<double>(matrix.entries()) / static_cast<double>(rows.size()));
     };

@@ -53,6 +53,9 @@ struct RowHead {
 
 /// Rows one after the other, as they travel.
 void append(Bytes& bytes, std::uint32_t patch, const RawRow& row) {
+    if (!row.joint.empty()) {
+        throw Error("rows that tell of many patches by one number cannot be sent to other ranks");
+    }
     const RowHead head{patch, static_cast<std::uint32_t>(row.columns.size()), row.environment, row.blocked,
                        row.visibility.empty() ? 0u : 1u};
     const auto add = [&bytes](std::span<const std::byte> part) {

@@ -552,9 +552,11 @@ private:
             if (row.blocked > buried_above) {
                 continue; // nobody sees it; the patch's mean has its part of it all the same
             }
-            const std::vector<double> importance = gathered(row, groups.size(), [this](std::uint32_t column) {
-                return importance_.of(cut_->parents[column]);
-            });
+            const std::vector<double> importance =
+                groups.empty() ? std::vector<double>() // there is none of clusters
+                               : gathered(row, groups.size(), [this](std::uint32_t column) {
+                                     return importance_.of(cut_->parents[column]);
+                                 });
             const std::vector<double> varying = varying_light(row);
             const auto weights = shown_.weights(patch, fine.corners(quarters[q]));
             const double to_seen = fine.areas()[quarters[q]] / seen[q];

@@ -26,8 +26,6 @@ std::vector<std::uint32_t> near_patches(const PatchMesh& mesh, std::span<const D
     std::vector<ClusterTree::Part> parts;
     for (const DrawnPatch& drawn : sample) {
         near[drawn.patch] = 1;
-        if (near_opening > 100)
-            continue;
         tree.seen_from(drawn.patch, near_opening, parts);
         for (const ClusterTree::Part& part : parts) {
             if (!part.far) {
@@ -88,9 +86,10 @@ FormFactorMatrix compute_quarter_rows(const CutSample& cut, RowPlan plan, const 
     plan.hemicube.seed = ~plan.hemicube.seed; // not the rows that the solution rests on
     const auto engine = make_visibility_provider(cut.mesh, plan.hemicube, settings);
     if (clusters) {
-        ClusterSettings apart;
-        apart.apart = emitting_patches(scene, cut.mesh);
-        return compute_clustered(*engine, cut.mesh, cut.rows, apart, scene.enclosure,
+        ClusterSettings far;
+        far.max_memory = memory_limit(settings);
+        far.apart = emitting_patches(scene, cut.mesh);
+        return compute_clustered(rows_of_rank(*engine), cut.mesh, cut.rows, far, scene.enclosure,
                                  quarter_of_progress(observer, 0));
     }
     return compute_visibility_weighted(*engine, cut.mesh, cut.rows, {ExchangeRule::standard, 0},

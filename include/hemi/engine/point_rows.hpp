@@ -56,7 +56,7 @@ inline constexpr std::uint32_t points_ask_singly = 32768;
 /// solid angle of the patch over 4 pi.
 ///
 /// In scenes of many patches those that no texel covers are taken by parts of the scene: near ones singly, of
-/// a part far away up to 16 that stand for all. What a row costs then depends on what texels cover, and
+/// a part far away up to 32 that stand for all. What a row costs then depends on what texels cover, and
 /// hardly on N; gathered light changes by less than 0.1 % (rms).
 /// @param visibility  see make_point_visibility_engine()
 /// @param mesh        N patches

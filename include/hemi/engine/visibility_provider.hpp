@@ -40,7 +40,7 @@ struct JointVisibility {
 
 /// What the hemicubes of patch i found of the visibility of the other patches, seen but not owned. It has an
 /// entry for every patch j whose front would be in view if nothing hid it, hidden or not; or for a set that
-/// holds it.
+/// holds it. Sets that are hidden may hold patches that look away, too.
 ///
 /// No row of F: the shares do not sum to 1. compute_visibility_weighted() makes factors of such rows.
 struct VisibilityRow {

@@ -23,7 +23,7 @@ public:
     /// @param order  every patch once, N
     /// @param nodes  the root first; the ranges of two children make up that of their parent
     /// @param weights  of the patches, N, not negative
-    /// @throws InvalidArgument if they do not fit
+    /// @throws InvalidArgument if they do not fit, or add up to more than a number can be
     SourceClusters(std::vector<std::uint32_t> order, std::vector<Node> nodes,
                    std::span<const double> weights);
     /// The same clusters by other weights.
@@ -42,14 +42,20 @@ public:
     }
     /// Sum of the weights of a node's patches.
     [[nodiscard]] double weight(std::uint32_t node) const { return weights_[node]; }
-    /// Share of the weight of a node that one of its patches has; 0 where nothing has any.
+    /// Share of the weight of a node that one of its patches has; of all alike where nothing has any.
     [[nodiscard]] double share(std::uint32_t patch, std::uint32_t node) const {
-        return weights_[node] > 0.0 ? weights_[leaf_of_[patch]] / weights_[node] : 0.0;
+        return weights_[node] > 0.0 ? weights_[leaf_of_[patch]] / weights_[node]
+                                    : 1.0 / (nodes_[node].end - nodes_[node].begin);
     }
 
-    /// Share of the first child in the means of a node that has children; half where nothing has any weight.
+    /// Share of the first child in the means of a node that has children; by patches where nothing has any
+    /// weight.
     [[nodiscard]] double first_share(std::uint32_t node) const {
-        return weights_[node] > 0.0 ? weights_[nodes_[node].child] / weights_[node] : 0.5;
+        if (weights_[node] > 0.0) {
+            return weights_[nodes_[node].child] / weights_[node];
+        }
+        const Node& first = nodes_[nodes_[node].child];
+        return static_cast<double>(first.end - first.begin) / (nodes_[node].end - nodes_[node].begin);
     }
 
     /// Writes the means of the nodes behind the values of the patches.

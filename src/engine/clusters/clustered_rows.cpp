@@ -69,7 +69,7 @@ private:
         parallel_for(kept_.size(), grain, [&](std::size_t begin, std::size_t end) {
             const auto maker = take_maker();
             for (std::size_t k = begin; k < end; ++k) {
-                ClusteredRow row = maker->make(kept_[k]);
+                ClusteredRow row = maker->make(kept_[k], places_ ? &*places_ : nullptr);
                 bytes += row.bytes();
                 rows_[kept_[k].patch] = std::move(row);
             }
@@ -137,8 +137,7 @@ private:
     [[nodiscard]] std::shared_ptr<RowMaker> take_maker() {
         const std::lock_guard lock(mutex_);
         if (makers_.empty()) {
-            return std::make_shared<RowMaker>(mesh_, tree_, exchange_, opening_,
-                                              places_ ? &*places_ : nullptr);
+            return std::make_shared<RowMaker>(mesh_, tree_, exchange_, opening_);
         }
         auto maker = std::move(makers_.back());
         makers_.pop_back();

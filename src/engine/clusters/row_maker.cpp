@@ -41,7 +41,8 @@ SetPlaces::SetPlaces(const PatchSets& sets, const ClusterTree& tree, const Patch
     }
 }
 
-ClusteredRow RowMaker::make(const SeenRow& seen) {
+ClusteredRow RowMaker::make(const SeenRow& seen, const SetPlaces* places) {
+    places_ = places;
     stand_at(seen.patch);
     for (std::size_t k = 0; k < seen.columns.size(); ++k) {
         add_patch(seen.columns[k], {static_cast<double>(seen.shares[k]), seen.texels[k] == visibility_clear});
@@ -122,9 +123,6 @@ void RowMaker::add_patch(std::uint32_t patch, Share share) {
 /// Part by part: those of a far one together.
 void RowMaker::add_set(std::uint32_t set, Share share) {
     const std::span<const std::uint32_t> positions = places_->of(set);
-    shares_ += static_cast<double>(positions.size()) * share.value;
-    known_ += positions.size();
-    hides_ = hides_ || !(share.value > 0.0);
     std::uint32_t part = 0;
     for (std::size_t begin = 0; begin < positions.size();) {
         part = part_at(positions[begin], part);
@@ -137,8 +135,14 @@ void RowMaker::add_set(std::uint32_t set, Share share) {
                                        positions.end(), part_end) -
                       positions.begin());
         Sum& sum = sums_[part];
+        const auto count = static_cast<double>(end - begin);
         sum.known += static_cast<std::uint32_t>(end - begin);
-        sum.shares += static_cast<double>(end - begin) * share.value;
+        sum.shares += count * share.value;
+        if (may_face_part(part)) { // of what is hidden, backs are told, too
+            shares_ += count * share.value;
+            known_ += end - begin;
+            hides_ = hides_ || !(share.value > 0.0);
+        }
         if (parts_[part].far) {
             add_to_strata(part, positions[begin], positions[end - 1], places_->area(set, begin, end), share);
         } else {
@@ -204,8 +208,18 @@ void RowMaker::add_far(std::uint32_t part, double mean) {
         if (!(lit > 0.0)) {
             continue;
         }
-        const std::uint32_t middle = tree_.clusters()->order()[begin + (end - begin) / 2];
-        const double of_area = exchange_(patch_, middle) / (mesh_.areas()[middle] * area_);
+        // The middle one; where that sees nothing of the receiver, the first or the last.
+        double of_area = 0.0;
+        for (const std::uint32_t at : {begin + (end - begin) / 2, begin, end - 1}) {
+            const std::uint32_t one = tree_.clusters()->order()[at];
+            of_area = exchange_(patch_, one) / (mesh_.areas()[one] * area_);
+            if (of_area > 0.0) {
+                break;
+            }
+        }
+        if (!(of_area > 0.0)) {
+            continue;
+        }
         factor += of_area * lit;
         unoccluded += of_area * (stratum.seen + (share > 0.0 ? left : 0.0));
     }
@@ -216,9 +230,14 @@ void RowMaker::add_far(std::uint32_t part, double mean) {
 }
 
 /// Whether some patch of a part may have its front towards this one's.
-bool RowMaker::may_face_part(std::uint32_t part) const {
-    return may_face(tree_.shape(parts_[part].node), mesh_.centres()[patch_], mesh_.normal(patch_),
-                    tree_.radius_of(patch_));
+bool RowMaker::may_face_part(std::uint32_t part) {
+    Sum& sum = sums_[part];
+    if (!sum.asked) {
+        sum.asked = true;
+        sum.may_face = may_face(tree_.shape(parts_[part].node), mesh_.centres()[patch_], mesh_.normal(patch_),
+                                tree_.radius_of(patch_));
+    }
+    return sum.may_face;
 }
 
 } // namespace hemi

@@ -80,7 +80,7 @@ struct SeenRow {
     double blocked = 0.0;
 };
 
-/// Where the patches of sets stand in a tree. Memory: 24 bytes a patch.
+/// Where the patches of sets stand in a tree. Memory: 24 bytes a patch and 16 a set.
 class SetPlaces {
 public:
     SetPlaces(const PatchSets& sets, const ClusterTree& tree, const PatchMesh& mesh);
@@ -108,12 +108,11 @@ private:
 class RowMaker {
 public:
     /// All must outlive this.
-    /// @param places  of what rows tell as a whole; null: nothing
-    RowMaker(const PatchMesh& mesh, const ClusterTree& tree, const ExchangeAreas& exchange, double opening,
-             const SetPlaces* places)
-        : mesh_(mesh), tree_(tree), exchange_(exchange), opening_(opening), places_(places) {}
+    RowMaker(const PatchMesh& mesh, const ClusterTree& tree, const ExchangeAreas& exchange, double opening)
+        : mesh_(mesh), tree_(tree), exchange_(exchange), opening_(opening) {}
 
-    [[nodiscard]] ClusteredRow make(const SeenRow& seen);
+    /// @param places  of what the row tells as a whole; null where that is nothing
+    [[nodiscard]] ClusteredRow make(const SeenRow& seen, const SetPlaces* places);
 
 private:
     static constexpr std::uint32_t most_strata = 4; ///< of a cluster
@@ -124,6 +123,8 @@ private:
         std::uint32_t strata = 0;
         std::uint32_t known = 0; ///< patches that the row tells of
         bool clear = true;       ///< whether nothing of these is hidden
+        bool asked = false;      ///< whether may_face is known
+        bool may_face = false;   ///< whether some of the part may face the receiver
         double shares = 0.0;     ///< of these, together
     };
     /// Of some patches side by side in a far part; areas in scene units squared.
@@ -146,13 +147,13 @@ private:
     void add_to_strata(std::uint32_t part, std::uint32_t low, std::uint32_t high, double area, Share share);
     void add_near(std::uint32_t patch, Share share);
     void add_far(std::uint32_t part, double mean);
-    [[nodiscard]] bool may_face_part(std::uint32_t part) const;
+    [[nodiscard]] bool may_face_part(std::uint32_t part);
 
     const PatchMesh& mesh_;
     const ClusterTree& tree_;
     const ExchangeAreas& exchange_;
     double opening_;
-    const SetPlaces* places_;
+    const SetPlaces* places_ = nullptr;    ///< of the sets of the row
     std::uint32_t patch_ = 0;              ///< of the row
     double area_ = 0.0;                    ///< of it
     double shares_ = 0.0;                  ///< of all patches that the row tells of

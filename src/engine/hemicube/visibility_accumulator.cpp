@@ -27,7 +27,9 @@ constexpr std::int64_t max_window = 7; // cells either way
 constexpr std::uint32_t clear_texels = 12;
 // A side of a polygon with more cells than so many a texel is pooled as a whole where a row may tell of it
 // so.
+// Only where these are few: many show what of the side is hidden, and what not.
 constexpr std::uint32_t cells_a_texel = 4;
+constexpr std::uint32_t most_joint_texels = 32;
 // Numbers of texels are kept in a byte, of which one value means clear.
 constexpr std::uint32_t max_evidence = visibility_clear - 1;
 
@@ -182,15 +184,13 @@ void VisibilityAccumulator::add_hidden_sets(Coverage& coverage) {
     for (const std::uint32_t part : coverage.hidden_parts) {
         add_joint(sets_->of_part(part), 0.0f, max_evidence);
     }
-    for (const std::uint32_t polygon : coverage.hidden_polygons) {
-        for (const bool back : {false, true}) {
-            if (const std::uint32_t side = SideSets::of_side(polygon, back); sets_->any(side)) {
-                add_joint(side, 0.0f, max_evidence);
-            }
+    for (const Side& hidden : coverage.hidden_sides) {
+        if (const std::uint32_t side = SideSets::of_side(hidden.polygon, hidden.back); sets_->any(side)) {
+            add_joint(side, 0.0f, max_evidence);
         }
     }
     coverage.hidden_parts.clear();
-    coverage.hidden_polygons.clear();
+    coverage.hidden_sides.clear();
 }
 
 /// A polygon of one cell: there is nothing to pool.
@@ -357,7 +357,8 @@ void VisibilityAccumulator::pool(const Side& side) {
         hidden += hidden_[id];
     }
     if (const std::uint32_t all = texels(visible) + texels(hidden);
-        sets_ != nullptr && all > 0 && (texels(hidden) == 0 || cells_a_texel * all <= count)) {
+        sets_ != nullptr && all > 0 &&
+        (texels(hidden) == 0 || (all <= most_joint_texels && cells_a_texel * all <= count))) {
         const std::uint32_t evidence = texels(hidden) == 0 ? visibility_clear : std::min(all, max_evidence);
         add_joint(SideSets::of_side(side.polygon, side.back), share_of(visible, hidden), evidence);
     } else if (texels(hidden) > 0) {

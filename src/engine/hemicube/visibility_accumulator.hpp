@@ -43,8 +43,7 @@ public:
     void add_tiles(std::span<const std::uint32_t> ids, const TileWeights& weights);
     /// The row of hemicubes that add_tiles() added. The coverage is empty afterwards.
     /// @param sets  sides and parts of which it tells as a whole, in VisibilityRow::joint; null: of every
-    /// patch
-    ///   by itself. Must live as long as the view.
+    ///   patch by itself. Must live as long as the view.
     [[nodiscard]] VisibilityRow take(Coverage& coverage, const SideSets* sets = nullptr);
 
 private:

@@ -18,8 +18,7 @@ public:
     /// @param geometry  and `scene`, which is made of its draw list, must outlive this
     /// @param quantity  what the rows mean
     /// @param sets      what rows of visibility of one eye point tell of as a whole; null: nothing. Must
-    /// outlive
-    ///   this.
+    ///   outlive this.
     CpuRows(const EngineGeometry& geometry, const RasterScene& scene, const HemicubeSettings& settings,
             RowQuantity quantity, const SideSets* sets = nullptr);
     ~CpuRows();

@@ -519,7 +519,7 @@ private:
         if (occlusion) {
             const Sight sight = sight_of(faces, points_, projection_, target_, slack_);
             if (covering && sight.is_hidden()) {
-                target_.coverage()->hidden_polygons.push_back(drawn.polygon);
+                target_.coverage()->hidden_sides.push_back({drawn.polygon, !front});
             }
             faces = faces_to_draw<covering>(faces, sight);
             if (faces == 0) {

@@ -32,8 +32,8 @@ struct Coverage {
     /// Whether parts and polygons that are hidden as a whole need not be drawn: they stand below, and nothing
     /// else is known of them.
     bool skip_hidden = false;
-    std::vector<std::uint32_t> hidden_parts;    ///< of the RasterScene
-    std::vector<std::uint32_t> hidden_polygons; ///< of the draw list
+    std::vector<std::uint32_t> hidden_parts; ///< of the RasterScene
+    std::vector<Side> hidden_sides;          ///< those towards the eye, of polygons
 };
 
 /// Fills the item buffers of one hemicube after another on the calling thread, by SIMD instructions.
