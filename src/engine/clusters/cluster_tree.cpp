@@ -178,6 +178,33 @@ private:
     Tree tree_;
 };
 
+/// Moments of the nodes: of a patch as of a square, of others what those of their children make up.
+std::vector<ClusterMoments> moments_of(const PatchMesh& mesh, const Tree& tree) {
+    std::vector<ClusterMoments> moments(tree.nodes.size());
+    for (std::size_t k = tree.nodes.size(); k-- > 0;) {
+        const SourceClusters::Node& node = tree.nodes[k];
+        ClusterMoments& here = moments[k];
+        if (node.child == 0) {
+            const std::uint32_t patch = tree.order[node.begin];
+            here.area = mesh.areas()[patch];
+            here.centre = mesh.centres()[patch];
+            here.normals = here.area * mesh.normal(patch);
+            here.second = here.area * here.area / 6.0;
+            continue;
+        }
+        const ClusterMoments& a = moments[node.child];
+        const ClusterMoments& b = moments[node.child + 1];
+        here.area = a.area + b.area;
+        here.centre = (a.area * a.centre + b.area * b.centre) / here.area;
+        here.normals = a.normals + b.normals;
+        for (const ClusterMoments* const part : {&a, &b}) {
+            const Vec3 offset = part->centre - here.centre;
+            here.second += part->second + part->area * glm::dot(offset, offset);
+        }
+    }
+    return moments;
+}
+
 } // namespace
 
 bool may_face(const ClusterShape& cluster, const Vec3& at, const std::optional<Vec3>& normal, double reach) {
@@ -210,6 +237,7 @@ ClusterTree::ClusterTree(const PatchMesh& mesh, std::span<const std::uint8_t> ap
     for (const std::uint32_t patch : built.order) {
         area_before_.push_back(area_before_.back() + mesh.areas()[patch]);
     }
+    moments_ = moments_of(mesh, built);
     clusters_ =
         std::make_shared<SourceClusters>(std::move(built.order), std::move(built.nodes), mesh.areas());
 }

@@ -21,6 +21,14 @@ struct ClusterShape {
     bool one_direction = true; ///< whether the cone is narrow enough for one source
 };
 
+/// Moments of the area of a cluster.
+struct ClusterMoments {
+    double area = 0.0;   ///< scene units squared
+    Vec3 centre{0.0};    ///< of the area
+    Vec3 normals{0.0};   ///< sum of the patches' normals times their areas
+    double second = 0.0; ///< area times distance from the centre squared, summed
+};
+
 /// Whether some patch of a cluster may have its front towards a receiver, and be above its horizon.
 /// @param at      middle of the receiver, scene units
 /// @param normal  of it, of unit length; without it looks all ways
@@ -43,6 +51,8 @@ public:
     [[nodiscard]] double radius_of(std::uint32_t patch) const { return shapes_[leaf_of_[patch]].radius; }
     /// Of the patches of a node, scene units squared.
     [[nodiscard]] double area(std::uint32_t node) const { return clusters_->weight(node); }
+    /// Where the area of a node lies, and what it looks at.
+    [[nodiscard]] const ClusterMoments& moments(std::uint32_t node) const { return moments_[node]; }
     /// Of the patches order[begin] … order[end - 1] of SourceClusters, scene units squared.
     [[nodiscard]] double area_between(std::uint32_t begin, std::uint32_t end) const {
         return area_before_[end] - area_before_[begin];
@@ -74,8 +84,9 @@ public:
 private:
     std::vector<ClusterShape> shapes_;
     std::vector<std::uint32_t> position_;
-    std::vector<std::uint32_t> leaf_of_; ///< of a patch
-    std::vector<double> area_before_;    ///< N + 1: of the patches before a position
+    std::vector<std::uint32_t> leaf_of_;  ///< of a patch
+    std::vector<ClusterMoments> moments_; ///< of nodes
+    std::vector<double> area_before_;     ///< N + 1: of the patches before a position
     std::shared_ptr<const SourceClusters> clusters_;
 };
 

@@ -78,15 +78,25 @@ void RowMaker::stand_at(std::uint32_t patch) {
     tree_.seen_from(patch, opening_, parts_);
     begins_.clear();
     sums_.assign(parts_.size(), {});
-    std::uint32_t strata = 0;
+    strata_.clear();
     for (std::size_t part = 0; part < parts_.size(); ++part) {
-        const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
-        begins_.push_back(node.begin);
-        sums_[part].first_stratum = strata;
-        sums_[part].strata = parts_[part].far ? std::min(node.end - node.begin, most_strata) : 0;
-        strata += sums_[part].strata;
+        begins_.push_back(tree_.clusters()->nodes()[parts_[part].node].begin);
+        sums_[part].first_stratum = static_cast<std::uint32_t>(strata_.size());
+        if (parts_[part].far) {
+            add_strata(parts_[part].node, 0);
+        }
+        sums_[part].strata = static_cast<std::uint32_t>(strata_.size()) - sums_[part].first_stratum;
     }
-    strata_.assign(strata, {});
+}
+
+void RowMaker::add_strata(std::uint32_t node, std::uint32_t depth) {
+    const SourceClusters::Node& here = tree_.clusters()->nodes()[node];
+    if (depth == strata_depth || here.child == 0) {
+        strata_.push_back({.node = node, .begin = here.begin});
+        return;
+    }
+    add_strata(here.child, depth + 1);
+    add_strata(here.child + 1, depth + 1);
 }
 
 /// The part that holds a position in the tree.
@@ -96,12 +106,14 @@ std::uint32_t RowMaker::part_at(std::uint32_t position, std::uint32_t not_before
     return static_cast<std::uint32_t>(after - begins_.begin()) - 1;
 }
 
-/// The stratum of a far part that holds a position: as many patches in each, but for one more or less.
+/// The stratum of a far part that holds a position.
 std::uint32_t RowMaker::stratum_at(std::uint32_t part, std::uint32_t position) const {
-    const SourceClusters::Node& node = tree_.clusters()->nodes()[parts_[part].node];
     const Sum& sum = sums_[part];
-    return sum.first_stratum + static_cast<std::uint32_t>(std::uint64_t{position - node.begin} * sum.strata /
-                                                          (node.end - node.begin));
+    std::uint32_t stratum = sum.first_stratum + sum.strata - 1;
+    while (strata_[stratum].begin > position) {
+        --stratum;
+    }
+    return stratum;
 }
 
 void RowMaker::add_patch(std::uint32_t patch, Share share) {
@@ -180,6 +192,38 @@ void RowMaker::add_near(std::uint32_t patch, Share share) {
     }
 }
 
+/// By how much points of strata are farther from the middle of their cluster than the strata's middles, so
+/// that they have the second moment of its area.
+double RowMaker::spread(std::uint32_t part) const {
+    const Sum& sum = sums_[part];
+    const ClusterMoments& whole = tree_.moments(parts_[part].node);
+    double of_middles = 0.0;
+    for (std::uint32_t k = sum.first_stratum; k < sum.first_stratum + sum.strata; ++k) {
+        const ClusterMoments& own = tree_.moments(strata_[k].node);
+        const Vec3 offset = own.centre - whole.centre;
+        of_middles += own.area * glm::dot(offset, offset);
+    }
+    return of_middles > 0.0 ? std::sqrt(whole.second / of_middles) : 1.0;
+}
+
+/// Unoccluded factor from the receiver to a stratum over the area of the stratum.
+double RowMaker::factor_of_area(std::uint32_t part, const Stratum& stratum, double spread) const {
+    const ClusterMoments& own = tree_.moments(stratum.node);
+    const SourceClusters::Node& node = tree_.clusters()->nodes()[stratum.node];
+    if (node.child != 0) {
+        const Vec3& middle = tree_.moments(parts_[part].node).centre;
+        const double projected = glm::length(own.normals);
+        const double seen =
+            exchange_.at_point(middle + spread * (own.centre - middle), own.normals / projected, patch_);
+        if (seen > 0.0) {
+            return seen * projected / (own.area * area_);
+        }
+    }
+    // A single patch, or one of several that together look away.
+    const std::uint32_t first = tree_.clusters()->order()[node.begin];
+    return exchange_(patch_, first) / (mesh_.areas()[first] * area_);
+}
+
 /// @param mean  visibility of all patches that the row tells of
 void RowMaker::add_far(std::uint32_t part, double mean) {
     const std::uint32_t k = parts_[part].node;
@@ -192,34 +236,19 @@ void RowMaker::add_far(std::uint32_t part, double mean) {
     if (!(sum.shares > 0.0) && !(share > 0.0)) {
         return; // all of it is hidden, or looks away
     }
+    const double apart = spread(part);
     double factor = 0.0;
     double unoccluded = 0.0;
     for (std::uint32_t s = 0; s < sum.strata; ++s) {
         const Stratum& stratum = strata_[sum.first_stratum + s];
-        // The first positions whose stratum_at() is this one and the next.
-        const auto begin_of = [&](std::uint32_t at) {
-            return node.begin +
-                   static_cast<std::uint32_t>((std::uint64_t{at} * count + sum.strata - 1) / sum.strata);
-        };
-        const std::uint32_t begin = begin_of(s);
-        const std::uint32_t end = begin_of(s + 1);
-        const double left = std::max(0.0, tree_.area_between(begin, end) - stratum.known);
+        const SourceClusters::Node& of_stratum = tree_.clusters()->nodes()[stratum.node];
+        const double left =
+            std::max(0.0, tree_.area_between(of_stratum.begin, of_stratum.end) - stratum.known);
         const double lit = stratum.lit + (sum.known < count ? left * share : 0.0);
         if (!(lit > 0.0)) {
             continue;
         }
-        // The middle one; where that sees nothing of the receiver, the first or the last.
-        double of_area = 0.0;
-        for (const std::uint32_t at : {begin + (end - begin) / 2, begin, end - 1}) {
-            const std::uint32_t one = tree_.clusters()->order()[at];
-            of_area = exchange_(patch_, one) / (mesh_.areas()[one] * area_);
-            if (of_area > 0.0) {
-                break;
-            }
-        }
-        if (!(of_area > 0.0)) {
-            continue;
-        }
+        const double of_area = factor_of_area(part, stratum, apart);
         factor += of_area * lit;
         unoccluded += of_area * (stratum.seen + (share > 0.0 ? left : 0.0));
     }
