@@ -75,6 +75,28 @@ FormFactors compute_plain_rows(const Scene& scene, const PatchMesh& mesh,
     return factors;
 }
 
+/// What rows of clusters will need, from a few of them.
+MatrixEstimate estimate_clustered(VisibilityProvider& engine, const PatchMesh& mesh,
+                                  std::span<const std::uint32_t> patches, const ClusterSettings& settings) {
+    std::vector<std::uint32_t> sample;
+    for (std::size_t k = 0; k < sampled_rows; ++k) {
+        sample.push_back(patches[k * patches.size() / sampled_rows]);
+    }
+    const Stopwatch watch;
+    double seconds = 0.0;
+    const FormFactorMatrix rows =
+        compute_clustered(rows_of_rank(engine), mesh, sample, settings, Enclosure::open,
+                          [&](std::size_t /*done*/, std::size_t /*total*/) {
+                              seconds = watch.seconds();
+                              return true;
+                          });
+    MatrixEstimate estimate;
+    estimate.entries_per_row = static_cast<double>(rows.entries()) / sampled_rows;
+    estimate.memory_bytes = matrix_memory(estimate.entries_per_row, patches.size(), mesh.size());
+    estimate.seconds = seconds / sampled_rows * static_cast<double>(patches.size());
+    return estimate;
+}
+
 FormFactors compute_rows_of_clusters(const Scene& scene, const PatchMesh& mesh,
                                      std::span<const std::uint32_t> patches, const FactorSettings& settings,
                                      Observer& observer) {
@@ -89,6 +111,11 @@ FormFactors compute_rows_of_clusters(const Scene& scene, const PatchMesh& mesh,
     clusters.opening = cluster_opening(settings.cluster_error);
     clusters.max_memory = memory_limit(settings);
     clusters.apart = emitting_patches(scene, mesh);
+    if (patches.size() > unsampled_rows) {
+        check_estimate(estimate_clustered(*engine, mesh, patches, clusters), patches.size(), settings,
+                       observer, "Larger patches, a larger cluster error or a higher limit");
+        stop_if_interrupted();
+    }
     factors.matrix = compute_clustered(computation.rows_of_this_rank(), mesh, patches, clusters,
                                        scene.enclosure, computation.timed_progress(Phase::visibility));
     computation.finish(mesh, patches.size());

@@ -73,20 +73,24 @@ void note_unoccluded(Method method, Observer& observer) {
     }
 }
 
-void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, const FactorSettings& settings,
-                  Observer& observer, std::string_view advice) {
-    if (patches.size() <= unsampled_rows) {
-        return;
-    }
-    const MatrixEstimate estimate = estimate_matrix(engine, patches, sampled_rows);
-    observer.detail(fmt::format("{} rows will need about {} and {}", count_text(patches.size()),
+void check_estimate(const MatrixEstimate& estimate, std::size_t rows, const FactorSettings& settings,
+                    Observer& observer, std::string_view advice) {
+    observer.detail(fmt::format("{} rows will need about {} and {}", count_text(rows),
                                 memory_text(estimate.memory_bytes), seconds_text(estimate.seconds)));
     if (estimate.memory_bytes > memory_limit(settings)) {
         throw OutOfMemory(
             fmt::format("{} rows of about {:.0f} entries would need {}; the limit is {}. {} would help",
-                        count_text(patches.size()), estimate.entries_per_row,
-                        memory_text(estimate.memory_bytes), memory_limit_text(settings), advice),
+                        count_text(rows), estimate.entries_per_row, memory_text(estimate.memory_bytes),
+                        memory_limit_text(settings), advice),
             {"patch-size", "resolution", "max-memory"});
+    }
+}
+
+void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, const FactorSettings& settings,
+                  Observer& observer, std::string_view advice) {
+    if (patches.size() > unsampled_rows) {
+        check_estimate(estimate_matrix(engine, patches, sampled_rows), patches.size(), settings, observer,
+                       advice);
     }
 }
 

@@ -35,7 +35,12 @@ inline constexpr std::size_t unsampled_rows = 256;
 
 /// The memory that rows may take, and where that comes from.
 [[nodiscard]] std::string memory_limit_text(const FactorSettings& settings);
-/// Says what rows will need, by a sample.
+/// Says what rows will need.
+/// @param advice  what would help if they do not fit
+/// @throws OutOfMemory if they do not fit
+void check_estimate(const MatrixEstimate& estimate, std::size_t rows, const FactorSettings& settings,
+                    Observer& observer, std::string_view advice);
+/// The same by a sample.
 /// @param advice  what would help if they do not fit
 /// @throws OutOfMemory if they do not fit
 void check_memory(RowProvider& engine, std::span<const std::uint32_t> patches, const FactorSettings& settings,
