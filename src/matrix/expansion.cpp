@@ -16,7 +16,7 @@ namespace hemi {
 
 namespace {
 
-constexpr std::uint32_t block_rows = FormFactorMatrix::block_rows;
+constexpr std::uint32_t rows_a_block = FormFactorMatrix::block_rows;
 constexpr std::uint64_t entry_bytes = sizeof(std::uint32_t) + sizeof(float);
 
 /// At most so many entries a row has by single patches.
@@ -79,14 +79,14 @@ FormFactorMatrix expand_clusters(const FormFactorMatrix& factors, std::uint64_t 
                         memory_text(entries * entry_bytes), memory_text(max_memory)),
             {"max-memory"});
     }
-    std::vector<RowBlock> blocks((std::size_t{size} + block_rows - 1) / block_rows);
+    std::vector<RowBlock> blocks((std::size_t{size} + rows_a_block - 1) / rows_a_block);
     parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
         RowExpander expander(factors);
         for (std::size_t b = begin; b < end; ++b) {
             RowBlock& block = blocks[b];
-            block.first_row = static_cast<std::uint32_t>(b) * block_rows;
+            block.first_row = static_cast<std::uint32_t>(b) * rows_a_block;
             block.begin.push_back(0);
-            const std::uint32_t last = std::min(size - block.first_row, block_rows) + block.first_row;
+            const std::uint32_t last = std::min(size - block.first_row, rows_a_block) + block.first_row;
             for (std::uint32_t i = block.first_row; i < last; ++i) {
                 expander.add_row(i, block);
             }
