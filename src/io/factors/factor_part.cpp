@@ -42,14 +42,14 @@ Json header(const FactorPart& part, const PatchMesh& mesh) {
 }
 
 /// What the chunks need beside what is in the part itself.
-struct Layout {
+struct PartLayout {
     std::uint32_t surfaces = 0;
     std::vector<std::uint32_t> blocks; ///< their first rows
     std::vector<std::uint32_t> reference_blocks;
     std::optional<std::uint32_t> patches; ///< that rows are parts of
 };
 
-Layout read_header(const JsonNode& head, FactorPart& part) {
+PartLayout read_header(const JsonNode& head, FactorPart& part) {
     if (integer32(head.member("block_rows")) != FormFactorMatrix::block_rows) {
         head.member("block_rows").expect(fmt::format("{}", FormFactorMatrix::block_rows));
     }
@@ -73,7 +73,7 @@ Layout read_header(const JsonNode& head, FactorPart& part) {
     part.provenance = read_provenance(head);
     part.groups = head.member("groups").texts();
     part.entries = head.member("entries").integer(std::uint64_t{part.end - part.first} * part.size);
-    Layout layout;
+    PartLayout layout;
     layout.surfaces = integer32(head.member("surfaces"));
     layout.blocks = read_first_rows(head.member("blocks"), part.size);
     layout.reference_blocks = read_first_rows(head.member("reference_blocks"), part.size);
@@ -113,7 +113,7 @@ bool has_kind(const FormFactorMatrix& rows, bool visibility) {
     return rows.entries() == 0 || rows.has_visibility() == visibility;
 }
 
-void read_rows(ChunkReader& reader, const Layout& layout, FactorPart& part) {
+void read_rows(ChunkReader& reader, const PartLayout& layout, FactorPart& part) {
     part.rows = FormFactorMatrix(part.size);
     for (const std::uint32_t first_row : layout.blocks) {
         set_row_block(reader.chunk("ROWS"), part.rows, first_row);
@@ -162,7 +162,7 @@ FactorPart read_factor_part(const std::filesystem::path& path, FactorPartContent
     ChunkReader reader(path, part_format);
     FactorPart part;
     const Json document = parse_json(reader.chunk("HEAD").text(), reader.file());
-    const Layout layout = read_header(JsonNode(document, reader.file()), part);
+    const PartLayout layout = read_header(JsonNode(document, reader.file()), part);
     (void)read_areas(reader.chunk("AREA"), part.size); // so many patches as the file is long enough for
     part.surfaces = read_surfaces(reader.chunk("SURF"), layout.surfaces, part.size, {});
     for (Surface& surface : part.surfaces) {

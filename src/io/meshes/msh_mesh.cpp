@@ -14,7 +14,7 @@ namespace hemi::io {
 
 namespace {
 
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t no_element = std::numeric_limits<std::uint32_t>::max();
 
 /// Version 2.2, ASCII: line by line.
 class MshTextReader {
@@ -109,8 +109,8 @@ private:
             fail("a second section of nodes");
         }
         const std::uint64_t count = read_count(section, 8); // 1 0 0 0
-        if (count >= none) {
-            fail(fmt::format("{} nodes; there can be {}", count, none - 1));
+        if (count >= no_element) {
+            fail(fmt::format("{} nodes; there can be {}", count, no_element - 1));
         }
         faces_.reserve_nodes(count);
         for (std::uint64_t k = 0; k < count; ++k) {
