@@ -80,16 +80,25 @@ FormFactorMatrix expand_clusters(const FormFactorMatrix& factors, std::uint64_t 
             {"max-memory"});
     }
     std::vector<RowBlock> blocks((std::size_t{size} + rows_a_block - 1) / rows_a_block);
-    parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t grain = 16; // an expander has a number for every patch
+    parallel_for(blocks.size(), grain, [&](std::size_t begin, std::size_t end) {
         RowExpander expander(factors);
         for (std::size_t b = begin; b < end; ++b) {
             RowBlock& block = blocks[b];
             block.first_row = static_cast<std::uint32_t>(b) * rows_a_block;
             block.begin.push_back(0);
             const std::uint32_t last = std::min(size - block.first_row, rows_a_block) + block.first_row;
+            std::uint64_t most = 0;
+            for (std::uint32_t i = block.first_row; i < last; ++i) {
+                most += expanded_entries(factors, factors.row(i));
+            }
+            block.columns.reserve(most);
+            block.values.reserve(most);
             for (std::uint32_t i = block.first_row; i < last; ++i) {
                 expander.add_row(i, block);
             }
+            block.columns.shrink_to_fit();
+            block.values.shrink_to_fit();
         }
     });
     FormFactorMatrix result(size);

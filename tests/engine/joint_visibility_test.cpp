@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <utility>
 #include <vector>
@@ -178,10 +179,11 @@ TEST_CASE("Joint visibility: rows of several eye points may come first, and tell
     CHECK(joint_difference(PatchMesh(scene), hemicube) < 2e-3);
 }
 
-TEST_CASE("Joint visibility: the same of any number of threads", "[engine]") {
+TEST_CASE("Joint visibility: the same of any number of threads and any instruction set", "[engine]") {
     const PatchMesh mesh(blocks_on_ground(5, 4));
     std::vector<std::vector<std::uint32_t>> told;
-    for (const std::uint32_t threads : {1u, 2u}) {
+    for (const auto& [threads, simd] : {std::pair(1u, ""), std::pair(2u, ""), std::pair(1u, "scalar")}) {
+        ::setenv("HEMI_SIMD", simd, 1);
         const auto engine = make_visibility_engine(mesh, settings_of(true), {cpu_device, threads, {}});
         std::vector<std::uint32_t>& all = told.emplace_back();
         engine->rows(all_patches(mesh.size()), [&all](std::uint32_t /*patch*/, const VisibilityRow& row) {
@@ -192,6 +194,8 @@ TEST_CASE("Joint visibility: the same of any number of threads", "[engine]") {
             }
         });
     }
+    ::unsetenv("HEMI_SIMD");
     CHECK(!told[0].empty());
     CHECK(told[0] == told[1]);
+    CHECK(told[0] == told[2]);
 }
