@@ -232,11 +232,6 @@ ClusterTree::ClusterTree(const PatchMesh& mesh, std::span<const std::uint8_t> ap
             leaf_of_[patch] = k;
         }
     }
-    area_before_.reserve(std::size_t{mesh.size()} + 1);
-    area_before_.push_back(0.0);
-    for (const std::uint32_t patch : built.order) {
-        area_before_.push_back(area_before_.back() + mesh.areas()[patch]);
-    }
     moments_ = moments_of(mesh, built);
     clusters_ =
         std::make_shared<SourceClusters>(std::move(built.order), std::move(built.nodes), mesh.areas());

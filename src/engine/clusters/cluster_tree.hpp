@@ -49,14 +49,8 @@ public:
     [[nodiscard]] const ClusterShape& shape(std::uint32_t node) const { return shapes_[node]; }
     /// Of the sphere about a patch, scene units.
     [[nodiscard]] double radius_of(std::uint32_t patch) const { return shapes_[leaf_of_[patch]].radius; }
-    /// Of the patches of a node, scene units squared.
-    [[nodiscard]] double area(std::uint32_t node) const { return clusters_->weight(node); }
     /// Where the area of a node lies, and what it looks at.
     [[nodiscard]] const ClusterMoments& moments(std::uint32_t node) const { return moments_[node]; }
-    /// Of the patches order[begin] … order[end - 1] of SourceClusters, scene units squared.
-    [[nodiscard]] double area_between(std::uint32_t begin, std::uint32_t end) const {
-        return area_before_[end] - area_before_[begin];
-    }
     /// Position of a patch in SourceClusters::order().
     [[nodiscard]] std::uint32_t position(std::uint32_t patch) const { return position_[patch]; }
 
@@ -86,7 +80,6 @@ private:
     std::vector<std::uint32_t> position_;
     std::vector<std::uint32_t> leaf_of_;  ///< of a patch
     std::vector<ClusterMoments> moments_; ///< of nodes
-    std::vector<double> area_before_;     ///< N + 1: of the patches before a position
     std::shared_ptr<const SourceClusters> clusters_;
 };
 

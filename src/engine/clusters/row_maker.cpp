@@ -241,9 +241,7 @@ void RowMaker::add_far(std::uint32_t part, double mean) {
     double unoccluded = 0.0;
     for (std::uint32_t s = 0; s < sum.strata; ++s) {
         const Stratum& stratum = strata_[sum.first_stratum + s];
-        const SourceClusters::Node& of_stratum = tree_.clusters()->nodes()[stratum.node];
-        const double left =
-            std::max(0.0, tree_.area_between(of_stratum.begin, of_stratum.end) - stratum.known);
+        const double left = std::max(0.0, tree_.moments(stratum.node).area - stratum.known);
         const double lit = stratum.lit + (sum.known < count ? left * share : 0.0);
         if (!(lit > 0.0)) {
             continue;

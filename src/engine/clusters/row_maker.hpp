@@ -124,10 +124,10 @@ private:
         std::uint32_t first_stratum = 0;
         std::uint32_t strata = 0;
         std::uint32_t known = 0; ///< patches that the row tells of
+        double shares = 0.0;     ///< of these, together
         bool clear = true;       ///< whether nothing of these is hidden
         bool asked = false;      ///< whether may_face is known
         bool may_face = false;   ///< whether some of the part may face the receiver
-        double shares = 0.0;     ///< of these, together
     };
     /// Of a node of the tree within a far part; areas in scene units squared.
     struct Stratum {

@@ -262,7 +262,7 @@ private:
             }
         }
         if (looks < patches.size()) {
-            const double scale = tree_->area(part) / area;
+            const double scale = tree_->moments(part).area / area;
             for (std::size_t k = first; k < entries.size(); ++k) {
                 entries[k].unoccluded *= scale;
                 entries[k].single = false;
