@@ -9,8 +9,10 @@
 
 namespace hemi {
 
-PointDaylight::PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky, UpAxis up)
-    : mesh_(mesh), sun_(std::move(sun)), sky_(std::move(sky)), up_(upwards(up)), images_(mesh) {
+PointDaylight::PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky, UpAxis up,
+                             std::shared_ptr<const SourceClusters> clusters)
+    : mesh_(mesh), clusters_(std::move(clusters)), sun_(std::move(sun)), sky_(std::move(sky)),
+      up_(upwards(up)), images_(mesh) {
     if (sun_) {
         rays_.emplace(images_.mesh());
     }
@@ -25,10 +27,56 @@ PointDaylight::PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std:
         low_.push_back(low);
         high_.push_back(high);
     }
+    if (!clusters_ || !sky_) {
+        return;
+    }
+    const std::span<const SourceClusters::Node> nodes = clusters_->nodes();
+    low_.resize(mesh.size() + nodes.size());
+    high_.resize(low_.size());
+    for (std::size_t k = nodes.size(); k-- > 0;) { // children stand behind their parents
+        const std::size_t patch = clusters_->order()[nodes[k].begin];
+        const std::size_t first = nodes[k].child == 0 ? patch : mesh.size() + nodes[k].child;
+        const std::size_t second = nodes[k].child == 0 ? patch : first + 1;
+        low_[mesh.size() + k] = std::min(low_[first], low_[second]);
+        high_[mesh.size() + k] = std::max(high_[first], high_[second]);
+    }
+    centres_.resize(3 * low_.size());
+    for (std::size_t j = 0; j < mesh.size(); ++j) {
+        for (int axis = 0; axis < 3; ++axis) {
+            centres_[3 * j + static_cast<std::size_t>(axis)] = mesh.centres()[j][axis];
+        }
+    }
+    clusters_->fill(centres_, 3);
 }
 
 SkyMoments PointDaylight::seen_above(const Vec3& at, const std::optional<Vec3>& normal,
-                                     std::uint32_t patch) const {
+                                     std::uint32_t column) const {
+    if (column < mesh_.size()) {
+        return seen_above_of_patch(at, normal, column);
+    }
+    const std::uint32_t cluster = column - mesh_.size();
+    const SourceClusters::Node& node = clusters_->nodes()[cluster];
+    const double height = glm::dot(at, up_);
+    if (high_[column] <= height) {
+        return {};
+    }
+    if (low_[column] >= height) { // in about one direction
+        const double* const centre = &centres_[3 * std::size_t{column}];
+        const Vec3 way = Vec3(centre[0], centre[1], centre[2]) - at;
+        return {1.0, std::max(0.0, glm::dot(way, up_)) / glm::length(way)};
+    }
+    if (node.child == 0) {
+        return seen_above_of_patch(at, normal, clusters_->order()[node.begin]);
+    }
+    const double first = clusters_->first_share(cluster);
+    const std::uint32_t child = mesh_.size() + node.child;
+    SkyMoments above = first * seen_above(at, normal, child);
+    above += (1.0 - first) * seen_above(at, normal, child + 1);
+    return above;
+}
+
+SkyMoments PointDaylight::seen_above_of_patch(const Vec3& at, const std::optional<Vec3>& normal,
+                                              std::uint32_t patch) const {
     const double height = glm::dot(at, up_);
     const bool all_above = low_[patch] >= height;
     if (all_above && !sky_) {

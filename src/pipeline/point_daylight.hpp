@@ -3,9 +3,11 @@
 #include "engine/analytic/sky_integral.hpp"
 #include "engine/rays/shadow_rays.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 #include "hemi/scene/image_mesh.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,7 +22,9 @@ public:
     /// @param sun   none: no beam
     /// @param sky   none: no light; moments of what is seen are of shares alone then
     /// @param up    of the horizon
-    PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky, UpAxis up);
+    /// @param clusters  that columns of rows may be; null: they are patches
+    PointDaylight(const PatchMesh& mesh, std::optional<Sun> sun, std::optional<Sky> sky, UpAxis up,
+                  std::shared_ptr<const SourceClusters> clusters = nullptr);
 
     /// What is seen of the environment.
     struct Environment {
@@ -28,10 +32,11 @@ public:
         double below = 0.0; ///< share
     };
 
-    /// Of what is seen of a patch: the share above the point's horizon, and the mean of sin(elevation) there.
+    /// Of what is seen of a patch or a cluster: the share above the point's horizon, and the mean of
+    /// sin(elevation) there.
     /// @param normal  none: of a small sphere
     [[nodiscard]] SkyMoments seen_above(const Vec3& at, const std::optional<Vec3>& normal,
-                                        std::uint32_t patch) const;
+                                        std::uint32_t column) const;
     /// The environment's share of a row, split at the horizon.
     /// @param blocked    share of backs, which hide sky as evenly as that is seen
     /// @param available  of all directions
@@ -67,14 +72,19 @@ public:
     }
 
 private:
+    [[nodiscard]] SkyMoments seen_above_of_patch(const Vec3& at, const std::optional<Vec3>& normal,
+                                                 std::uint32_t patch) const;
+
     const PatchMesh& mesh_;
+    std::shared_ptr<const SourceClusters> clusters_;
     std::optional<Sun> sun_;
     std::optional<Sky> sky_;
     Vec3 up_;
     ImageMesh images_;
     std::optional<ShadowRays> rays_; ///< where there is a sun
-    std::vector<double> low_;        ///< height of every patch
+    std::vector<double> low_;        ///< height of every patch, then of every cluster
     std::vector<double> high_;       ///< likewise
+    std::vector<double> centres_;    ///< three numbers a column, where there are clusters and a sky
 };
 
 } // namespace hemi

@@ -390,13 +390,15 @@ PointValues compute_point_values(const PatchMesh& mesh, std::span<const Receiver
         if (measure == DirectionMeasure::solid_angle) {
             hemicube.resolution = sphere_resolution(hemicube.resolution);
         }
+        // A sphere has two hemicubes: what one does not show, the other may.
+        hemicube.joint =
+            measure == DirectionMeasure::projected_solid_angle && mesh.size() > points_ask_singly;
         const auto engine = make_point_visibility_provider(mesh, places, hemicube, settings, measure);
-        compute_point_rows(
-            *engine, mesh, places, weighted, enclosure, weights, sink,
-            [&](std::size_t done, std::size_t) {
-                return observer.progress(Phase::points, before + done, rows.size());
-            },
-            measure);
+        compute_point_rows(*engine, mesh, places, weighted, enclosure, weights, sink,
+                           [&](std::size_t done, std::size_t) {
+                               return observer.progress(Phase::points, before + done, rows.size());
+                           },
+                           {.measure = measure});
         before += places.size();
     };
     compute(rows.spheres, DirectionMeasure::solid_angle, [&](std::uint32_t index, const RowView& row) {

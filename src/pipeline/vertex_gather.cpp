@@ -4,11 +4,13 @@
 #include "display/vertex_colours_detail.hpp"
 
 #include "core/parallel_for.hpp"
+#include "engine/clusters/cluster_tree.hpp"
 #include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/display/vertex_colours.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 #include "pipeline/gathered_radiosity.hpp"
 #include "pipeline/point_daylight.hpp"
 #include "pipeline/visible_radiosity.hpp"
@@ -18,6 +20,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <optional>
 #include <utility>
 
 namespace hemi {
@@ -108,6 +112,24 @@ struct VertexGather::State {
         }
     }
 
+    /// Makes the clusters of a large scene, lamps apart.
+    void find_clusters(const PatchValues& values) {
+        if (mesh.size() <= points_ask_singly || mesh.symmetry()) {
+            return;
+        }
+        std::vector<std::uint8_t> shines(mesh.size(), 0);
+        std::vector<double> seen_areas(mesh.areas().begin(), mesh.areas().end());
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+            const auto own =
+                std::span(values.exitance).subspan(std::size_t{i} * values.channels, values.channels);
+            shines[i] = std::any_of(own.begin(), own.end(), [](double exitance) { return exitance > 0.0; });
+            seen_areas[i] *=
+                std::max(0.0, 1.0 - (blocked.empty() ? 0.0 : blocked[i])); // not what lies buried
+        }
+        tree.emplace(mesh, shines);
+        clusters = std::make_shared<SourceClusters>(tree->clusters()->with_weights(seen_areas));
+    }
+
     /// Adds the corners between which the values of vertices in the middle of an edge are interpolated.
     /// @param corners_at  corner k of patch i as i·4 + k, of every vertex
     void add_ends_of_edges(std::vector<std::vector<std::uint32_t>>& corners_at) const {
@@ -173,9 +195,16 @@ struct VertexGather::State {
         hosts.push_back(largest);
     }
 
+    /// Radiosity of what can be seen of the columns of rows.
     [[nodiscard]] std::vector<double> visible(const PatchValues& values,
                                               std::span<const double> radiosity) const {
-        return visible_radiosity(mesh, surfaces, near, values.channels, radiosity, values.exitance, blocked);
+        std::vector<double> seen =
+            visible_radiosity(mesh, surfaces, near, values.channels, radiosity, values.exitance, blocked);
+        if (clusters) {
+            seen.resize((mesh.size() + clusters->nodes().size()) * values.channels);
+            clusters->fill(seen, values.channels);
+        }
+        return seen;
     }
 
     void check(const PatchValues& values, std::span<const double> radiosity) const {
@@ -227,6 +256,8 @@ struct VertexGather::State {
     std::vector<std::uint32_t> point_of; ///< of corner k of patch i at [i·4 + k]
     std::vector<SurfacePoint> points;
     std::vector<std::uint32_t> hosts; ///< patch that each point lies on
+    std::optional<ClusterTree> tree;  ///< of large scenes: what is far stands in clusters
+    std::shared_ptr<const SourceClusters> clusters;
     KeptRows kept;
 };
 
@@ -246,6 +277,7 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
                                          std::uint64_t keep_bytes, Observer& observer) {
     State& state = *state_;
     state.check(values, radiosity);
+    state.find_clusters(values);
     const std::vector<double> seen = state.visible(values, radiosity);
     state.kept = {};
     KeptRows kept; // the state's when all are there
@@ -254,6 +286,7 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
     std::vector<std::uint8_t> buried(state.points.size(), 0);
     if (!state.points.empty()) {
         RowPlan plan = plan_rows(settings, state.mesh.size());
+        plan.hemicube.joint = state.tree.has_value();
         if (plan.hemicube.eye_points > 1) {
             plan.hemicube.resolution *= resolution_factor;
         }
@@ -270,7 +303,7 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
             kept.blocked.resize(state.points.size());
         }
         const auto engine = make_point_visibility_provider(state.mesh, state.points, plan.hemicube, settings);
-        const PointDaylight daylight(state.mesh, values.sun, values.sky, values.up);
+        const PointDaylight daylight(state.mesh, values.sun, values.sky, values.up, state.clusters);
         compute_point_rows(
             *engine, state.mesh, state.points, plan.weighted.value_or(VisibilityWeightedSettings{}),
             enclosure, weights,
@@ -295,7 +328,8 @@ std::vector<float> VertexGather::compute(const PatchValues& values, std::span<co
             },
             [&observer](std::size_t done, std::size_t total) {
                 return observer.progress(Phase::gather, done, total);
-            });
+            },
+            {.clusters = state.tree ? &*state.tree : nullptr});
     }
     state.kept = std::move(kept);
     return state.corners(at_points, buried, channels, radiosity);
@@ -315,7 +349,7 @@ std::vector<float> VertexGather::gather(const PatchValues& values, std::span<con
     const std::uint32_t channels = values.channels;
     std::vector<float> at_points(state.points.size() * channels, 0.0F);
     std::vector<std::uint8_t> buried(state.points.size(), 0);
-    const PointDaylight daylight(state.mesh, values.sun, values.sky, values.up);
+    const PointDaylight daylight(state.mesh, values.sun, values.sky, values.up, state.clusters);
     constexpr std::size_t points_at_once = 64;
     parallel_for(state.points.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {

@@ -4,8 +4,10 @@
 #include "support/polygon_factors.hpp"
 #include "support/scenes.hpp"
 
+#include "engine/clusters/cluster_tree.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/engine/exchange_area.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 #include "hemi/pipeline/settings.hpp"
 
 #include <catch2/catch.hpp>
@@ -46,15 +48,14 @@ std::vector<StoredRow> rows_of(const PatchMesh& mesh, const std::vector<SurfaceP
     hemicube.resolution = resolution;
     const auto engine = make_point_visibility_provider(mesh, points, hemicube, settings, measure);
     std::vector<StoredRow> rows(points.size());
-    compute_point_rows(
-        *engine, mesh, points, {ExchangeRule::standard, shadow_rays}, Enclosure::automatic, {},
-        [&rows](std::uint32_t index, const RowView& row) {
-            rows[index] = {{row.columns.begin(), row.columns.end()},
-                           {row.values.begin(), row.values.end()},
-                           row.environment,
-                           row.blocked};
-        },
-        {}, measure, singly);
+    compute_point_rows(*engine, mesh, points, {ExchangeRule::standard, shadow_rays}, Enclosure::automatic, {},
+                       [&rows](std::uint32_t index, const RowView& row) {
+                           rows[index] = {{row.columns.begin(), row.columns.end()},
+                                          {row.values.begin(), row.values.end()},
+                                          row.environment,
+                                          row.blocked};
+                       },
+                       {}, {.measure = measure, .singly = singly});
     return rows;
 }
 
@@ -254,6 +255,67 @@ TEST_CASE("point rows: patches too small for a texel give about the same light b
     CHECK(std::sqrt(change / all) < (measure == DirectionMeasure::solid_angle ? 2e-3 : 3e-4));
     CHECK(std::sqrt(error_by_parts) < 1.03 * std::sqrt(error_singly));
     CHECK(10 * entries_by_parts < 9 * entries);
+}
+
+TEST_CASE("point rows: clusters give about the same light as patches, and lamps far away as exactly",
+          "[engine][every-device]") {
+    const PatchMesh mesh(field_of_blocks(24));
+    std::vector<SurfacePoint> points;
+    std::vector<double> light;
+    for (std::uint32_t j = 0; j < mesh.size(); ++j) {
+        const Vec3& at = mesh.centres()[j];
+        const bool lamp = j % 241 == 7;
+        light.push_back((lamp ? 300.0 : 1.0) + 0.8 * std::sin(at.x) * std::cos(2.0 * at.y));
+        if (j % 149 == 0 || (j < 64 && j % 3 == 0)) {
+            points.push_back({at + 0.02 * mesh.normal(j), mesh.normal(j), no_surface});
+        }
+    }
+    const ClusterTree tree(mesh);
+    std::vector<double> all = light;
+    all.resize(mesh.size() + tree.clusters()->nodes().size());
+    tree.clusters()->fill(all, 1);
+    FactorSettings settings;
+    settings.engine.device = test_device();
+    settings.engine.jobs = 1;
+    const auto gather = [&](std::uint32_t resolution, const PointRowOptions& options) {
+        HemicubeSettings hemicube;
+        hemicube.resolution = resolution;
+        hemicube.joint = options.singly == 0;
+        const auto engine = make_point_visibility_provider(mesh, points, hemicube, settings);
+        std::vector<double> gathered(points.size());
+        compute_point_rows(
+            *engine, mesh, points, {ExchangeRule::standard, 16}, Enclosure::automatic, light,
+            [&](std::uint32_t index, const RowView& row) {
+                REQUIRE(row.sum() + row.environment + row.blocked == Approx(1.0).margin(1e-6));
+                REQUIRE(std::is_sorted(row.columns.begin(), row.columns.end()));
+                double sum = row.environment;
+                for (std::size_t entry = 0; entry < row.columns.size(); ++entry) {
+                    sum += static_cast<double>(row.values[entry]) * all[row.columns[entry]];
+                }
+                gathered[index] = sum;
+            },
+            {}, options);
+        return gathered;
+    };
+    const std::vector<double> truth = gather(512, {});
+    const auto error = [&](const std::vector<double>& gathered) {
+        double squares = 0.0;
+        double whole = 0.0;
+        for (std::size_t k = 0; k < gathered.size(); ++k) {
+            squares += std::pow(gathered[k] - truth[k], 2.0);
+            whole += truth[k] * truth[k];
+        }
+        return std::sqrt(squares / whole);
+    };
+    const double singly = error(gather(128, {}));
+    const double in_clusters = error(gather(128, {.singly = 0, .clusters = &tree}));
+    const double shared_out = error(gather(128, {.singly = 0}));
+    CAPTURE(singly, in_clusters, shared_out);
+    CHECK(in_clusters < std::max(2.0 * singly, 2e-3));
+    CHECK(shared_out < std::max(2.0 * singly, 2e-3));
+    const PatchMesh other(two_plates(false));
+    const ClusterTree of_other(other);
+    CHECK_THROWS_AS(gather(32, {.clusters = &of_other}), InvalidArgument);
 }
 
 TEST_CASE("point rows: the same bits by one and by two jobs", "[engine][every-device]") {

@@ -14,6 +14,8 @@
 
 namespace hemi {
 
+class ClusterTree;
+
 /// SurfacePoint::surface of a point anywhere in space.
 inline constexpr std::uint32_t no_surface = 0xFFFFFFFF;
 
@@ -47,6 +49,18 @@ using PointRowSink = std::function<void(std::uint32_t index, const RowView& row)
 /// Patches of a scene up to which each that no texel covers is asked for its factor from a point.
 inline constexpr std::uint32_t points_ask_singly = 32768;
 
+/// How rows of points are made.
+struct PointRowOptions {
+    DirectionMeasure measure = DirectionMeasure::projected_solid_angle; ///< that the visibility was made with
+    std::uint32_t singly =
+        points_ask_singly; ///< patches, with their images, up to which all are taken singly
+    /// A cluster is far where its radius is below this share of its distance from the point.
+    double opening = 0.3;
+    /// Clusters that columns may be, node k column N + k, of a scene without symmetry; must outlive the call.
+    /// Null: columns are patches.
+    const ClusterTree* clusters = nullptr;
+};
+
 /// Factors from points to all patches, as F(k, j) = F0(k, j)·V(k, j): what a small area at the point and
 /// facing along its normal sees of patch j. F0 is exact or by Gauss points (ExchangeAreas::at_point), V is
 /// the visible share of the texels that j covers in the point's hemicube, with shadow rays to those few
@@ -55,9 +69,9 @@ inline constexpr std::uint32_t points_ask_singly = 32768;
 /// it, else e is what is left. Rows of small spheres are shares of the full solid angle: F0 is then the exact
 /// solid angle of the patch over 4 pi.
 ///
-/// In scenes of many patches those that no texel covers are taken by parts of the scene: near ones singly, of
-/// a part far away up to 32 that stand for all. What a row costs then depends on what texels cover, and
-/// hardly on N; gathered light changes by less than 0.1 % (rms).
+/// In scenes of many patches those far away are taken by clusters, as in compute_clustered(), but for bright
+/// ones. What a row costs then hardly depends on N; gathered light changes by less than 0.1 % (rms). The
+/// visibility may tell of sets of patches there (HemicubeSettings::joint).
 /// @param visibility  see make_point_visibility_engine()
 /// @param mesh        N patches
 /// @param points      that `visibility` is of
@@ -66,14 +80,11 @@ inline constexpr std::uint32_t points_ask_singly = 32768;
 /// @param weights     how much each patch's light matters, N, for the choice of shadow rays; empty: all alike
 /// @param sink        gets the rows, block by block in any order; not from several threads at once
 /// @param progress    called after every batch of rows; may be empty
-/// @param measure     that `visibility` was made with
-/// @param singly      patches, with their images, up to which all are taken singly
-/// @throws Cancelled; InvalidArgument if `weights` does not fit
+/// @param options     how
+/// @throws Cancelled; InvalidArgument if `weights` or clusters do not fit
 void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
                         std::span<const SurfacePoint> points, const VisibilityWeightedSettings& settings,
                         Enclosure enclosure, std::span<const double> weights, const PointRowSink& sink,
-                        const Progress& progress = {},
-                        DirectionMeasure measure = DirectionMeasure::projected_solid_angle,
-                        std::uint32_t singly = points_ask_singly);
+                        const Progress& progress = {}, const PointRowOptions& options = {});
 
 } // namespace hemi

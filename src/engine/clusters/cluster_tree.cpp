@@ -69,8 +69,19 @@ public:
             tree_.nodes.push_back({0, mesh_.size(), 0});
             tree_.shapes.emplace_back();
         }
-        for (std::uint32_t k = 0; k < tree_.nodes.size(); ++k) { // they become more meanwhile
+        // The nodes below one lie side by side: whoever goes through the tree finds them near one another.
+        std::vector<std::uint32_t> open;
+        if (!tree_.nodes.empty()) {
+            open.push_back(0);
+        }
+        while (!open.empty()) {
+            const std::uint32_t k = open.back();
+            open.pop_back();
             divide(k);
+            if (const std::uint32_t child = tree_.nodes[k].child; child != 0) {
+                open.push_back(child + 1);
+                open.push_back(child);
+            }
         }
         for (std::size_t k = tree_.nodes.size(); k-- > 0;) {
             enclose(k);
@@ -99,6 +110,8 @@ private:
         for (const std::uint32_t i : patches) {
             shape.cone = std::max(shape.cone, angle_between(shape.axis, normals_[i]));
         }
+        shape.cone_sine = std::sin(shape.cone);
+        shape.cone_cosine = std::cos(shape.cone);
         const bool mixed = is_mixed(patches);
         shape.one_direction = shape.cone <= widest_cone && !mixed;
         if (patches.size() == 1) {
@@ -217,8 +230,55 @@ bool may_face(const ClusterShape& cluster, const Vec3& at, const std::optional<V
     if (distance <= size) {
         return true;
     }
-    const double cosine = std::clamp(glm::dot(way, cluster.axis) / distance, -1.0, 1.0);
-    return std::acos(cosine) - cluster.cone - std::asin(size / distance) < 0.5 * std::numbers::pi;
+    // The angle between way and axis is below a right angle, that of the cone, and what the sphere takes, in
+    // which sine and cosine of the latter two together are told by what is known of each.
+    const double sine = size / distance;
+    const double cosine = std::sqrt(1.0 - sine * sine);
+    const double widest_cosine = cluster.cone_cosine * cosine - cluster.cone_sine * sine;
+    if (widest_cosine <= 0.0) {
+        return true; // cone and sphere are a right angle, or more
+    }
+    return glm::dot(way, cluster.axis) >
+           -distance * (cluster.cone_sine * cosine + cluster.cone_cosine * sine);
+}
+
+namespace {
+
+ClusterStrata strata_of(std::span<const SourceClusters::Node> nodes, std::uint32_t node) {
+    ClusterStrata strata{};
+    const auto add = [&](std::uint32_t of) { strata.nodes[strata.count++] = of; };
+    const std::uint32_t child = nodes[node].child;
+    if (child == 0) {
+        add(node);
+        return strata;
+    }
+    for (const std::uint32_t half : {child, child + 1}) {
+        if (const std::uint32_t below = nodes[half].child; below != 0) {
+            add(below);
+            add(below + 1);
+        } else {
+            add(half);
+        }
+    }
+    return strata;
+}
+
+void add_spreads(std::span<const SourceClusters::Node> nodes, std::vector<ClusterMoments>& moments) {
+    for (std::uint32_t k = 0; k < nodes.size(); ++k) {
+        double of_middles = 0.0;
+        const ClusterStrata strata = strata_of(nodes, k);
+        for (const std::uint32_t node : std::span(strata.nodes).first(strata.count)) {
+            const Vec3 offset = moments[node].centre - moments[k].centre;
+            of_middles += moments[node].area * glm::dot(offset, offset);
+        }
+        moments[k].spread = of_middles > 0.0 ? std::sqrt(moments[k].second / of_middles) : 1.0;
+    }
+}
+
+} // namespace
+
+ClusterStrata ClusterTree::strata(std::uint32_t node) const {
+    return strata_of(clusters_->nodes(), node);
 }
 
 ClusterTree::ClusterTree(const PatchMesh& mesh, std::span<const std::uint8_t> apart)
@@ -233,6 +293,7 @@ ClusterTree::ClusterTree(const PatchMesh& mesh, std::span<const std::uint8_t> ap
         }
     }
     moments_ = moments_of(mesh, built);
+    add_spreads(built.nodes, moments_);
     clusters_ =
         std::make_shared<SourceClusters>(std::move(built.order), std::move(built.nodes), mesh.areas());
 }
@@ -271,6 +332,7 @@ void ClusterTree::seen_from(const Vec3& at, const std::optional<Vec3>& normal, d
         open.pop_back();
         const ClusterShape& shape = shapes_[k];
         if (!may_face(shape, at, normal, 0.0)) {
+            parts.push_back({k, true, true});
             continue;
         }
         const std::uint32_t child = clusters_->nodes()[k].child;

@@ -4,6 +4,7 @@
 #include "hemi/matrix/source_clusters.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -18,6 +19,8 @@ struct ClusterShape {
     double radius;             ///< of that sphere, scene units; not smaller than that of a child
     Vec3 axis;                 ///< mean direction of the normals
     double cone;               ///< largest angle between a normal and the axis, radians
+    double cone_sine;          ///< of it
+    double cone_cosine;        ///< of it
     bool one_direction = true; ///< whether the cone is narrow enough for one source
 };
 
@@ -27,6 +30,15 @@ struct ClusterMoments {
     Vec3 centre{0.0};    ///< of the area
     Vec3 normals{0.0};   ///< sum of the patches' normals times their areas
     double second = 0.0; ///< area times distance from the centre squared, summed
+    /// By how much points of strata are farther from the centre than the strata's centres, so that they have
+    /// the second moment; see ClusterTree::strata().
+    double spread = 1.0;
+};
+
+/// Nodes that stand for a cluster far away.
+struct ClusterStrata {
+    std::array<std::uint32_t, 4> nodes; ///< in the order of their patches
+    std::uint32_t count = 0;
 };
 
 /// Whether some patch of a cluster may have its front towards a receiver, and be above its horizon.
@@ -51,6 +63,8 @@ public:
     [[nodiscard]] double radius_of(std::uint32_t patch) const { return shapes_[leaf_of_[patch]].radius; }
     /// Where the area of a node lies, and what it looks at.
     [[nodiscard]] const ClusterMoments& moments(std::uint32_t node) const { return moments_[node]; }
+    /// The nodes two below one, or what stands for them where it has no more.
+    [[nodiscard]] ClusterStrata strata(std::uint32_t node) const;
     /// Position of a patch in SourceClusters::order().
     [[nodiscard]] std::uint32_t position(std::uint32_t patch) const { return position_[patch]; }
 
@@ -58,6 +72,7 @@ public:
     struct Part {
         std::uint32_t node; ///< a leaf where it is near
         bool far;
+        bool away = false; ///< nothing of it can face the receiver; such parts are far
     };
     /// How a patch sees all patches, itself among them: nodes in the order of their patches, which make up
     /// the whole tree.
@@ -67,8 +82,7 @@ public:
     /// @param parts    overwritten
     void seen_from(std::uint32_t patch, double opening, std::vector<Part>& parts) const;
 
-    /// How a point sees the patches: nodes in the order of their patches, far ones and single patches. Those
-    /// of which nothing can face the point are left out.
+    /// How a point sees all patches, as above.
     /// @param normal   of the point, of unit length; without it sees all ways
     /// @param opening  a cluster is far where its radius is below this share of its sphere's distance
     /// @param parts    overwritten

@@ -2,6 +2,7 @@
 
 #include "core/parallel_for.hpp"
 #include "engine/clusters/cluster_tree.hpp"
+#include "engine/clusters/source_sums.hpp"
 #include "engine/environment_verdict.hpp"
 #include "engine/image_rows.hpp"
 #include "engine/rays/shadow_rays.hpp"
@@ -15,10 +16,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -55,14 +54,9 @@ constexpr double most_rays = 16.0;
 /// not fitted.
 constexpr double clear_doubt = 0.1;
 
-/// Of a part of the scene far away so many patches, strewn over it, are looked at. Those that no texel covers
-/// stand for all such: the part is small from where the point is. Chosen, not fitted.
-constexpr std::size_t most_looked_at = 32;
-/// A part is far where its radius is below this share of its distance from the point. Half of it changes the
-/// gathered light of a city by less than 1e-4. Chosen, not fitted.
-constexpr double opening = 0.3;
-/// Most variance of a patch that texels hide, over its light squared: with a single texel.
-constexpr double most_hidden_variance = 0.1;
+/// A patch of a cluster far away that may give more than this share of the light is seen by itself, as near
+/// ones are, and may get shadow rays. Chosen, not fitted.
+constexpr double bright_share = 2e-4;
 /// Samples of visibility that a batch has at most, or little more.
 constexpr std::size_t batch_samples = std::size_t{1} << 24;
 
@@ -71,6 +65,7 @@ struct SampledPoint {
     std::uint32_t index = 0;
     std::vector<std::uint32_t> columns;    ///< of patches that texels say something of, ascending
     std::vector<VisibilitySample> samples; ///< of these
+    std::vector<JointVisibility> joint;    ///< what texels say of sets of others
     double environment = 0.0;
     double blocked = 0.0;
     bool hides = false; ///< whether it sees nothing of some patch that faces it
@@ -86,15 +81,19 @@ struct PointRow {
 /// Factors of single rows; thread-safe.
 class PointRows {
 public:
+    /// All must outlive this.
     PointRows(const ImageMesh& images, std::span<const SurfacePoint> points,
               const VisibilityWeightedSettings& settings, Enclosure enclosure,
-              std::span<const double> weights, DirectionMeasure measure, std::uint32_t singly)
+              std::span<const double> weights, const PointRowOptions& options)
         : images_(images), points_(points), rays_a_pair_(settings.shadow_rays), enclosure_(enclosure),
-          weights_(weights), spheres_(measure == DirectionMeasure::solid_angle), rule_(settings.rule),
-          areas_(images.mesh(), settings.rule), neighbours_(images.mesh()) {
-        if (images.mesh().size() > singly) {
-            tree_.emplace(images.mesh());
-            find_most_light();
+          weights_(weights), spheres_(options.measure == DirectionMeasure::solid_angle), rule_(settings.rule),
+          areas_(images.mesh(), settings.rule), neighbours_(images.mesh()), opening_(options.opening),
+          tree_(options.clusters), expands_(tree_ == nullptr) {
+        if (tree_ == nullptr && images.mesh().size() > options.singly) {
+            tree_ = &own_tree_.emplace(images.mesh());
+        }
+        if (tree_ != nullptr) {
+            find_light();
         }
         if (enclosure == Enclosure::automatic) {
             space_.emplace(images.mesh());
@@ -104,20 +103,29 @@ public:
         }
     }
 
+    /// Whether rows may tell of sets of patches.
+    [[nodiscard]] bool takes_sets() const { return tree_ != nullptr; }
+    /// The sets that all rows tell of.
+    void set_sets(const PatchSets& sets) {
+        if (!places_) {
+            places_.emplace(sets, *tree_, images_.mesh());
+        }
+    }
+
     [[nodiscard]] PointRow operator()(const SampledPoint& sampled) {
         std::unique_ptr<Bench> bench = take_bench();
-        for (std::size_t k = 0; k < sampled.columns.size(); ++k) {
-            bench->samples[sampled.columns[k]] = sampled.samples[k];
-        }
-        std::vector<Entry> entries = tree_ ? entries_by_parts(sampled, *bench) : all_entries(sampled, *bench);
-        for (const std::uint32_t column : sampled.columns) {
-            bench->samples[column] = {};
-        }
-        give_back(std::move(bench));
+        bool hides = sampled.hides;
+        std::vector<Entry> entries =
+            tree_ != nullptr ? clustered_entries(sampled, *bench, hides) : all_entries(sampled, *bench);
         if (rays_) {
             trace(sampled.index, entries);
         }
-        return close(entries, sampled);
+        PointRow row = close(entries, sampled, hides);
+        if (tree_ != nullptr && expands_) {
+            expand(row, *bench);
+        }
+        give_back(std::move(bench));
+        return row;
     }
 
 private:
@@ -127,7 +135,7 @@ private:
         double visibility;
         double texels; ///< that the visibility rests on; 0: on other patches'
         bool clear;    ///< by texels
-        bool single;   ///< stands for its own patch, not for others besides
+        bool single;   ///< a patch, no cluster
     };
     /// An entry whose visibility is not certain.
     struct Doubt {
@@ -137,15 +145,28 @@ private:
     };
     /// Where a thread makes rows.
     struct Bench {
-        std::vector<VisibilitySample> samples; ///< of all patches; unknown between rows
-        std::vector<ClusterTree::Part> parts;  ///< what a point sees
+        std::vector<VisibilitySample> samples;  ///< of all patches; unknown between rows
+        std::optional<SourceSums> sums;         ///< where there are clusters
+        std::vector<ClusterTree::Part> parts;   ///< what a point sees
+        std::vector<ClusterTree::Part> divided; ///< the same, bright patches by themselves
+        std::vector<float> values;              ///< of all patches, where rows are expanded; 0 between rows
+    };
+    /// What the patches of a cluster give: area times weight.
+    struct Light {
+        double sum = 0.0;
+        double most = 0.0; ///< of a patch
     };
 
     [[nodiscard]] std::unique_ptr<Bench> take_bench() {
         const std::lock_guard lock(mutex_);
         if (benches_.empty()) {
             auto bench = std::make_unique<Bench>();
-            bench->samples.resize(images_.mesh().size());
+            if (tree_ == nullptr) {
+                bench->samples.resize(images_.mesh().size());
+                return bench;
+            }
+            bench->sums.emplace(images_.mesh(), *tree_, areas_);
+            bench->values.resize(expands_ ? images_.mesh().size() : 0);
             return bench;
         }
         std::unique_ptr<Bench> bench = std::move(benches_.back());
@@ -185,7 +206,10 @@ private:
     }
 
     /// Patch by patch.
-    [[nodiscard]] std::vector<Entry> all_entries(const SampledPoint& sampled, const Bench& bench) const {
+    [[nodiscard]] std::vector<Entry> all_entries(const SampledPoint& sampled, Bench& bench) const {
+        for (std::size_t k = 0; k < sampled.columns.size(); ++k) {
+            bench.samples[sampled.columns[k]] = sampled.samples[k];
+        }
         std::vector<Entry> entries;
         const SurfacePoint& point = points_[sampled.index];
         const double assumed = mean_share(sampled.samples);
@@ -196,122 +220,120 @@ private:
                 add_unknown(point, j, bench, assumed, entries);
             }
         }
+        for (const std::uint32_t column : sampled.columns) {
+            bench.samples[column] = {};
+        }
         return entries;
     }
 
-    /// What texels see patch by patch, all else by parts of the scene.
-    [[nodiscard]] std::vector<Entry> entries_by_parts(const SampledPoint& sampled, Bench& bench) const {
-        std::vector<Entry> entries;
+    /// What is far by clusters.
+    [[nodiscard]] std::vector<Entry> clustered_entries(const SampledPoint& sampled, Bench& bench,
+                                                       bool& hides) const {
         const SurfacePoint& point = points_[sampled.index];
-        const double assumed = mean_share(sampled.samples);
+        const RowReceiver receiver{.at = point.position,
+                                   .normal = spheres_ ? std::nullopt : std::optional(point.normal)};
+        tree_->seen_from(receiver.at, receiver.normal, opening_, bench.parts);
+        divide_bright(receiver.at, bench);
+        SourceSums& sums = *bench.sums;
+        sums.start(receiver, bench.divided, rays_.has_value());
         for (std::size_t k = 0; k < sampled.columns.size(); ++k) {
-            if (sampled.samples[k].share() > 0.0) {
-                add_known(point, sampled.columns[k], sampled.samples[k], entries);
-            }
+            const VisibilitySample sample = sampled.samples[k];
+            sums.add_patch(sampled.columns[k], {sample.share(), sample.weight(), sample.is_clear()});
         }
-        const auto seen = static_cast<std::ptrdiff_t>(entries.size());
-        tree_->seen_from(point.position, spheres_ ? std::nullopt : std::optional(point.normal), opening,
-                         bench.parts);
-        for (const ClusterTree::Part& part : bench.parts) {
-            if (part.far) {
-                add_part(point, part.node, bench, assumed, entries);
-            } else if (const std::uint32_t j = tree_->clusters()->patches(part.node).front();
-                       !bench.samples[j].known()) {
-                add_unknown(point, j, bench, assumed, entries);
-            } else if (bench.samples[j].share() == 0.0) {
-                add_known(point, j, bench.samples[j], entries);
-            }
+        for (const JointVisibility& joint : sampled.joint) {
+            const VisibilitySample sample(joint.share, joint.texels);
+            sums.add_set(*places_, joint.set, {sample.share(), sample.weight(), sample.is_clear()});
         }
-        if (rays_) {
-            add_hidden(point, bench, entries);
+        sums.finish();
+        hides = sums.hides();
+        std::vector<Entry> entries;
+        for (const Source& source : sums.near()) {
+            entries.push_back(
+                {source.column, source.unoccluded, source.visibility, source.texels, source.clear, true});
         }
-        const auto by_column = [](const Entry& a, const Entry& b) { return a.column < b.column; };
-        std::sort(entries.begin() + seen, entries.end(), by_column);
-        std::inplace_merge(entries.begin(), entries.begin() + seen, entries.end(), by_column);
+        for (const Source& source : sums.far()) {
+            entries.push_back(
+                {source.column, source.unoccluded, source.visibility, 0.0, source.clear, false});
+        }
         return entries;
     }
 
-    /// Adds the patches of a part that no texel covers, or some of them for all.
-    /// @param assumed  V where nothing is known of the part
-    void add_part(const SurfacePoint& point, std::uint32_t part, const Bench& bench, double assumed,
-                  std::vector<Entry>& entries) const {
-        const std::span<const std::uint32_t> patches = tree_->clusters()->patches(part);
-        std::array<std::uint32_t, most_looked_at> looked{};
-        const std::size_t looks = std::min(most_looked_at, patches.size());
-        const double step = static_cast<double>(patches.size()) / static_cast<double>(looks);
-        double area = 0.0;
-        double shares = 0.0;
-        std::size_t known = 0;
-        for (std::size_t k = 0; k < looks; ++k) {
-            const std::uint32_t j = patches[static_cast<std::size_t>((static_cast<double>(k) + 0.5) * step)];
-            looked[k] = j;
-            area += images_.mesh().areas()[j];
-            if (const VisibilitySample sample = bench.samples[j]; sample.known()) {
-                ++known;
-                shares += sample.share();
-            }
-        }
-        const double share = known > 0 ? shares / static_cast<double>(known) : assumed;
-        if (known == looks || !(share > 0.0)) {
-            return;
-        }
-        const std::size_t first = entries.size();
-        for (const std::uint32_t j : std::span(looked).first(looks)) {
-            if (!bench.samples[j].known()) {
-                add_unknown(point, j, bench, share, entries);
-            }
-        }
-        if (looks < patches.size()) {
-            const double scale = tree_->moments(part).area / area;
-            for (std::size_t k = first; k < entries.size(); ++k) {
-                entries[k].unoccluded *= scale;
-                entries[k].single = false;
-            }
-        }
-    }
-
-    /// Adds those patches far away that texels hide of which one might get shadow rays: not many can be among
-    /// the few that matter most.
-    void add_hidden(const SurfacePoint& point, const Bench& bench, std::vector<Entry>& entries) const {
-        std::vector<double> variances;
-        for (const Doubt& doubt : doubts_of(entries)) {
-            variances.push_back(doubt.variance);
-        }
-        double least = 0.0;
-        if (const std::size_t most = most_traced(); variances.size() > most) {
-            std::nth_element(variances.begin(), variances.begin() + static_cast<std::ptrdiff_t>(most),
-                             variances.end(), std::greater<>());
-            least = variances[most];
-        }
-        const double per_distance = spheres_ ? 4.0 : 1.0; // a sphere's factor is a share of 4 pi
+    /// Takes out of clusters far away what may give much of the light.
+    void divide_bright(const Vec3& at, Bench& bench) const {
+        // Factors in front of a plane, or a quarter of them on a sphere: the same for all.
+        const auto per_area = [&](std::uint32_t node, double gap) {
+            const double distance = std::max(gap, tree_->shape(node).radius);
+            return 1.0 / (distance * distance);
+        };
+        const auto gap = [&](std::uint32_t node) {
+            return std::max(0.0, glm::distance(at, tree_->shape(node).centre) - tree_->shape(node).radius);
+        };
+        double all = 0.0;
         for (const ClusterTree::Part& part : bench.parts) {
-            if (!part.far) {
+            if (!part.away) {
+                const double distance = glm::distance(at, tree_->shape(part.node).centre);
+                all += light_[part.node].sum * per_area(part.node, distance);
+            }
+        }
+        bench.divided.clear();
+        std::vector<std::uint32_t> open;
+        for (const ClusterTree::Part& part : bench.parts) {
+            if (!part.far || part.away) {
+                bench.divided.push_back(part);
                 continue;
             }
-            const ClusterShape& shape = tree_->shape(part.node);
-            const double gap = glm::distance(point.position, shape.centre) - shape.radius;
-            const double light = most_light_[part.node] / (per_distance * std::numbers::pi * gap * gap);
-            if (most_hidden_variance * light * light <= least) {
-                continue;
-            }
-            for (const std::uint32_t j : tree_->clusters()->patches(part.node)) {
-                if (bench.samples[j].known() && bench.samples[j].share() == 0.0) {
-                    add_known(point, j, bench.samples[j], entries);
+            open.assign(1, part.node);
+            while (!open.empty()) {
+                const std::uint32_t node = open.back();
+                open.pop_back();
+                const bool bright = light_[node].most * per_area(node, gap(node)) > bright_share * all;
+                const std::uint32_t child = tree_->clusters()->nodes()[node].child;
+                if (bright && child != 0) {
+                    open.push_back(child + 1);
+                    open.push_back(child);
+                } else {
+                    bench.divided.push_back({node, !bright});
                 }
             }
         }
     }
 
-    /// Finds the most light of a patch in each cluster of the tree.
-    void find_most_light() {
+    /// Finds the light of each cluster of the tree.
+    void find_light() {
         const std::span<const SourceClusters::Node> nodes = tree_->clusters()->nodes();
-        most_light_.resize(nodes.size());
+        light_.resize(nodes.size());
         for (std::size_t k = nodes.size(); k-- > 0;) { // children stand behind their parents
             if (nodes[k].child != 0) {
-                most_light_[k] = std::max(most_light_[nodes[k].child], most_light_[nodes[k].child + 1]);
+                const Light& a = light_[nodes[k].child];
+                const Light& b = light_[nodes[k].child + 1];
+                light_[k] = {a.sum + b.sum, std::max(a.most, b.most)};
             } else {
                 const std::uint32_t j = tree_->clusters()->order()[nodes[k].begin];
-                most_light_[k] = images_.mesh().areas()[j] * weight(j);
+                const double light = images_.mesh().areas()[j] * weight(j);
+                light_[k] = {light, light};
+            }
+        }
+    }
+
+    /// Shares out what comes of clusters among their patches.
+    void expand(PointRow& row, Bench& bench) const {
+        const SourceClusters& clusters = *tree_->clusters();
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            if (row.columns[k] < bench.values.size()) {
+                bench.values[row.columns[k]] = row.values[k];
+                continue;
+            }
+            const auto node = static_cast<std::uint32_t>(row.columns[k] - bench.values.size());
+            for (const std::uint32_t j : clusters.patches(node)) {
+                bench.values[j] = row.values[k] * static_cast<float>(clusters.share(j, node));
+            }
+        }
+        row.columns.clear();
+        row.values.clear();
+        for (std::uint32_t j = 0; j < bench.values.size(); ++j) {
+            if (bench.values[j] > 0.0F) {
+                row.columns.push_back(j);
+                row.values.push_back(std::exchange(bench.values[j], 0.0F));
             }
         }
     }
@@ -379,7 +401,8 @@ private:
         }
     }
 
-    [[nodiscard]] PointRow close(const std::vector<Entry>& entries, const SampledPoint& sampled) const {
+    [[nodiscard]] PointRow close(const std::vector<Entry>& entries, const SampledPoint& sampled,
+                                 bool hides) const {
         double sum = 0.0;
         double partly_hidden = 0.0;
         for (const Entry& entry : entries) {
@@ -387,7 +410,7 @@ private:
             partly_hidden += entry.clear ? 0.0 : entry.unoccluded;
         }
         const SurfacePoint& point = points_[sampled.index];
-        const bool unknown = sampled.hides || sampled.blocked > 0.0;
+        const bool unknown = hides || sampled.blocked > 0.0;
         const EnvironmentEvidence evidence{
             .texels = sampled.environment,
             .remainder = 1.0 - sampled.blocked - sum,
@@ -419,8 +442,12 @@ private:
     ExchangeRule rule_;
     ExchangeAreas areas_;
     CoplanarNeighbours neighbours_;
-    std::optional<ClusterTree> tree_; ///< of scenes that are not taken patch by patch
-    std::vector<double> most_light_;  ///< of a patch of each cluster: its area times its weight
+    double opening_;
+    const ClusterTree* tree_; ///< of scenes that are not taken patch by patch, or null
+    std::optional<ClusterTree> own_tree_;
+    bool expands_;             ///< whether columns must be patches
+    std::vector<Light> light_; ///< of the nodes of the tree
+    std::optional<SetPlaces> places_;
     std::optional<EnclosedSpace> space_;
     std::optional<ShadowRays> rays_;
     std::mutex mutex_;
@@ -458,14 +485,21 @@ void exchange_rows(std::span<PointRow> rows, std::size_t first, std::size_t last
 void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
                         std::span<const SurfacePoint> points, const VisibilityWeightedSettings& settings,
                         Enclosure enclosure, std::span<const double> weights, const PointRowSink& sink,
-                        const Progress& progress, DirectionMeasure measure, std::uint32_t singly) {
+                        const Progress& progress, const PointRowOptions& options) {
     if (visibility.size() != points.size() || (!weights.empty() && weights.size() != mesh.size())) {
         throw InvalidArgument(fmt::format("point rows: {} rows for {} points, {} weights for {} patches",
                                           visibility.size(), points.size(), weights.size(), mesh.size()));
     }
+    if (options.clusters != nullptr && options.clusters->clusters()->size() != mesh.size()) {
+        throw InvalidArgument(fmt::format("point rows: clusters of {} patches for {}",
+                                          options.clusters->clusters()->size(), mesh.size()));
+    }
     const ImageMesh images(mesh);
+    if (options.clusters != nullptr && images.any()) {
+        throw InvalidArgument("point rows: there are no clusters of images");
+    }
     ImageFold fold(images);
-    PointRows rows(images, points, settings, enclosure, weights, measure, singly);
+    PointRows rows(images, points, settings, enclosure, weights, options);
     std::vector<SampledPoint> batch;
     std::size_t samples = 0; // of the batch
     std::size_t done = 0;
@@ -503,6 +537,13 @@ void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
         sampled.samples.reserve(row.columns.size());
         for (std::size_t entry = 0; entry < row.columns.size(); ++entry) {
             sampled.samples.emplace_back(row.shares[entry], row.texels[entry]);
+        }
+        if (!row.joint.empty()) {
+            if (!rows.takes_sets()) {
+                throw InvalidArgument("point rows: sets of patches are told of where each is taken singly");
+            }
+            rows.set_sets(*row.sets);
+            sampled.joint.assign(row.joint.begin(), row.joint.end());
         }
         sampled.environment = row.environment;
         sampled.blocked = row.blocked;
