@@ -10,6 +10,7 @@
 
 #include "hemi/core/error.hpp"
 #include "hemi/core/ranks.hpp"
+#include "hemi/core/row_memory.hpp"
 
 #include <fmt/format.h>
 
@@ -70,7 +71,16 @@ ExitStatus run_command(int argc, const char* const* argv) {
         Arguments& arguments = std::get<Arguments>(parsed);
         prepare_for_ranks(arguments);
         terminal = terminal_for(arguments);
-        return std::visit([&terminal](const auto& command) { return run(command, terminal); }, arguments);
+        return std::visit(
+            [&terminal](const auto& command) {
+                if constexpr (requires { command.rows.scratch; }) {
+                    if (command.rows.scratch) {
+                        keep_rows_in(*command.rows.scratch);
+                    }
+                }
+                return run(command, terminal);
+            },
+            arguments);
     } catch (const std::exception& error) {
         return report(error, terminal);
     }

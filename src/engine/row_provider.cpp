@@ -3,6 +3,7 @@
 #include "engine/open_block.hpp"
 #include "engine/row_sample.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/row_memory.hpp"
 
 #include <fmt/format.h>
 
@@ -76,9 +77,9 @@ FormFactorMatrix compute_matrix(RowProvider& provider, const Progress& progress)
 }
 
 std::uint64_t matrix_memory(double entries_per_row, std::uint64_t rows, std::uint32_t size) {
-    const double bytes =
-        entries_per_row * static_cast<double>(rows) * (sizeof(std::uint32_t) + sizeof(float)) +
-        static_cast<double>(FormFactorMatrix(size).memory_bytes());
+    const double in_memory = rows_are_in_file() ? 0.0 : entries_per_row * static_cast<double>(rows);
+    const double bytes = in_memory * (sizeof(std::uint32_t) + sizeof(float)) +
+                         static_cast<double>(FormFactorMatrix(size).memory_bytes());
     return static_cast<std::uint64_t>(memory_margin * bytes);
 }
 

@@ -82,7 +82,7 @@ void check_estimate(const MatrixEstimate& estimate, std::size_t rows, const Fact
             fmt::format("{} rows of about {:.0f} entries would need {}; the limit is {}. {} would help",
                         count_text(rows), estimate.entries_per_row, memory_text(estimate.memory_bytes),
                         memory_limit_text(settings), advice),
-            {"patch-size", "resolution", "max-memory"});
+            {"patch-size", "resolution", "max-memory", "scratch"});
     }
 }
 

@@ -48,6 +48,33 @@ TEST_CASE("solve: far patches are seen in clusters where it is asked for, or whe
     CHECK(plain.json()["clusters"] == false);
 }
 
+TEST_CASE("solve: rows in a file take no memory, and give the same", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(16));
+    const auto solve = [&](Words more) {
+        Words words{"solve",        scene,  "--device",    "cpu",
+                    "--preset",     "fast", "--radiosity", directory.path("b.csv"),
+                    "--no-estimate"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome run = run_hemi(words);
+        INFO(run.err);
+        CHECK(run.status == 0);
+        return std::pair(run.err, directory.read("b.csv"));
+    };
+    for (const std::string clusters : {"on", "off"}) {
+        const Words memory{"--clusters", clusters};
+        const Words file{"--clusters", clusters, "--scratch", directory.path(".")};
+        CHECK(solve(memory).second == solve(file).second);
+    }
+    // The pairs fit as soon as only the rows do not.
+    CHECK_THAT(solve({"--max-memory", "26M"}).first, Contains("Far patches are seen in clusters"));
+    CHECK_THAT(solve({"--max-memory", "26M", "--scratch", directory.path(".")}).first,
+               !Contains("Far patches are seen in clusters"));
+    const Outcome missing = run_hemi({"solve", scene, "--scratch", directory.path("missing")});
+    CHECK(missing.status == 3);
+    CHECK_THAT(missing.err, Contains("missing: no file of rows can be made there: No such file"));
+}
+
 TEST_CASE("solve: what needs single pairs refuses clusters", "[cli]") {
     const Directory directory;
     const std::string scene = directory.write("cube.json", coloured(2));

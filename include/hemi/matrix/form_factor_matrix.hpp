@@ -1,5 +1,7 @@
 #pragma once
 
+#include "hemi/core/row_memory.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -31,14 +33,14 @@ struct RowView {
 
 /// Consecutive rows of a sparse matrix that are stored, written and read together.
 struct RowBlock {
-    std::uint32_t first_row = 0;          ///< a multiple of FormFactorMatrix::block_rows
-    std::vector<std::uint64_t> begin;     ///< rows + 1 offsets into columns and values, begin[0] = 0
-    std::vector<std::uint32_t> columns;   ///< patch j per entry, ascending in a row
-    std::vector<float> values;            ///< F(i, j) per entry
-    std::vector<std::uint8_t> visibility; ///< code of V per entry; empty where V is not known
-    std::vector<double> environment;      ///< e per row
-    std::vector<double> blocked;          ///< b per row
-    std::vector<std::uint8_t> known;      ///< per row: 0 where the row was not computed (it is then empty)
+    std::uint32_t first_row = 0;       ///< a multiple of FormFactorMatrix::block_rows
+    std::vector<std::uint64_t> begin;  ///< rows + 1 offsets into columns and values, begin[0] = 0
+    RowArray<std::uint32_t> columns;   ///< patch j per entry, ascending in a row
+    RowArray<float> values;            ///< F(i, j) per entry
+    RowArray<std::uint8_t> visibility; ///< code of V per entry; empty where V is not known
+    std::vector<double> environment;   ///< e per row
+    std::vector<double> blocked;       ///< b per row
+    std::vector<std::uint8_t> known;   ///< per row: 0 where the row was not computed (it is then empty)
 
     /// Number of rows, known or not.
     [[nodiscard]] std::uint32_t rows() const noexcept { return static_cast<std::uint32_t>(known.size()); }
@@ -49,7 +51,8 @@ struct RowBlock {
 ///
 /// In scenes of very many patches, far sources may stand together in clusters: columns from N on are the
 /// nodes of SourceClusters. Such factors are neither square nor reciprocal, but the rows balance as others
-/// do. Memory: 8 bytes an entry (9 with visibility) plus about 25 bytes a row.
+/// do. Memory: 8 bytes an entry (9 with visibility), or none where keep_rows_in() has a file for them, plus
+/// about 25 bytes a row.
 class FormFactorMatrix {
 public:
     /// Rows in every block but the last.
@@ -76,7 +79,7 @@ public:
     [[nodiscard]] bool has_visibility() const noexcept;
     /// Stored entries, all rows.
     [[nodiscard]] std::uint64_t entries() const noexcept;
-    /// Bytes that the rows take in memory.
+    /// Bytes that the rows take, in memory or in a file.
     [[nodiscard]] std::uint64_t memory_bytes() const noexcept;
 
     /// All blocks, in the order of their rows.

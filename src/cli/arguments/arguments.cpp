@@ -143,12 +143,12 @@ void add_resume(CLI::App& app, RowOptions& rows, CLI::Option* output) {
 }
 
 void add_max_memory(CLI::App& app, RowOptions& rows) {
-    Options(app, "Computing")
-        .value("--max-memory", "SIZE",
-               "refuse to need more than that, such as 512M or 2G (80 % of what is free)",
-               [&rows](const std::string& text) {
-                   rows.factors.max_memory = parse_memory("--max-memory", text);
-               });
+    Options options(app, "Computing");
+    options.value(
+        "--max-memory", "SIZE", "refuse to need more than that, such as 512M or 2G (80 % of what is free)",
+        [&rows](const std::string& text) { rows.factors.max_memory = parse_memory("--max-memory", text); });
+    options.path("--scratch", "DIR", rows.scratch,
+                 "keep the rows of form factors in a file in this folder, not in memory");
 }
 
 /// Far sources taken together. After add_rows and add_estimate.

@@ -54,9 +54,10 @@ struct SceneOptions {
 struct RowOptions {
     FactorSettings factors;
     double max_row_error = 1e-4;
-    std::optional<double> error_target;  ///< the program chooses settings, or how patches are cut
-    ErrorOf error_of = ErrorOf::factors; ///< which error it is for
-    bool resume = false;                 ///< use the rows that an interrupted run left
+    std::optional<double> error_target;           ///< the program chooses settings, or how patches are cut
+    ErrorOf error_of = ErrorOf::factors;          ///< which error it is for
+    bool resume = false;                          ///< use the rows that an interrupted run left
+    std::optional<std::filesystem::path> scratch; ///< folder of the file that rows are in; none: memory
 };
 
 struct PictureOptions {

@@ -7,6 +7,7 @@
 #include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/ranks.hpp"
+#include "hemi/core/row_memory.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/matrix/repair.hpp"
@@ -84,11 +85,11 @@ private:
     }
 
     void check_memory() const {
-        if (bytes_ > max_memory_) {
+        if (bytes_ > max_memory_ && !rows_are_in_file()) {
             throw OutOfMemory(fmt::format("rows of clusters need more than {}. Larger patches, a larger "
                                           "cluster error or a higher limit would help",
                                           memory_text(max_memory_)),
-                              {"cluster-error", "patch-size", "max-memory"});
+                              {"cluster-error", "patch-size", "max-memory", "scratch"});
         }
     }
 

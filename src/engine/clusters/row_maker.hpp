@@ -2,6 +2,7 @@
 
 #include "engine/clusters/cluster_tree.hpp"
 #include "engine/clusters/source_sums.hpp"
+#include "hemi/core/row_memory.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/engine/visibility_provider.hpp"
 #include "hemi/scene/patch_mesh.hpp"
@@ -27,8 +28,7 @@ class EntryList {
 public:
     EntryList() = default;
     explicit EntryList(std::span<const ClusterEntry> entries)
-        : size_(static_cast<std::uint32_t>(entries.size())),
-          words_(entries.empty() ? nullptr : std::make_unique<std::uint32_t[]>(word_count())) {
+        : size_(static_cast<std::uint32_t>(entries.size())), words_(entries.empty() ? 0 : word_count()) {
         for (std::uint32_t k = 0; k < size_; ++k) {
             words_[k] = entries[k].column;
             set_value(k, entries[k].value);
@@ -56,7 +56,7 @@ private:
     [[nodiscard]] std::size_t word_count() const { return 2 * std::size_t{size_} + (size_ + 3) / 4; }
 
     std::uint32_t size_ = 0;
-    std::unique_ptr<std::uint32_t[]> words_; ///< columns, values, and four codes of visibility in each
+    RowArray<std::uint32_t> words_; ///< columns, values, and four codes of visibility in each
 };
 
 /// One row while all are computed.

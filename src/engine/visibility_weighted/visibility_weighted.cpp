@@ -45,6 +45,7 @@
 #include "engine/visibility_weighted/pair_combination.hpp"
 #include "engine/visibility_weighted/visibility_table.hpp"
 #include "hemi/core/ranks.hpp"
+#include "hemi/core/row_memory.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -53,9 +54,9 @@ namespace hemi {
 
 std::uint64_t visibility_weighted_memory(double entries_per_row, std::uint64_t rows, std::uint32_t size) {
     const auto count = static_cast<double>(rows);
-    const double matrix =
-        entries_per_row * count * (sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t)) +
-        static_cast<double>(FormFactorMatrix(size).memory_bytes());
+    const double matrix = (rows_are_in_file() ? 0.0 : entries_per_row * count) *
+                              (sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t)) +
+                          static_cast<double>(FormFactorMatrix(size).memory_bytes());
     const double pairs = count * size;
     if (ranks().size() == 1) {
         const double tables = pairs * (sizeof(VisibilitySample) + sizeof(PairVisibility));
