@@ -153,8 +153,9 @@ TEST_CASE("Ranks: what only one process can do is refused, once", "[mpi]") {
 
 TEST_CASE("Ranks: one that dies ends all, and what all had finished is taken up again", "[mpi]") {
     const Directory directory;
-    const Words settings{"--device",     "cpu", "--patches-per-face", "100", "--preset",     "plain",
-                         "--eye-points", "16",  "--resolution",       "64",  "--no-estimate"};
+    const Words rows = GENERATE(Words{"--preset", "plain"}, Words{"--preset", "fast", "--clusters", "on"});
+    const Words settings = with(rows, {"--device", "cpu", "--patches-per-face", "100", "--eye-points", "16",
+                                       "--resolution", "64", "--no-estimate"});
     const Words command = with({"factors", room, "-o", directory.path("F.hff")}, settings);
     // The second rank is killed when it has kept rows.
     const std::string script =
