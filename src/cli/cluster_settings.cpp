@@ -34,10 +34,6 @@ void settle_clusters(const CommonOptions& common, RowOptions& rows, std::optiona
         throw InvalidArgument(
             fmt::format("--clusters on excludes {}, {}; leave one out", obstacle->option, obstacle->why));
     }
-    if (clusters == Clusters::on && rows.resume) {
-        throw InvalidArgument("--clusters on excludes --resume, since rows of clusters are kept all at once; "
-                              "leave one out");
-    }
     if ((obstacle || clusters == Clusters::off) &&
         std::find(common.given.begin(), common.given.end(), "--cluster-error") != common.given.end()) {
         throw InvalidArgument(

@@ -1,6 +1,9 @@
 #include "hemi/pipeline/checkpoint.hpp"
 
+#include "hemi/core/error.hpp"
 #include "hemi/core/ranks.hpp"
+#include "hemi/core/text.hpp"
+#include "hemi/pipeline/observer.hpp"
 #include "io/factors/checkpoint_file.hpp"
 
 #include <fmt/format.h>
@@ -39,6 +42,21 @@ void RowCheckpoint::discard() noexcept {
 void RowCheckpoint::start_over() noexcept {
     file_->start_over();
     reused_ = 0;
+}
+
+void RowCheckpoint::tell_reused(std::size_t rows, Observer& observer) const {
+    if (reused_ > 0) {
+        observer.note(fmt::format("{} of {} taken from the checkpoint {}", count_text(reused_),
+                                  plural(rows, "row", "rows"), path().string()));
+    }
+}
+
+void RowCheckpoint::append(const RowBlock& block, std::span<const std::uint8_t> marks, Observer& observer) {
+    try {
+        file_->append(block, marks);
+    } catch (const IoError& error) {
+        observer.warning(fmt::format("{}; this run cannot be resumed", error.what()), {});
+    }
 }
 
 } // namespace hemi

@@ -8,12 +8,15 @@
 #include "hemi/engine/reference_rows.hpp"
 #include "hemi/engine/touching_faces.hpp"
 #include "hemi/io/factor_file.hpp"
+#include "pipeline/kept_clustered_rows.hpp"
 #include "pipeline/row_computation.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 namespace hemi {
 
@@ -99,7 +102,7 @@ MatrixEstimate estimate_clustered(VisibilityProvider& engine, const PatchMesh& m
 
 FormFactors compute_rows_of_clusters(const Scene& scene, const PatchMesh& mesh,
                                      std::span<const std::uint32_t> patches, const FactorSettings& settings,
-                                     Observer& observer) {
+                                     Observer& observer, RowCheckpoint* checkpoint) {
     const RowPlan plan = plan_clustered_rows(settings, mesh.size());
     const auto engine = make_visibility_provider(mesh, plan.hemicube, settings);
     FormFactors factors = describe_form_factors(scene, mesh, settings);
@@ -116,9 +119,17 @@ FormFactors compute_rows_of_clusters(const Scene& scene, const PatchMesh& mesh,
                        observer, "Larger patches, a larger cluster error or a higher limit");
         stop_if_interrupted();
     }
-    factors.matrix = compute_clustered(computation.rows_of_this_rank(), mesh, patches, clusters,
-                                       scene.enclosure, computation.timed_progress(Phase::visibility));
+    std::optional<KeptClusteredRows> kept;
+    if (checkpoint != nullptr) {
+        io::CheckpointKey key = clustered_row_key(factors, settings, clusters);
+        key["renderer"] = engine->renderer(); // others give other bits
+        kept.emplace(*checkpoint, std::move(key), observer);
+    }
+    factors.matrix =
+        compute_clustered(computation.rows_of_this_rank(), mesh, patches, clusters, scene.enclosure,
+                          computation.timed_progress(Phase::visibility), kept ? &*kept : nullptr);
     computation.finish(mesh, patches.size());
+    factors.work.rows -= checkpoint != nullptr ? checkpoint->reused() : 0;
     return factors;
 }
 
@@ -136,14 +147,14 @@ FormFactors compute_visibility_weighted_rows(const Scene& scene, const PatchMesh
         settings.clusters = Clusters::off;
     }
     if (settings.clusters == Clusters::on) {
-        return compute_rows_of_clusters(scene, mesh, patches, settings, observer);
+        return compute_rows_of_clusters(scene, mesh, patches, settings, observer, checkpoint);
     }
     const RowPlan plan = plan_rows(settings, mesh.size());
     const auto engine = make_visibility_provider(mesh, plan.hemicube, settings);
     if (!pairs_fit(*engine, mesh, patches, settings, observer)) {
         if (settings.clusters == Clusters::automatic) {
             stop_if_interrupted();
-            return compute_rows_of_clusters(scene, mesh, patches, settings, observer);
+            return compute_rows_of_clusters(scene, mesh, patches, settings, observer, checkpoint);
         }
         FactorSettings plain = settings;
         plain.preset = Preset::plain;

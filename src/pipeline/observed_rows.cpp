@@ -1,11 +1,6 @@
 #include "pipeline/observed_rows.hpp"
 
 #include "engine/raw_row.hpp"
-#include "hemi/core/error.hpp"
-#include "hemi/core/text.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 
@@ -40,15 +35,16 @@ std::vector<std::uint32_t> ObservedRows<Row>::resume(std::span<const std::uint32
                                                      const Sink& sink) {
     std::vector<bool> there(size(), false);
     key_["renderer"] = renderer(); // others give other bits
-    checkpoint_->file_->start(key_, size(), [&](std::uint32_t patch, const RawRow& row) {
+    const auto take = [&](std::uint32_t patch, const RawRow& row, bool /*mark*/) {
+        if (!std::binary_search(patches.begin(), patches.end(), patch)) {
+            return; // other materials reflect than did
+        }
         there[patch] = true;
         ++checkpoint_->reused_;
         sink(patch, row_from_raw<Row>(row));
-    });
-    if (checkpoint_->reused_ > 0) {
-        observer_.note(fmt::format("{} of {} taken from the checkpoint {}", count_text(checkpoint_->reused_),
-                                   plural(patches.size(), "row", "rows"), checkpoint_->path().string()));
-    }
+    };
+    checkpoint_->file_->start(key_, FormFactorMatrix(size()), take);
+    checkpoint_->tell_reused(patches.size(), observer_);
     std::vector<std::uint32_t> missing;
     std::copy_if(patches.begin(), patches.end(), std::back_inserter(missing),
                  [&there](std::uint32_t patch) { return !there[patch]; });
@@ -69,11 +65,7 @@ void ObservedRows<Row>::keep(std::uint32_t patch, const Row& row, std::span<cons
     const RowBlock finished = block.finish();
     expected_entries_ = finished.columns.size() + finished.columns.size() / 16;
     open_.erase(first);
-    try {
-        checkpoint_->file_->append(finished);
-    } catch (const IoError& error) {
-        observer_.warning(fmt::format("{}; this run cannot be resumed", error.what()), {});
-    }
+    checkpoint_->append(finished, {}, observer_);
 }
 
 template class ObservedRows<RowView>;

@@ -1,5 +1,6 @@
 #include "pipeline/row_computation.hpp"
 
+#include "core/fnv1a.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/engine/reference_rows.hpp"
@@ -50,7 +51,7 @@ io::CheckpointKey raw_row_key(const FormFactors& factors, const FactorSettings& 
     io::CheckpointKey key{{"hemi", HEMI_VERSION},
                           {"geometry", fmt::format("{:016x}", factors.geometry_hash)},
                           {"method", std::string(to_word(factors.provenance.method))},
-                          {"rows of", plan.weighted ? "visibility" : "form factors"},
+                          {io::kind_of_rows, plan.weighted ? "visibility" : "form factors"},
                           {"resolution", std::to_string(factors.provenance.resolution)},
                           {"seed", std::to_string(factors.provenance.seed)},
                           {"eye points", std::to_string(plan.hemicube.eye_points)},
@@ -59,6 +60,23 @@ io::CheckpointKey raw_row_key(const FormFactors& factors, const FactorSettings& 
     if (!hemicubes) {
         key["rays"] = std::to_string(plan_baseline(settings).rays);
     }
+    return key;
+}
+
+io::CheckpointKey clustered_row_key(const FormFactors& factors, const FactorSettings& settings,
+                                    const ClusterSettings& clusters) {
+    Fnv1a apart;
+    for (std::uint32_t patch = 0; patch < clusters.apart.size(); ++patch) {
+        if (clusters.apart[patch] != 0) {
+            apart.add(patch);
+        }
+    }
+    io::CheckpointKey key = raw_row_key(factors, settings);
+    key[io::kind_of_rows] = "clusters";
+    key["cluster error"] = fmt::format("{}", settings.cluster_error);
+    key["exchange rule"] = clusters.rule == ExchangeRule::exact ? "exact" : "standard";
+    key["eye points"] = std::to_string(factors.provenance.eye_points);
+    key["lamps"] = fmt::format("{:016x}", apart.value());
     return key;
 }
 

@@ -2,6 +2,7 @@
 
 #include "hemi/core/interrupt.hpp"
 #include "hemi/core/stopwatch.hpp"
+#include "hemi/engine/clustered_rows.hpp"
 #include "hemi/engine/touching_faces.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "pipeline/divided_rows.hpp"
@@ -32,6 +33,11 @@ inline constexpr std::size_t unsampled_rows = 256;
 
 /// What raw rows depend on, besides the renderer.
 [[nodiscard]] io::CheckpointKey raw_row_key(const FormFactors& factors, const FactorSettings& settings);
+
+/// The same of rows of clusters.
+/// @param factors  whose provenance says what rows of clusters are made of
+[[nodiscard]] io::CheckpointKey clustered_row_key(const FormFactors& factors, const FactorSettings& settings,
+                                                  const ClusterSettings& clusters);
 
 /// The memory that rows may take, and where that comes from.
 [[nodiscard]] std::string memory_limit_text(const FactorSettings& settings);

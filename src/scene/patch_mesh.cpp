@@ -1,5 +1,6 @@
 #include "hemi/scene/patch_mesh.hpp"
 
+#include "core/fnv1a.hpp"
 #include "hemi/core/error.hpp"
 
 #include <fmt/format.h>
@@ -256,24 +257,11 @@ Grid choose_grid(const Surface& surface, const Scene& scene, const Subdivision& 
     return {1, 1};
 }
 
-class Fnv1a {
-public:
-    void add(std::uint64_t value) {
-        for (int byte = 0; byte < 8; ++byte) {
-            hash_ = (hash_ ^ (value & 0xFFu)) * 0x100000001B3u;
-            value >>= 8;
-        }
+void add_point(Fnv1a& hash, const Vec3& point) {
+    for (int axis = 0; axis < 3; ++axis) {
+        hash.add(std::bit_cast<std::uint64_t>(point[axis] + 0.0)); // +0.0: -0 and 0 are the same place
     }
-    void add(const Vec3& point) {
-        for (int axis = 0; axis < 3; ++axis) {
-            add(std::bit_cast<std::uint64_t>(point[axis] + 0.0)); // +0.0: -0 and 0 are the same place
-        }
-    }
-    [[nodiscard]] std::uint64_t value() const { return hash_; }
-
-private:
-    std::uint64_t hash_ = 0xCBF29CE484222325u;
-};
+}
 
 } // namespace
 
@@ -593,7 +581,7 @@ std::uint64_t PatchMesh::geometry_hash() const {
         hash.add((std::uint64_t{surface.vertex_count} << 1) | (surface.two_sided ? 1u : 0u));
         hash.add((std::uint64_t{grids_[s].u} << 32) | grids_[s].v);
         for (const Vec3& vertex : surface.polygon()) {
-            hash.add(vertex);
+            add_point(hash, vertex);
         }
         for (const GridPart& part : parts(static_cast<std::uint32_t>(s))) {
             hash.add((std::uint64_t{part.level_u} << 40) | (std::uint64_t{part.level_v} << 32) | part.cell);
@@ -603,12 +591,12 @@ std::uint64_t PatchMesh::geometry_hash() const {
         hash.add(symmetry_->mirrors.size());
         for (const MirrorPlane& plane : symmetry_->mirrors) {
             hash.add(static_cast<std::uint64_t>(plane.axis));
-            hash.add(Vec3(plane.offset, 0.0, 0.0));
+            add_point(hash, Vec3(plane.offset, 0.0, 0.0));
         }
         hash.add(symmetry_->rotation ? symmetry_->rotation->folds : 0u);
         hash.add(symmetry_->rotation ? static_cast<std::uint64_t>(symmetry_->rotation->axis) : 0u);
         for (const Vec3& period : symmetry_->periods) {
-            hash.add(period);
+            add_point(hash, period);
         }
         hash.add(symmetry_->periods.empty() ? 0u : symmetry_->images);
     }

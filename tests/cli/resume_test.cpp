@@ -5,6 +5,7 @@
 #include <chrono>
 #include <random>
 #include <thread>
+#include <utility>
 
 using namespace hemi::cli_test;
 using Clock = std::chrono::steady_clock;
@@ -42,18 +43,35 @@ bool kill_at_random(const Words& words, std::chrono::duration<double> whole, std
     return run.wait().status == 128 + SIGKILL;
 }
 
+/// Ends a run that writes a.hff by Ctrl-C as soon as it has kept rows.
+void interrupt(const Words& words, const Directory& directory) {
+    std::filesystem::remove(directory.path("a.hff.rows")); // of another run
+    Run run(words);
+    for (int k = 0; k < 2000 && !directory.has("a.hff.rows"); ++k) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    kill(run.pid(), SIGINT);
+    const Outcome outcome = run.wait();
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 130);
+    CHECK(outcome.err_has("a.hff.rows; the same command with --resume goes on from there"));
+    REQUIRE(directory.has("a.hff.rows"));
+}
+
 } // namespace
 
 TEST_CASE("Kill -9: no half file under the final name, and what is resumed equals an undisturbed run",
           "[cli][slow]") {
-    const auto command = GENERATE(as<std::string>(), "factors", "solve");
+    const auto [command, kind] =
+        GENERATE(std::pair<std::string, Words>{"factors", {}}, std::pair<std::string, Words>{"solve", {}},
+                 std::pair<std::string, Words>{"solve", {"--clusters", "on"}});
     const Directory directory;
     const std::string scene = directory.write("cube.json", cube(16));
     const auto start = Clock::now();
-    REQUIRE(run_hemi(command_for(command, scene, directory.path("whole.hff"))).status == 0);
+    REQUIRE(run_hemi(with(command_for(command, scene, directory.path("whole.hff")), kind)).status == 0);
     const std::chrono::duration<double> seconds = Clock::now() - start;
     const std::string whole = directory.read("whole.hff");
-    const Words plain = command_for(command, scene, directory.path("a.hff"));
+    const Words plain = with(command_for(command, scene, directory.path("a.hff")), kind);
     const Words resumed = with(plain, {"--resume"});
 
     std::mt19937 random(7);
@@ -84,18 +102,7 @@ TEST_CASE("Resume: finished rows are not computed again, and others are", "[cli]
     const std::string scene = directory.write("cube.json", cube(16));
     const Words plain = command_for("factors", scene, directory.path("a.hff"));
     REQUIRE(run_hemi(command_for("factors", scene, directory.path("whole.hff"))).status == 0);
-    {
-        Run run(plain);
-        for (int k = 0; k < 2000 && !directory.has("a.hff.rows"); ++k) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
-        kill(run.pid(), SIGINT);
-        const Outcome outcome = run.wait();
-        INFO(outcome.err);
-        REQUIRE(outcome.status == 130);
-        CHECK(outcome.err_has("a.hff.rows; the same command with --resume goes on from there"));
-    }
-    REQUIRE(directory.has("a.hff.rows"));
+    interrupt(plain, directory);
     std::string journal = directory.read("a.hff.rows");
     directory.write("a.hff.rows", journal.substr(0, journal.size() - 100)); // the last block is torn
 
@@ -124,6 +131,36 @@ TEST_CASE("Resume: finished rows are not computed again, and others are", "[cli]
         CHECK(run_hemi(plain).status == 0);
         CHECK(directory.read("a.hff.rows") == "mine");
     }
+}
+
+TEST_CASE("Resume: rows of clusters go on as others do, and are not confused with them", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", cube(12));
+    const auto command = [&](const std::string& file, const Words& more) {
+        return with({"solve", scene, "--device", "cpu", "--preset", "fast", "--eye-points", "9", "--jobs",
+                     "1", "--no-estimate", "--factors", directory.path(file)},
+                    more);
+    };
+    const Words on{"--clusters", "on"};
+    const auto refusal = [&](const Words& more) {
+        const Outcome run = run_hemi(command("a.hff", with(more, {"--resume"})));
+        CHECK(run.status == 3);
+        CHECK(directory.has("a.hff.rows"));
+        return run.err;
+    };
+    using Catch::Matchers::Contains;
+    REQUIRE(run_hemi(command("whole.hff", on)).status == 0);
+    interrupt(command("a.hff", {}), directory); // rows of pairs, since these fit
+    CHECK_THAT(refusal({"--max-memory", "8M"}), Contains("rows of visibility, here clusters"));
+    interrupt(command("a.hff", on), directory);
+    CHECK_THAT(refusal({}), Contains("rows of clusters, here visibility"));
+    CHECK_THAT(refusal(with(on, {"--cluster-error", "1%"})), Contains("cluster error 0.001, here 0.01"));
+    const Outcome run = run_hemi(command("a.hff", with(on, {"--resume"})));
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    CHECK(run.err_has(" of 864 rows taken from the checkpoint"));
+    CHECK((directory.read("a.hff") == directory.read("whole.hff")));
+    CHECK(directory.names() == Words{"a.hff", "cube.json", "whole.hff"});
 }
 
 TEST_CASE("Resume: a refinement that was killed goes on to what an undisturbed one comes to", "[cli][slow]") {

@@ -85,9 +85,6 @@ TEST_CASE("solve: what needs single pairs refuses clusters", "[cli]") {
         CHECK(run.status == 2);
         return run.err;
     };
-    CHECK_THAT(refusal({"--factors", directory.path("a.hff"), "--resume"}),
-               Contains("--clusters on excludes --resume"));
-    CHECK_FALSE(directory.has("a.hff"));
     CHECK_THAT(refusal({"--refine", "500"}), Contains("--clusters on excludes --error-target and --refine"));
     CHECK_THAT(refusal({"--error-target", "5%"}), Contains("--clusters on excludes --error-target"));
     CHECK_THAT(refusal({"--preset", "plain"}), Contains("--clusters on excludes --preset plain"));

@@ -17,6 +17,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 using namespace hemi;
@@ -55,6 +58,51 @@ std::vector<double> smooth_light(const PatchMesh& mesh) {
         light.push_back(2.0 + mesh.centres()[i].x + 0.5 * mesh.centres()[i].y + 0.3 * mesh.normal(i).z);
     }
     return light;
+}
+
+/// Rows of clusters that outlast a run.
+class Keeper : public ClusteredRowKeeper {
+public:
+    void resume(const std::shared_ptr<const SourceClusters>& clusters, std::span<const std::uint32_t> wanted,
+                const EachRow& each) override {
+        for (const auto& [block, hides] : blocks) {
+            FormFactorMatrix rows(clusters->size(), clusters);
+            rows.set_block(block);
+            for (std::uint32_t local = 0; local < block.rows(); ++local) {
+                const std::uint32_t patch = block.first_row + local;
+                if (block.known[local] != 0 && std::binary_search(wanted.begin(), wanted.end(), patch)) {
+                    each(patch, rows.row(patch), hides[local] != 0);
+                }
+            }
+        }
+    }
+    void keep(const RowBlock& rows, std::span<const std::uint8_t> hides) override {
+        blocks.emplace_back(rows, std::vector<std::uint8_t>(hides.begin(), hides.end()));
+    }
+    [[nodiscard]] std::size_t rows() const {
+        std::size_t count = 0;
+        for (const auto& [block, _] : blocks) {
+            count += static_cast<std::size_t>(std::count(block.known.begin(), block.known.end(), 1));
+        }
+        return count;
+    }
+
+    std::vector<std::pair<RowBlock, std::vector<std::uint8_t>>> blocks;
+};
+
+void check_same_rows(const FormFactorMatrix& a, const FormFactorMatrix& b) {
+    REQUIRE(a.blocks().size() == b.blocks().size());
+    for (std::size_t k = 0; k < a.blocks().size(); ++k) {
+        const RowBlock& one = a.blocks()[k];
+        const RowBlock& other = b.blocks()[k];
+        CHECK(one.known == other.known);
+        CHECK(one.begin == other.begin);
+        CHECK(one.columns == other.columns);
+        CHECK(one.values == other.values);
+        CHECK(one.visibility == other.visibility);
+        CHECK(one.environment == other.environment);
+        CHECK(one.blocked == other.blocked);
+    }
 }
 
 std::vector<double> gathered(const FormFactorMatrix& factors, const std::vector<double>& light) {
@@ -305,6 +353,59 @@ TEST_CASE("the printed error of radiosity counts what clusters do") {
         CHECK(difference < 2.0 * solution.error->rms);
         CHECK(solution.error->rms > before);
         before = solution.error->rms;
+    }
+}
+
+TEST_CASE("rows of clusters that were kept are not computed again, and count as memory") {
+    const PatchMesh mesh(room_with_floating_block(10));
+    const HemicubeSettings hemicube{.resolution = 32, .eye_points = 1, .joint = true};
+    // The CPU rasteriser draws single rows as it draws all.
+    const auto engine = make_visibility_engine(mesh, hemicube, {"cpu", 2, find_worker_program()});
+    const auto patches = all_patches(mesh.size());
+    REQUIRE(mesh.size() > 600);
+    const auto compute = [&](std::span<const std::uint32_t> of, const ClusterSettings& settings,
+                             const Progress& progress, ClusteredRowKeeper* keeper) {
+        return compute_clustered(*engine, mesh, of, settings, Enclosure::automatic, progress, keeper);
+    };
+    const FormFactorMatrix whole = compute(patches, {}, {}, nullptr);
+    Keeper keeper;
+    CHECK_THROWS_AS(compute(
+                        patches, {}, [](std::size_t done, std::size_t) { return done < 600; }, &keeper),
+                    Cancelled);
+    const std::size_t kept = keeper.rows();
+    REQUIRE(kept >= 256);
+    REQUIRE(kept < 600);
+
+    ClusterSettings little;
+    little.max_memory = 1000;
+    const std::uint64_t before = engine->hemicubes();
+    CHECK_THROWS_AS(compute(patches, little, {}, &keeper), OutOfMemory);
+    CHECK(engine->hemicubes() == before);
+
+    // Other patches of the same blocks.
+    std::vector<std::uint32_t> odd;
+    for (std::uint32_t i = 1; i < mesh.size(); i += 2) {
+        odd.push_back(i);
+    }
+    Keeper of_odd;
+    check_same_rows(compute(odd, {}, {}, &of_odd), compute(odd, {}, {}, nullptr));
+    CHECK(of_odd.rows() == odd.size());
+
+    std::size_t last = 0;
+    const auto count = [&last](std::size_t done, std::size_t total) {
+        CHECK(done == last + 1);
+        CHECK(done <= total);
+        last = done;
+        return true;
+    };
+    check_same_rows(compute(patches, {}, count, &of_odd), whole);
+    CHECK(last == mesh.size());
+    check_same_rows(compute(patches, {}, {}, &keeper), whole);
+    for (Keeper* const complete : {&keeper, &of_odd}) {
+        CHECK(complete->rows() == mesh.size());
+        const std::uint64_t drawn = engine->hemicubes();
+        check_same_rows(compute(patches, {}, {}, complete), whole);
+        CHECK(engine->hemicubes() == drawn);
     }
 }
 

@@ -136,7 +136,7 @@ void seed_hres(const fs::path& folder) {
 
 void seed_rows(const fs::path& folder) {
     io::CheckpointFile checkpoint(folder / "a", false);
-    checkpoint.start({{"seed", "0"}}, 2, {});
+    checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2), {});
     checkpoint.append(small_matrix(true).blocks().front());
 }
 
@@ -355,7 +355,8 @@ const std::map<std::string, Reader> readers{
      {"fuzzed.rows",
       [](const fs::path& path) {
           io::CheckpointFile checkpoint(path.parent_path() / "fuzzed", true);
-          checkpoint.start({{"seed", "0"}}, 2, [](std::uint32_t, const RowView& row) { (void)row.sum(); });
+          checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2),
+                           [](std::uint32_t, const RowView& row, bool) { (void)row.sum(); });
       },
       seed_rows, true}},
     {"mtx",

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <filesystem>
 
 using namespace hemi::cli_test;
@@ -96,7 +97,40 @@ TEST_CASE("Ranks: any number of them find the solution of one process, by every 
     compare({"--gather", "on"}, {2}); // Gauss–Seidel; with what pictures and errors need
     compare({"--solver", "jacobi", "--no-estimate"}, {2, 3});
     compare({"--solver", "cg", "--no-estimate"}, {3});
-    compare({"--clusters", "on", "--no-estimate"}, {3});
+}
+
+TEST_CASE("Ranks: with far patches in clusters, a solution and its error are those of one process", "[mpi]") {
+    const Directory directory;
+    // So many patches that a sample of rows is computed first.
+    const Words command{"solve",           room, "--device",           "cpu", "--preset", "fast",
+                        "--clusters",      "on", "--patches-per-face", "36",  "--json",   "--result",
+                        "--cluster-error", "5%"};
+    const auto with_result = [&](const std::string& name) {
+        Words words = command;
+        words.insert(std::find(words.begin(), words.end(), "--result") + 1, directory.path(name));
+        return words;
+    };
+    const auto without_seconds = [](Json run) {
+        run.erase("seconds");
+        run["repair"].erase("seconds");
+        run["solver"].erase("seconds");
+        return run;
+    };
+    const Outcome one = run_hemi(with_result("one.hres"));
+    INFO(one.err);
+    REQUIRE(one.status == 0);
+    const Json expected = without_seconds(one.json());
+    REQUIRE(expected["clusters"] == true);
+    REQUIRE(expected["patches"].get<int>() > 256);
+    REQUIRE(expected["error"]["vertices"]["rms"].get<double>() > 0.0);
+    for (const int ranks : {1, 2, 3}) {
+        const CommandOutcome run = run_ranks(ranks, with_result("a.hres"));
+        INFO(ranks << " ranks\n" << run.err);
+        REQUIRE(run.status == 0);
+        CHECK(without_seconds(Json::parse(run.out)) == expected);
+        CHECK((directory.read("a.hres") == directory.read("one.hres")));
+        std::filesystem::remove(directory.path("a.hres"));
+    }
 }
 
 TEST_CASE("Ranks: more of them than there are patches", "[mpi]") {
@@ -153,8 +187,9 @@ TEST_CASE("Ranks: what only one process can do is refused, once", "[mpi]") {
 
 TEST_CASE("Ranks: one that dies ends all, and what all had finished is taken up again", "[mpi]") {
     const Directory directory;
-    const Words settings{"--device",     "cpu", "--patches-per-face", "100", "--preset",     "plain",
-                         "--eye-points", "16",  "--resolution",       "64",  "--no-estimate"};
+    const Words rows = GENERATE(Words{"--preset", "plain"}, Words{"--preset", "fast", "--clusters", "on"});
+    const Words settings = with(rows, {"--device", "cpu", "--patches-per-face", "100", "--eye-points", "16",
+                                       "--resolution", "64", "--no-estimate"});
     const Words command = with({"factors", room, "-o", directory.path("F.hff")}, settings);
     // The second rank is killed when it has kept rows.
     const std::string script =

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 using namespace hemi;
 using namespace hemi::test;
@@ -38,6 +39,12 @@ FactorSettings on_osmesa(Preset preset) {
     settings.engine.jobs = 2;
     return settings;
 }
+
+/// Cancels once some blocks are complete.
+class Interrupting : public Observer {
+public:
+    bool progress(Phase, std::size_t done, std::size_t) override { return done < 300; }
+};
 
 /// Keeps what it is told; cancels at the first call of a phase, or never.
 class Recorder : public Observer {
@@ -217,11 +224,6 @@ TEST_CASE("prepare_form_factors: stored raw rows become the same as those that w
 }
 
 TEST_CASE("RowCheckpoint: a cancelled run resumes with the same bits", "[pipeline][gl]") {
-    /// Cancels once some blocks are complete.
-    class Interrupting : public Observer {
-    public:
-        bool progress(Phase, std::size_t done, std::size_t) override { return done < 300; }
-    };
     const Folder folder;
     const Scene scene = furnace(10);
     const PatchMesh mesh(scene);
@@ -244,6 +246,110 @@ TEST_CASE("RowCheckpoint: a cancelled run resumes with the same bits", "[pipelin
     check_same(resumed.matrix, compute_raw_form_factors(scene, mesh, patches, settings).matrix);
     checkpoint.discard();
     CHECK_FALSE(std::filesystem::exists(checkpoint.path()));
+}
+
+TEST_CASE("RowCheckpoint: rows of clusters, too, and none of another run", "[pipeline][gl]") {
+    const Folder folder;
+    Scene scene = furnace(10);
+    const PatchMesh mesh(scene);
+    FactorSettings settings = on_osmesa(Preset::fast);
+    settings.resolution = 32;
+    settings.estimate_error = false;
+    settings.clusters = Clusters::on;
+    settings.cluster_error = 0.01;
+    const auto patches = all_patches(mesh.size());
+    const auto compute = [&](bool resume) {
+        RowCheckpoint checkpoint(folder / "a.hff", resume);
+        FormFactors factors =
+            compute_raw_form_factors(scene, mesh, patches, settings, no_observer(), &checkpoint);
+        CHECK(factors.work.rows == mesh.size() - checkpoint.reused());
+        CHECK((checkpoint.reused() > 0) == resume);
+        return factors;
+    };
+    const auto interrupt = [&] {
+        RowCheckpoint checkpoint(folder / "a.hff", false);
+        Interrupting interrupting;
+        CHECK_THROWS_AS(compute_raw_form_factors(scene, mesh, patches, settings, interrupting, &checkpoint),
+                        Cancelled);
+        CHECK(checkpoint.rows() >= FormFactorMatrix::block_rows);
+    };
+    const auto refusal = [&] {
+        try {
+            RowCheckpoint checkpoint(folder / "a.hff", true);
+            (void)compute_raw_form_factors(scene, mesh, patches, settings, no_observer(), &checkpoint);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string("no refusal");
+    };
+    const FormFactors whole = compute_raw_form_factors(scene, mesh, patches, settings);
+    REQUIRE(whole.matrix.clusters() != nullptr);
+    interrupt();
+    const std::filesystem::path file = folder / "a.hff.rows";
+    SECTION("they go on") {
+        check_same(compute(true).matrix, whole.matrix);
+    }
+    SECTION("what is behind a fault is computed again") {
+        for (const double place : {0.9, 0.4, 0.0}) {
+            interrupt();
+            const auto size = static_cast<double>(std::filesystem::file_size(file));
+            std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+            stream.seekp(40 + static_cast<std::streamoff>(place * size)); // behind the start
+            stream.put('#');
+            stream.close();
+            RowCheckpoint checkpoint(folder / "a.hff", true);
+            check_same(
+                compute_raw_form_factors(scene, mesh, patches, settings, no_observer(), &checkpoint).matrix,
+                whole.matrix);
+            CHECK(checkpoint.reused() < 256);
+            CHECK(checkpoint.rows() == mesh.size());
+        }
+    }
+    SECTION("others are refused by name") {
+        const std::vector<double> dark(scene.channels.size(), 0.0);
+        settings.cluster_error = 0.02;
+        CHECK_THAT(refusal(), Catch::Matchers::Contains("cluster error 0.01, here 0.02"));
+        settings.cluster_error = 0.01;
+        settings.resolution = 64;
+        CHECK_THAT(refusal(), Catch::Matchers::Contains("resolution 32, here 64"));
+        settings.resolution = 32;
+        settings.clusters = Clusters::off;
+        CHECK_THAT(refusal(), Catch::Matchers::Contains("rows of clusters, here visibility"));
+        interrupt();
+        settings.clusters = Clusters::on;
+        CHECK_THAT(refusal(), Catch::Matchers::Contains("rows of visibility, here clusters"));
+        interrupt();
+        scene.materials.front().exitance = dark;
+        CHECK_THAT(refusal(), Catch::Matchers::Contains("another run: lamps "));
+    }
+}
+
+TEST_CASE("RowCheckpoint: rows that are not wanted any more are left out", "[pipeline][gl]") {
+    const Folder folder;
+    const Scene scene = furnace(10);
+    const PatchMesh mesh(scene);
+    FactorSettings settings = on_osmesa(Preset::fast);
+    settings.engine.device = "cpu"; // which draws single rows as it draws all
+    settings.resolution = 16;
+    settings.estimate_error = false;
+    settings.clusters = GENERATE(Clusters::off, Clusters::on);
+    {
+        RowCheckpoint checkpoint(folder / "a.hff", false);
+        Interrupting interrupting;
+        CHECK_THROWS_AS(compute_raw_form_factors(scene, mesh, all_patches(mesh.size()), settings,
+                                                 interrupting, &checkpoint),
+                        Cancelled);
+    }
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t patch = 50; patch < 500; patch += 3) {
+        some.push_back(patch);
+    }
+    RowCheckpoint checkpoint(folder / "a.hff", true);
+    const FormFactors resumed =
+        compute_raw_form_factors(scene, mesh, some, settings, no_observer(), &checkpoint);
+    CHECK(checkpoint.reused() > 0);
+    CHECK(checkpoint.reused() < some.size());
+    check_same(resumed.matrix, compute_raw_form_factors(scene, mesh, some, settings).matrix);
 }
 
 TEST_CASE("pipeline: too little memory for pairs means plain rows and a warning, for rows an error",

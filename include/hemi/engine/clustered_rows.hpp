@@ -8,6 +8,8 @@
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,6 +23,30 @@ struct ClusterSettings {
     std::uint64_t max_memory = ~std::uint64_t{0}; ///< bytes that the rows may take
     /// Patches that stand in no cluster with others than theirs, such as lamps: 1 each, of N. Empty: none.
     std::vector<std::uint8_t> apart = {};
+};
+
+/// Keeps the rows of clusters that a run has made, before they balance, for another run to go on from.
+class ClusteredRowKeeper {
+public:
+    ClusteredRowKeeper() = default;
+    virtual ~ClusteredRowKeeper() = default;
+    ClusteredRowKeeper(const ClusteredRowKeeper&) = delete;
+    ClusteredRowKeeper& operator=(const ClusteredRowKeeper&) = delete;
+
+    /// Takes a patch, its row, which is valid during the call only (columns are those of a matrix with
+    /// clusters), and whether that sees nothing of some patch which faces it.
+    using EachRow = std::function<void(std::uint32_t, const RowView&, bool)>;
+    /// Gives the rows that were kept before. Called once, before keep().
+    /// @param clusters  that columns from N on are
+    /// @param wanted    patches, ascending: rows of others are left out
+    /// @param each      takes the rows, in any order
+    /// @throws what `each` throws; InputError if they are those of another run
+    virtual void resume(const std::shared_ptr<const SourceClusters>& clusters,
+                        std::span<const std::uint32_t> wanted, const EachRow& each) = 0;
+    /// Takes a finished block.
+    /// @param rows   known are those that were not kept before
+    /// @param hides  of each row: 1 if it sees nothing of some patch which faces it, else 0
+    virtual void keep(const RowBlock& rows, std::span<const std::uint8_t> hides) = 0;
 };
 
 /// The opening with which clusters change the light that rows gather by about so much, relative, rms, where
@@ -45,10 +71,15 @@ struct ClusterSettings {
 /// @param settings     how
 /// @param enclosure    as the scene says
 /// @param progress     called after every row of this rank; may be empty
-/// @throws Cancelled; OutOfMemory if the rows do not fit; InvalidArgument for settings that do not fit
+/// @param keeper       of the rows of this rank: gives those that are not computed again, and gets all
+/// others;
+///   may be null
+/// @throws Cancelled; OutOfMemory if the rows do not fit; InvalidArgument for settings that do not fit; what
+///   the keeper throws
 [[nodiscard]] FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMesh& mesh,
                                                  std::span<const std::uint32_t> patches,
                                                  const ClusterSettings& settings, Enclosure enclosure,
-                                                 const Progress& progress = {});
+                                                 const Progress& progress = {},
+                                                 ClusteredRowKeeper* keeper = nullptr);
 
 } // namespace hemi

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace hemi {
@@ -13,11 +14,14 @@ namespace hemi {
 namespace io {
 class CheckpointFile;
 }
+class Observer;
+struct RowBlock;
 
-/// Rows that outlast a run which is interrupted or killed: finished blocks of raw hemicube rows, kept in
-/// OUTPUT.rows beside the file of form factors that a run is to write, until that is complete. Analytic
-/// factors and error estimates are computed again. Of several ranks (hemi::Ranks) each keeps its own rows,
-/// the K-th of N in OUTPUT.KofN.rows, where as many ranks find them again.
+/// Rows that outlast a run which is interrupted or killed: finished blocks of raw hemicube rows, or of rows
+/// of clusters before they balance, kept in OUTPUT.rows beside the file of form factors that a run is to
+/// write, until that is complete. Analytic factors and error estimates are computed again. Of several ranks
+/// (hemi::Ranks) each keeps its own rows, the K-th of N in OUTPUT.KofN.rows, where as many ranks find them
+/// again.
 class RowCheckpoint {
 public:
     /// @param output  the file of form factors that is to be written
@@ -42,6 +46,12 @@ public:
 private:
     template <class Row>
     friend class ObservedRows;
+    friend class KeptClusteredRows;
+    /// Says how many of so many rows came from the file, if there are any.
+    void tell_reused(std::size_t rows, Observer& observer) const;
+    /// Keeps a finished block; warns where that cannot be written.
+    void append(const RowBlock& block, std::span<const std::uint8_t> marks, Observer& observer);
+
     std::unique_ptr<io::CheckpointFile> file_;
     std::uint64_t reused_ = 0;
 };

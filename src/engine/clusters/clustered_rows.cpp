@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <numbers>
@@ -29,12 +30,69 @@ namespace hemi {
 
 namespace {
 
-/// Rows of visibility in, rows of factors out, many at a time in threads.
+void append(RowBlock& block, const ClusterEntry& entry) {
+    block.columns.push_back(entry.column);
+    block.values.push_back(entry.value);
+    block.visibility.push_back(entry.visibility);
+}
+
+void append(RowBlock& block, const EntryList& entries) {
+    for (std::uint32_t k = 0; k < entries.size(); ++k) {
+        append(block, entries[k]);
+    }
+}
+
+void reserve(RowBlock& block, std::size_t entries) {
+    block.columns.reserve(entries);
+    block.values.reserve(entries);
+    block.visibility.reserve(entries);
+}
+
+/// Those of the patches whose rows this rank computes: whole blocks, in turn.
+std::vector<std::uint32_t> share_of(std::span<const std::uint32_t> patches) {
+    std::vector<std::uint32_t> own;
+    for (const std::uint32_t patch : patches) {
+        if (patch / FormFactorMatrix::block_rows % ranks().size() == ranks().rank()) {
+            own.push_back(patch);
+        }
+    }
+    return own;
+}
+
+/// Rows of visibility in, rows of factors out, many at a time in threads. Blocks of them are kept when all
+/// their rows are there.
 class RowCollector {
 public:
-    RowCollector(const PatchMesh& mesh, const ClusterTree& tree, const ClusterSettings& settings)
+    /// All must outlive this.
+    /// @param patches  whose rows this rank makes, ascending
+    /// @param keeper   may be null
+    RowCollector(const PatchMesh& mesh, const ClusterTree& tree, const ClusterSettings& settings,
+                 std::span<const std::uint32_t> patches, ClusteredRowKeeper* keeper)
         : mesh_(mesh), tree_(tree), exchange_(mesh, settings.rule), opening_(settings.opening),
-          max_memory_(settings.max_memory), rows_(mesh.size()) {}
+          max_memory_(settings.max_memory), patches_(patches), keeper_(keeper), rows_(mesh.size()),
+          there_(mesh.size(), 0), missing_(mesh.size() / FormFactorMatrix::block_rows + 1, 0) {
+        for (const std::uint32_t patch : patches) {
+            ++missing_[patch / FormFactorMatrix::block_rows];
+        }
+    }
+
+    /// Takes the rows that were kept before.
+    /// @param each  called after every one
+    /// @return patches whose rows are still missing
+    template <class Each>
+    [[nodiscard]] std::vector<std::uint32_t> resume(const Each& each) {
+        if (keeper_ == nullptr) {
+            return {patches_.begin(), patches_.end()};
+        }
+        keeper_->resume(tree_.clusters(), patches_, [&](std::uint32_t patch, const RowView& row, bool hides) {
+            add(patch, row, hides);
+            each();
+        });
+        std::vector<std::uint32_t> missing;
+        std::copy_if(patches_.begin(), patches_.end(), std::back_inserter(missing),
+                     [this](std::uint32_t patch) { return there_[patch] == 0; });
+        return missing;
+    }
 
     void take(std::uint32_t patch, const VisibilityRow& row) {
         if (row.sets != nullptr && !places_) {
@@ -78,10 +136,56 @@ private:
         });
         for (const SeenRow& kept : kept_) {
             made_.push_back(kept.patch);
+            if (--missing_[kept.patch / FormFactorMatrix::block_rows] == 0 && keeper_ != nullptr) {
+                keep_block(kept.patch - kept.patch % FormFactorMatrix::block_rows);
+            }
         }
         kept_.clear();
         bytes_ += bytes;
         check_memory();
+    }
+
+    /// Adds a row that was kept before.
+    void add(std::uint32_t patch, const RowView& row, bool hides) {
+        const auto far = std::lower_bound(row.columns.begin(), row.columns.end(), mesh_.size());
+        const auto near = static_cast<std::size_t>(far - row.columns.begin());
+        std::vector<ClusterEntry> entries;
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            entries.push_back({row.columns[k], row.values[k], row.visibility[k]});
+        }
+        const std::span all(entries);
+        rows_[patch] = {EntryList(all.first(near)), EntryList(all.subspan(near)), row.environment,
+                        row.blocked, hides};
+        there_[patch] = 1;
+        made_.push_back(patch);
+        --missing_[patch / FormFactorMatrix::block_rows];
+        bytes_ += rows_[patch].bytes();
+        check_memory();
+    }
+
+    /// Keeps the rows of a block that were not kept before.
+    void keep_block(std::uint32_t first) {
+        const std::uint32_t count = std::min(FormFactorMatrix::block_rows, mesh_.size() - first);
+        RowBlock block;
+        block.first_row = first;
+        block.begin.assign(1, 0);
+        block.known.assign(count, 0);
+        std::vector<std::uint8_t> hides(count, 0);
+        const auto wanted = std::lower_bound(patches_.begin(), patches_.end(), first);
+        for (auto patch = wanted; patch != patches_.end() && *patch < first + count; ++patch) {
+            block.known[*patch - first] = there_[*patch] == 0 ? 1 : 0;
+        }
+        const ClusteredRow none;
+        for (std::uint32_t local = 0; local < count; ++local) {
+            const ClusteredRow& row = block.known[local] != 0 ? rows_[first + local] : none;
+            append(block, row.near);
+            append(block, row.far);
+            block.begin.push_back(block.columns.size());
+            block.environment.push_back(row.environment);
+            block.blocked.push_back(row.blocked);
+            hides[local] = row.hides ? 1 : 0;
+        }
+        keeper_->keep(block, hides);
     }
 
     void check_memory() const {
@@ -155,42 +259,17 @@ private:
     double opening_;
     std::optional<SetPlaces> places_; ///< where rows tell of sets
     std::uint64_t max_memory_;
+    std::span<const std::uint32_t> patches_;
+    ClusteredRowKeeper* keeper_;
     std::uint64_t bytes_ = 0;
     std::vector<SeenRow> kept_;
-    std::vector<std::uint32_t> made_; ///< patches whose rows this rank has made
+    std::vector<std::uint32_t> made_; ///< patches whose rows this rank has
     std::vector<ClusteredRow> rows_;
+    std::vector<std::uint8_t> there_;    ///< of patches: whether the keeper gave their rows
+    std::vector<std::uint32_t> missing_; ///< of blocks: rows that are wanted and not there
     std::mutex mutex_;
     std::vector<std::shared_ptr<RowMaker>> makers_; ///< idle
 };
-
-void append(RowBlock& block, const ClusterEntry& entry) {
-    block.columns.push_back(entry.column);
-    block.values.push_back(entry.value);
-    block.visibility.push_back(entry.visibility);
-}
-
-void append(RowBlock& block, const EntryList& entries) {
-    for (std::uint32_t k = 0; k < entries.size(); ++k) {
-        append(block, entries[k]);
-    }
-}
-
-void reserve(RowBlock& block, std::size_t entries) {
-    block.columns.reserve(entries);
-    block.values.reserve(entries);
-    block.visibility.reserve(entries);
-}
-
-/// Those of the patches whose rows this rank computes: whole blocks, in turn.
-std::vector<std::uint32_t> share_of(std::span<const std::uint32_t> patches) {
-    std::vector<std::uint32_t> own;
-    for (const std::uint32_t patch : patches) {
-        if (patch / FormFactorMatrix::block_rows % ranks().size() == ranks().rank()) {
-            own.push_back(patch);
-        }
-    }
-    return own;
-}
 
 /// Pairs near each other, as one matrix. Takes them out of the rows.
 FormFactorMatrix near_pairs(std::vector<ClusteredRow>& rows, std::span<const std::uint32_t> patches,
@@ -449,7 +528,8 @@ double cluster_opening(double error) {
 
 FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMesh& mesh,
                                    std::span<const std::uint32_t> patches, const ClusterSettings& settings,
-                                   Enclosure enclosure, const Progress& progress) {
+                                   Enclosure enclosure, const Progress& progress,
+                                   ClusteredRowKeeper* keeper) {
     if (!(settings.opening > 0.0) || !std::isfinite(settings.opening)) {
         throw InvalidArgument(
             fmt::format("opening of clusters {}; it must be finite and above 0", settings.opening));
@@ -461,17 +541,20 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
     const ClusterTree tree(mesh, settings.apart);
     std::vector<ClusteredRow> rows;
     {
-        RowCollector collector(mesh, tree, settings);
-        std::size_t done = 0;
         const std::vector<std::uint32_t> own = share_of(patches);
-        const auto take = [&](std::uint32_t patch, const VisibilityRow& row) {
-            collector.take(patch, row);
+        RowCollector collector(mesh, tree, settings, own, keeper);
+        std::size_t done = 0;
+        const auto count = [&] {
             if (progress && !progress(++done, own.size())) {
                 throw Cancelled();
             }
         };
-        if (!own.empty()) {
-            visibility.rows(own, take);
+        const std::vector<std::uint32_t> missing = collector.resume(count);
+        if (!missing.empty()) {
+            visibility.rows(missing, [&](std::uint32_t patch, const VisibilityRow& row) {
+                collector.take(patch, row);
+                count();
+            });
         }
         rows = collector.finish();
     }

@@ -41,17 +41,36 @@ CheckpointKey read_key(ChunkReader& reader) {
     return key;
 }
 
+/// Marks of the rows of the next block.
+std::vector<std::uint8_t> next_marks(ChunkReader& reader) {
+    Payload payload = reader.chunk("MARK");
+    std::vector<std::uint8_t> marks = payload.take_array<std::uint8_t>(payload.left());
+    if (std::any_of(marks.begin(), marks.end(), [](std::uint8_t mark) { return mark > 1; })) {
+        payload.fail("marks other than 0 and 1");
+    }
+    return marks;
+}
+
 /// Puts the next block into `rows` if it is sound and none of its known rows was there before.
+/// @param marks  gets those of its rows, where there are clusters
 /// @return these rows, ascending
-std::vector<std::uint32_t> next_block(ChunkReader& reader, FormFactorMatrix& rows, std::vector<bool>& seen) {
+std::vector<std::uint32_t> next_block(ChunkReader& reader, FormFactorMatrix& rows,
+                                      std::vector<std::uint8_t>& marks, std::vector<bool>& seen) {
     std::vector<std::uint32_t> known;
     try {
+        if (rows.clusters() != nullptr) {
+            marks = next_marks(reader);
+        }
         Payload payload = reader.chunk("ROWS");
         RowBlock block = take_row_block(payload);
         for (std::uint32_t r = 0; r < block.rows(); ++r) {
             if (block.known[r] != 0) {
                 known.push_back(block.first_row + r);
             }
+        }
+        if (rows.clusters() != nullptr &&
+            (marks.size() != block.rows() || block.visibility.size() != block.columns.size())) {
+            return {};
         }
         rows.set_block(std::move(block));
     } catch (const InputError&) {
@@ -88,9 +107,14 @@ std::optional<KeyDifference> difference(const CheckpointKey& here, const Checkpo
         const auto found = key.find(name);
         return found == key.end() ? "nothing" : found->second;
     };
-    CheckpointKey names = here;
-    names.insert(there.begin(), there.end());
-    for (const auto& [name, _] : names) {
+    std::vector<std::string> names{kind_of_rows}; // on which the names that there are, and others, depend
+    for (const CheckpointKey* const key : {&here, &there}) {
+        for (const auto& [name, _] : *key) {
+            names.push_back(name);
+        }
+    }
+    std::sort(names.begin() + 1, names.end());
+    for (const std::string& name : names) {
         if (value(here, name) != value(there, name)) {
             return KeyDifference{name, value(here, name), value(there, name)};
         }
@@ -133,8 +157,7 @@ CheckpointFile::~CheckpointFile() {
     }
 }
 
-void CheckpointFile::start(const CheckpointKey& key, std::uint32_t size,
-                           const std::function<void(std::uint32_t, const RowView&)>& each) {
+void CheckpointFile::start(const CheckpointKey& key, FormFactorMatrix rows, const EachRow& each) {
     key_ = key;
     if (descriptor_ < 0) {
         return;
@@ -153,16 +176,17 @@ void CheckpointFile::start(const CheckpointKey& key, std::uint32_t size,
                                          path_.string(), found->name, found->there, found->here),
                              {"resume"});
         }
-        FormFactorMatrix rows(size);
-        std::vector<bool> seen(size, false);
+        std::vector<bool> seen(rows.size(), false);
+        std::vector<std::uint8_t> marks;
         for (;;) {
             sound = reader->position();
-            const std::vector<std::uint32_t> known = next_block(*reader, rows, seen);
+            const std::vector<std::uint32_t> known = next_block(*reader, rows, marks, seen);
             if (known.empty()) { // cut short, or damaged: from here on nothing is certain
                 break;
             }
             for (const std::uint32_t patch : known) {
-                each(patch, rows.row(patch));
+                each(patch, rows.row(patch),
+                     !marks.empty() && marks[patch % FormFactorMatrix::block_rows] != 0);
             }
             rows_ += known.size();
             forget(rows, known[0]);
@@ -178,7 +202,7 @@ void CheckpointFile::start(const CheckpointKey& key, std::uint32_t size,
     }
 }
 
-void CheckpointFile::append(const RowBlock& block) {
+void CheckpointFile::append(const RowBlock& block, std::span<const std::uint8_t> marks) {
     if (!usable_) {
         return;
     }
@@ -196,6 +220,9 @@ void CheckpointFile::append(const RowBlock& block) {
         write_start(sink, checkpoint_format);
         const std::string head = json_text(Json(key_));
         write_chunk(sink, "HEAD", {bytes_of(head)});
+    }
+    if (!marks.empty()) {
+        write_chunk(sink, "MARK", {std::as_bytes(marks)});
     }
     write_row_block(sink, "ROWS", block);
     // The disk begins now, while rows are computed, and not when the output is made safe, which would wait

@@ -7,14 +7,18 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace hemi::io {
 
 /// What the rows of a checkpoint belong to: names and values, all of which must be equal for rows to be used.
 using CheckpointKey = std::map<std::string, std::string>;
+/// The name of what rows hold.
+inline constexpr const char* kind_of_rows = "rows of";
 
-/// Two keys that differ, told by the first name of which they do; what has none has the value "nothing".
+/// Two keys that differ, told by the first name of which they do, kind_of_rows before all others; what has
+/// none has the value "nothing".
 struct KeyDifference {
     std::string name;
     std::string here;
@@ -26,9 +30,10 @@ struct KeyDifference {
 /// that was killed can be taken up again: FILE.rows.
 ///
 /// A chunk file (see chunk_file.hpp): `HEAD`, the key as JSON, then a `ROWS` a block, in the order in which
-/// they were finished, each handed to the system at once. A tail that was cut by the end of a process (or of
-/// the machine) is dropped. Locked while a run uses it. Appears with its first block, so that a run that
-/// finished none leaves nothing behind.
+/// they were finished, each handed to the system at once. Before each stands a `MARK`, one byte a row, 0 or
+/// 1, where columns may be clusters. A tail that was cut by the end of a process (or of the machine) is
+/// dropped. Locked while a run uses it. Appears with its first block, so that a run that finished none leaves
+/// nothing behind.
 class CheckpointFile {
 public:
     /// Looks for the checkpoint of `output`. What another run is using, and files that are no checkpoints,
@@ -42,17 +47,19 @@ public:
 
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
+    /// Takes a patch, its row, which is valid during the call only, and whether that is marked.
+    using EachRow = std::function<void(std::uint32_t, const RowView&, bool)>;
+
     /// Gives every row of the sound blocks that are there, and says what will be appended. Before append().
-    /// @param size  of the matrix
-    /// @param each  takes patch and row; the view is valid during the call only
+    /// @param rows  a matrix without known rows, that all of the file would fit into
     /// @throws InputError if what is there has another key, naming the first difference; what `each` throws
-    void start(const CheckpointKey& key, std::uint32_t size,
-               const std::function<void(std::uint32_t, const RowView&)>& each);
+    void start(const CheckpointKey& key, FormFactorMatrix rows, const EachRow& each);
 
     /// @param block  of which rows are known that were not kept before
+    /// @param marks  of its rows, where columns may be clusters; else none
     /// @throws IoError, for example when the disk is full; the checkpoint is then gone, and keeps nothing
     /// more.
-    void append(const RowBlock& block);
+    void append(const RowBlock& block, std::span<const std::uint8_t> marks = {});
 
     /// Rows in it.
     [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
