@@ -27,7 +27,7 @@ std::vector<Index> row_offsets(const FormFactorMatrix& matrix) {
 
 /// One array of all blocks' `part`s.
 template <class To, class From>
-std::vector<To> joined(const FormFactorMatrix& matrix, std::vector<From> RowBlock::*part) {
+std::vector<To> joined(const FormFactorMatrix& matrix, RowArray<From> RowBlock::*part) {
     std::vector<To> all;
     all.reserve(matrix.entries());
     for (const RowBlock& block : matrix.blocks()) {

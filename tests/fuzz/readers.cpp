@@ -54,7 +54,7 @@ FormFactorMatrix small_matrix(bool visibility) {
     block.begin = {0, 1, 2};
     block.columns = {1, 0};
     block.values = {0.25f, 0.5f};
-    block.visibility = visibility ? std::vector<std::uint8_t>{255, 100} : std::vector<std::uint8_t>{};
+    block.visibility = visibility ? RowArray<std::uint8_t>{255, 100} : RowArray<std::uint8_t>{};
     block.environment = {0.75, 0.5};
     block.blocked = {0.0, 0.0};
     block.known = {1, 1};

@@ -198,8 +198,7 @@ private:
     }
 
     template <class T>
-    static void reorder(std::vector<T>& values, const std::vector<std::uint64_t>& order,
-                        std::uint64_t begin) {
+    static void reorder(RowArray<T>& values, const std::vector<std::uint64_t>& order, std::uint64_t begin) {
         std::vector<T> ordered;
         ordered.reserve(order.size());
         for (const std::uint64_t k : order) {

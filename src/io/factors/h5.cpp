@@ -216,7 +216,7 @@ private:
     /// An array of one number an entry, from all row blocks.
     template <class Number>
     void blocks(hid_t at, const char* name, hid_t type, const char* units,
-                std::vector<Number> RowBlock::*values) {
+                RowArray<Number> RowBlock::*values) {
         write_array<Number>(at, name, type, units, file_.matrix.entries(), [&](const auto& sink) {
             for (const RowBlock& block : file_.matrix.blocks()) {
                 sink(std::span<const Number>(block.*values));

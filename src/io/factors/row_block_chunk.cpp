@@ -31,9 +31,9 @@ RowBlock take_row_block(Payload& payload) {
     block.begin = payload.take_array<std::uint64_t>(std::uint64_t{rows} + 1);
     block.environment = payload.take_array<double>(rows);
     block.blocked = payload.take_array<double>(rows);
-    block.columns = payload.take_array<std::uint32_t>(entries);
-    block.values = payload.take_array<float>(entries);
-    block.visibility = payload.take_array<std::uint8_t>(visibilities);
+    block.columns = payload.take_array<std::uint32_t, RowAllocator<std::uint32_t>>(entries);
+    block.values = payload.take_array<float, RowAllocator<float>>(entries);
+    block.visibility = payload.take_array<std::uint8_t, RowAllocator<std::uint8_t>>(visibilities);
     block.known = payload.take_array<std::uint8_t>(rows);
     payload.expect_end();
     if (std::any_of(block.known.begin(), block.known.end(), [](std::uint8_t known) { return known > 1; })) {

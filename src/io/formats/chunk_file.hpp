@@ -27,8 +27,8 @@ struct ChunkFormat {
 };
 
 /// Bytes of an array or a trivial value.
-template <class T>
-[[nodiscard]] std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+template <class T, class Allocator>
+[[nodiscard]] std::span<const std::byte> bytes_of(const std::vector<T, Allocator>& values) {
     return std::as_bytes(std::span(values));
 }
 template <class T>
@@ -81,12 +81,12 @@ public:
         return value;
     }
     /// @throws InputError if fewer than `count` are left; nothing is allocated then.
-    template <class T>
-    [[nodiscard]] std::vector<T> take_array(std::uint64_t count) {
+    template <class T, class Allocator = std::allocator<T>>
+    [[nodiscard]] std::vector<T, Allocator> take_array(std::uint64_t count) {
         if (count > left() / sizeof(T)) {
             fail_short();
         }
-        std::vector<T> values(count);
+        std::vector<T, Allocator> values(count);
         copy(values.data(), count * sizeof(T));
         return values;
     }
