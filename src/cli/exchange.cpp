@@ -1,3 +1,4 @@
+#include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/heat_factors.hpp"
 #include "cli/output_paths.hpp"
@@ -99,6 +100,7 @@ ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     TerminalObserver observer(terminal);
     const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer, false);
     RowOptions rows = arguments.rows;
+    settle_clusters(arguments.common, rows);
     if (!arguments.input.factors) {
         rows.factors.estimate_error = false; // only a file would show it
     }
@@ -122,13 +124,14 @@ ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     Report report = scene_size_report(loaded);
     report.add(rows_report(factors, sums, enclosure));
     report.add(repair_report(factors, seconds["repair"]));
+    report.add(asymmetry_report(factors, exchange.asymmetry));
     report.add(cutoff_report(cutoff));
     report.add(seconds.report());
     const Report tables = exchange_report(factors.groups, exchange);
     report.json.update(tables.json);
-    report.select("hemi/exchange/1",
-                  {"renderer", "patches", "parts", "groups", "areas", "emissivity", "gebhart", "script_f",
-                   "conductance", "environment", "cutoff", "row_sum", "repair", "seconds"});
+    report.select("hemi/exchange/1", {"renderer", "patches", "parts", "groups", "areas", "emissivity",
+                                      "gebhart", "script_f", "conductance", "environment", "cutoff",
+                                      "clusters", "asymmetry", "row_sum", "repair", "seconds"});
     show_with_tables(outputs, std::move(report), tables, arguments.common.json, terminal);
     report_leaks(enclosure, factors.matrix, loaded.names(), &loaded.mesh, max_row_error, terminal);
     return enclosure.leaks.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;

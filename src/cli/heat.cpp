@@ -1,3 +1,4 @@
+#include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/heat_factors.hpp"
 #include "cli/output_paths.hpp"
@@ -282,7 +283,9 @@ Report draw_heat(const HeatArguments& arguments, const LoadedScene& loaded, cons
 
 } // namespace
 
-ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
+ExitStatus run(const HeatArguments& given, const Terminal& terminal) {
+    HeatArguments arguments = given;
+    settle_clusters(arguments.common, arguments.rows);
     const Outputs outputs = check_outputs(arguments);
     std::optional<io::TextTable> lines;
     if (arguments.series) {
@@ -382,6 +385,8 @@ ExitStatus run(const HeatArguments& arguments, const Terminal& terminal) {
                                   "environment_power",
                                   "balance",
                                   "error",
+                                  "clusters",
+                                  "asymmetry",
                                   "buried",
                                   "solver",
                                   "row_sum",

@@ -1,6 +1,5 @@
 #include "cli/heat_factors.hpp"
 
-#include "cli/cluster_settings.hpp"
 #include "cli/factor_source.hpp"
 #include "cli/output_paths.hpp"
 #include "hemi/core/black_body.hpp"
@@ -281,9 +280,9 @@ FormFactors read_foreign(const FactorInput& input, const LoadedScene& loaded, do
 FormFactors find_raw_rows(const CommonOptions& common, const RowOptions& rows, const FactorInput& input,
                           const LoadedScene& loaded, Observer& observer, const Terminal& terminal) {
     if (input.factors && !is_own(*input.factors)) {
-        static const std::vector<std::string> of_rows{"--preset",     "--method",      "--rays",
-                                                      "--eye-points", "--shadow-rays", "--seed",
-                                                      "--resume",     "--resolution",  "--no-merge"};
+        static const std::vector<std::string> of_rows{
+            "--preset", "--method",     "--rays",     "--eye-points", "--shadow-rays",  "--seed",
+            "--resume", "--resolution", "--no-merge", "--clusters",   "--cluster-error"};
         for (const std::string& option : common.given) {
             if (std::find(of_rows.begin(), of_rows.end(), option) != of_rows.end()) {
                 throw InvalidArgument(
@@ -303,9 +302,6 @@ FormFactors find_raw_rows(const CommonOptions& common, const RowOptions& rows, c
         with_checkpoint(input.factors, rows.resume, terminal, [&](RowCheckpoint* checkpoint) {
             return find_rows(arguments, loaded, patches, observer, terminal, checkpoint);
         });
-    if (input.factors) {
-        refuse_clusters(factors, *input.factors, "the exchange of heat");
-    }
     if (!factors.matrix.all_known()) {
         throw InputError(
             fmt::format("{}: rows are missing; those of all patches are needed", input.factors->string()));
@@ -390,6 +386,10 @@ FormFactors find_heat_rows(const CommonOptions& common, const RowOptions& rows, 
         factors.areas = read_areas(*input.areas, loaded.mesh.size());
     }
     prepare_form_factors(factors, rows.factors.repair, observer);
+    if (factors.matrix.clusters() != nullptr) { // whose exchange is made symmetric as it is
+        seconds["repair"] = repair_watch.seconds();
+        return factors;
+    }
     const Reciprocity pairs = reciprocity(factors.matrix, factors.areas);
     if (!is_reciprocal(pairs)) {
         if (rows.factors.repair == Repair::none) {

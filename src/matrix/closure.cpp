@@ -34,8 +34,8 @@ Closure::Closure(std::vector<RowBlock>& blocks, std::span<const double> areas, b
                  const RepairSettings& settings, const Progress& progress)
     : blocks_(blocks), areas_(areas), with_visibility_(with_visibility), settings_(settings),
       progress_(progress), cuts_(slice_rows(blocks)),
-      pairs_(blocks, static_cast<std::uint32_t>(areas.size()), 1), gap_(areas.size(), 0.0),
-      diagonal_(areas.size(), 0.0), multiplier_(areas.size(), 0.0) {
+      pairs_(blocks, static_cast<std::uint32_t>(areas.size()), PairEntries::right_of_diagonal, 1),
+      gap_(areas.size(), 0.0), diagonal_(areas.size(), 0.0), multiplier_(areas.size(), 0.0) {
     for (std::uint32_t i = 0; i < gap_.size(); ++i) {
         const RowBlock& block = block_of(blocks, i);
         const std::uint64_t k = first_from(block, i % block_rows, i);

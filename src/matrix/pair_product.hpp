@@ -13,23 +13,31 @@
 
 namespace hemi {
 
-/// Products of a symmetric matrix over pairs of patches with a field: y_i = sum_j w_ij z_j. The weight of a
-/// pair comes from the entry right of the diagonal only, so w_ij = w_ji exactly. Rows are summed by slice and
-/// then in the order of slices: the same bits on any number of threads, and on any number of ranks, which
-/// share the slices. Memory: up to 16 fields.
+/// Entries that a row adds to a symmetric matrix.
+enum class PairEntries {
+    right_of_diagonal, ///< each stands for a pair: w_ij = w_ji exactly
+    all                ///< each adds to w_ij and w_ji, whether or not there is one at (j, i)
+};
+
+/// Products of a symmetric matrix over pairs of patches with a field: y_i = sum_j w_ij z_j. Rows are summed
+/// by slice and then in the order of slices: the same bits on any number of threads, and on any number of
+/// ranks, which share the slices. Memory: up to 16 fields.
 class PairProduct {
 public:
-    /// @param stride  values a patch, side by side: 1, 2 or a multiple of 4
-    PairProduct(std::span<const RowBlock> blocks, std::uint32_t size, std::size_t stride)
-        : blocks_(blocks), size_(size), stride_(stride), cuts_(slice_rows(blocks)) {
+    /// @param columns  of the rows: as many as rows, or more, which then have no rows
+    /// @param entries  that count
+    /// @param stride   values a column, side by side: 1, 2 or a multiple of 4
+    PairProduct(std::span<const RowBlock> blocks, std::uint32_t columns, PairEntries entries,
+                std::size_t stride)
+        : blocks_(blocks), columns_(columns), entries_(entries), stride_(stride), cuts_(slice_rows(blocks)) {
         for (std::size_t s = 0; s + 1 < cuts_.size(); ++s) {
-            partial_.emplace_back((size_ - cuts_[s]) * stride_);
+            partial_.emplace_back((columns_ - first_column(s)) * stride_);
         }
     }
 
     /// @param weight_of  weight_of(block, row): a function of an entry's position in the block, the weight
     ///   of its pair over `scale(row)`
-    /// @param z,y  size·stride values
+    /// @param z,y  columns·stride values
     template <class Scale, class WeightOf>
     void apply(const Scale& scale, const WeightOf& weight_of, const double* z, double* y) {
         const std::size_t first_slice = begin_of_rank(ranks().rank());
@@ -44,10 +52,10 @@ public:
         });
         exchange_slices();
         constexpr std::size_t grain = 8192;
-        parallel_for(size_ * stride_, grain, [&](std::size_t begin, std::size_t end) {
+        parallel_for(columns_ * stride_, grain, [&](std::size_t begin, std::size_t end) {
             std::fill(y + begin, y + end, 0.0);
             for (std::size_t s = 0; s < partial_.size(); ++s) {
-                const std::size_t offset = cuts_[s] * stride_;
+                const std::size_t offset = first_column(s) * stride_;
                 for (std::size_t k = std::max(begin, offset); k < end; ++k) {
                     y[k] += partial_[s][k - offset];
                 }
@@ -56,6 +64,11 @@ public:
     }
 
 private:
+    /// The first column that the rows of a slice add to.
+    [[nodiscard]] std::size_t first_column(std::size_t slice) const {
+        return entries_ == PairEntries::all ? 0 : cuts_[slice];
+    }
+
     /// The first slice of a rank's share.
     [[nodiscard]] std::size_t begin_of_rank(std::uint32_t rank) const {
         return begin_of_share(ranks(), rank, partial_.size());
@@ -83,10 +96,11 @@ private:
     void add_row(std::size_t slice, std::uint32_t i, double scale, const Weight& weight, const double* z) {
         const RowBlock& block = block_of(blocks_, i);
         const std::uint32_t local = i % FormFactorMatrix::block_rows;
-        const std::uint64_t begin = first_from(block, local, i + 1);
+        const std::uint64_t begin =
+            entries_ == PairEntries::all ? block.begin[local] : first_from(block, local, i + 1);
         const std::uint64_t end = block.begin[local + 1];
         double* const y = partial_[slice].data();
-        const std::size_t first = cuts_[slice];
+        const std::size_t first = first_column(slice);
         if (stride_ == 1) {
             add_entries<1>(block, begin, end, i, scale, weight, z, y, first);
         } else if (stride_ == 2) {
@@ -137,10 +151,11 @@ private:
     }
 
     std::span<const RowBlock> blocks_;
-    std::uint32_t size_;
+    std::uint32_t columns_;
+    PairEntries entries_;
     std::size_t stride_;
     std::vector<std::uint32_t> cuts_;
-    std::vector<std::vector<double>> partial_; // per slice, patches from its first row on
+    std::vector<std::vector<double>> partial_; // per slice, columns from its first one on
 };
 
 } // namespace hemi

@@ -92,11 +92,15 @@ void SourceClusters::add_weights(std::span<const double> weights) {
     }
 }
 
-void SourceClusters::fill(std::span<double> values, std::size_t stride) const {
+void SourceClusters::check_values(std::span<const double> values, std::size_t stride) const {
     if (values.size() != (order_.size() + nodes_.size()) * stride) {
         throw InvalidArgument(fmt::format("{} values for {} patches and {} clusters, {} each", values.size(),
                                           order_.size(), nodes_.size(), stride));
     }
+}
+
+void SourceClusters::fill(std::span<double> values, std::size_t stride) const {
+    check_values(values, stride);
     double* const means = values.data() + order_.size() * stride;
     for (std::size_t k = nodes_.size(); k-- > 0;) { // children come after their parents
         const Node& node = nodes_[k];
@@ -109,6 +113,28 @@ void SourceClusters::fill(std::span<double> values, std::size_t stride) const {
         const double share = first_share(static_cast<std::uint32_t>(k));
         for (std::size_t c = 0; c < stride; ++c) {
             mean[c] = share * first[c] + (1.0 - share) * first[stride + c];
+        }
+    }
+}
+
+void SourceClusters::share_out(std::span<double> values, std::size_t stride) const {
+    check_values(values, stride);
+    double* const sums = values.data() + order_.size() * stride;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+        const Node& node = nodes_[k];
+        const double* const sum = sums + k * stride;
+        if (node.child == 0) {
+            double* const patch = values.data() + order_[node.begin] * stride;
+            for (std::size_t c = 0; c < stride; ++c) {
+                patch[c] += sum[c];
+            }
+            continue;
+        }
+        double* const first = sums + node.child * stride;
+        const double share = first_share(static_cast<std::uint32_t>(k));
+        for (std::size_t c = 0; c < stride; ++c) {
+            first[c] += share * sum[c];
+            first[stride + c] += (1.0 - share) * sum[c];
         }
     }
 }

@@ -376,6 +376,7 @@ private:
         solution.residual = fluxes_found_.residual;
         solution.outer = outer_;
         solution.outer_change = outer_change_;
+        solution.asymmetry = network_.asymmetry();
         for (std::uint32_t i = 0; i < size(); ++i) {
             collect_patch(solution, i);
         }
@@ -479,7 +480,8 @@ void warn_of_environment(const FormFactors& factors, const HeatProblem& problem,
 }
 
 /// What the mean irradiation of every group is off by, W/m², by its sampled rows: their mean and its standard
-/// error together; by all rows where a group has hardly any; not a number where there are none.
+/// error together; by all rows where a group has hardly any; not a number where there are none. With
+/// clusters, what makes their exchange symmetric comes on top.
 std::vector<double> irradiation_errors(const FormFactors& factors, const HeatProblem& problem,
                                        const HeatSolution& solution) {
     const std::size_t groups = factors.groups.size();
@@ -511,13 +513,15 @@ std::vector<double> irradiation_errors(const FormFactors& factors, const HeatPro
         }
     }
     constexpr std::size_t few = 4;
+    const std::vector<double> asymmetry = asymmetry_errors(factors, problem, solution);
     std::vector<double> result;
     for (std::size_t g = 0; g <= groups; ++g) {
         const std::size_t from = counts[g] < few ? groups : g;
         const auto count = static_cast<double>(counts[from]);
         const double mean = sums[from] / count; // not a number where there are none
         const double spread = std::max(squares[from] / count - mean * mean, 0.0);
-        result.push_back(std::hypot(mean, count > 1.0 ? std::sqrt(spread / (count - 1.0)) : 0.0));
+        result.push_back(
+            std::hypot(mean, count > 1.0 ? std::sqrt(spread / (count - 1.0)) : 0.0, asymmetry[g]));
     }
     return result;
 }

@@ -14,8 +14,11 @@ namespace hemi {
 
 namespace {
 
-/// Groups whose columns are solved side by side: every product reads the rows once for all of them.
-constexpr std::uint32_t columns_at_once = 16;
+/// Groups whose columns are solved side by side: every product reads the rows once for all of them. With
+/// clusters, whose products need three times as much memory a column, fewer.
+std::uint32_t columns_at_once(const FormFactorMatrix& factors) {
+    return factors.clusters() == nullptr ? 16 : 4;
+}
 
 double divisor(double area) {
     return area > 0.0 ? area : 1.0;
@@ -45,6 +48,7 @@ public:
         result_.emissivity.assign(groups_, 0.0);
         result_.conductance.assign(std::size_t{groups_} * groups_, 0.0);
         result_.environment.assign(groups_, 0.0);
+        result_.asymmetry = network_.asymmetry();
         for (std::uint32_t i = 0; i < network_.size(); ++i) {
             const double area = factors.areas[i] * unit_;
             result_.areas[factors.group_of[i]] += area;
@@ -53,8 +57,9 @@ public:
     }
 
     HeatExchange find(const HeatSettings& settings, Observer& observer) {
-        for (std::uint32_t first = 0; first < groups_; first += columns_at_once) {
-            add_columns(first, std::min(columns_at_once, groups_ - first), settings, observer);
+        const std::uint32_t at_once = columns_at_once(factors_.matrix);
+        for (std::uint32_t first = 0; first < groups_; first += at_once) {
+            add_columns(first, std::min(at_once, groups_ - first), settings, observer);
         }
         finish();
         return std::move(result_);

@@ -179,21 +179,34 @@ ExchangeNetwork make_network(const FormFactors& factors, const HeatProblem& prob
     if (!factors.matrix.all_known()) {
         throw InvalidArgument("heat exchange needs the rows of all patches, and some are unknown");
     }
-    if (!is_reciprocal(reciprocity(factors.matrix, factors.areas))) {
+    if (factors.matrix.clusters() == nullptr && !is_reciprocal(reciprocity(factors.matrix, factors.areas))) {
         throw InvalidArgument("heat exchange needs reciprocal rows; repair them (closure or reciprocity)",
                               {"repair"});
     }
-    // An enclosure's leaks come back: the environment gets nothing of it.
-    const bool closed = find_leaks(factors, 0.0).closed;
-    std::vector<double> environment(size, 0.0);
+    return make_network(factors);
+}
+
+ExchangeNetwork make_network(const FormFactors& factors) {
+    const std::uint32_t size = factors.matrix.size();
     // What little a covered patch sees by the sampling of its visibility is not there.
     constexpr double all_of_it = 0.999;
     std::vector<std::uint8_t> isolated(size, 0);
     for (std::uint32_t i = 0; i < size; ++i) {
-        environment[i] = closed ? 0.0 : factors.matrix.row(i).environment;
         isolated[i] = factors.matrix.row(i).blocked > all_of_it ? 1 : 0;
     }
-    return ExchangeNetwork(factors.matrix, factors.areas, std::move(environment), std::move(isolated));
+    return ExchangeNetwork(factors.matrix, factors.areas, shares_of_environment(factors),
+                           std::move(isolated));
+}
+
+std::vector<double> shares_of_environment(const FormFactors& factors) {
+    std::vector<double> shares(factors.matrix.size(), 0.0);
+    if (find_leaks(factors, 0.0).closed) {
+        return shares;
+    }
+    for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
+        shares[i] = factors.matrix.row(i).environment;
+    }
+    return shares;
 }
 
 void refuse_singular(const FormFactors& factors, const HeatProblem& problem, const ExchangeNetwork& network,

@@ -11,8 +11,20 @@
 namespace hemi {
 
 /// Form factors as a network.
-/// @throws InvalidArgument unless all rows are known and reciprocal and the problem is of as many patches
+/// @throws InvalidArgument unless all rows are known, and reciprocal or with clusters, and the problem is of
+///   as many patches
 [[nodiscard]] ExchangeNetwork make_network(const FormFactors& factors, const HeatProblem& problem);
+/// The same of rows that are known to suit.
+[[nodiscard]] ExchangeNetwork make_network(const FormFactors& factors);
+
+/// e of every row; 0 in an enclosure, whose leaks come back: the environment gets nothing of it.
+[[nodiscard]] std::vector<double> shares_of_environment(const FormFactors& factors);
+
+/// What the mean irradiation of every group, and a last one of all of them, is by the exchange that was made
+/// symmetric, over what it would be by rows with clusters as they are, W/m², whatever its sign; 0 without
+/// clusters.
+[[nodiscard]] std::vector<double> asymmetry_errors(const FormFactors& factors, const HeatProblem& problem,
+                                                   const HeatSolution& solution);
 
 /// 1 for every patch that sees nothing.
 [[nodiscard]] std::vector<std::uint8_t> buried_patches(const ExchangeNetwork& network);

@@ -1,12 +1,15 @@
 #include "solver/exchange_network.hpp"
 
 #include "hemi/core/error.hpp"
+#include "hemi/matrix/product.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace hemi {
 
@@ -24,9 +27,9 @@ class NetworkSolver {
 public:
     NetworkSolver(const FormFactorMatrix& factors, std::span<const double> areas,
                   std::span<const double> environment, std::span<const std::uint8_t> isolated,
-                  std::span<const double> sums, const NetworkSources& sources)
+                  std::span<const double> scale, std::span<const double> sums, const NetworkSources& sources)
         : areas_(areas), environment_(environment), isolated_(isolated), sums_(sums), sources_(sources),
-          columns_(sources.columns), exchange_(factors, areas, ChannelField::padded(columns_)),
+          columns_(sources.columns), exchange_(factors, areas, ChannelField::padded(columns_), scale),
           zeros_(factors.size(), 0.0), u_(factors.size(), columns_), residual_(factors.size(), columns_),
           direction_(factors.size(), columns_), product_(factors.size(), columns_),
           connected_(factors.size(), columns_), common_(columns_, 0.0), source_squares_(columns_, 0.0),
@@ -256,15 +259,56 @@ ExchangeNetwork::ExchangeNetwork(const FormFactorMatrix& factors, std::span<cons
     for (std::uint32_t i = 0; i < size(); ++i) {
         connected[i] = isolated_[i] != 0 ? 0.0 : 1.0;
     }
-    ExchangeProduct(factors, areas, 1).apply(zeros, connected, sums_, true);
+    if (factors.clusters() != nullptr) {
+        find_scale(connected);
+    }
+    ExchangeProduct(factors, areas, 1, scale_).apply(zeros, connected, sums_, true);
     for (std::uint32_t i = 0; i < size(); ++i) {
         sums_[i] *= connected[i];
         environment_[i] *= connected[i];
     }
 }
 
+/// Scales what goes through clusters until x_ij sums to what the rows say, and finds how far it was from
+/// that.
+void ExchangeNetwork::find_scale(std::span<const double> connected) {
+    constexpr int most_steps = 30; // each halves the gap, where it can be closed
+    constexpr double enough = 1e-6;
+    constexpr double nothing = 1e-6; // of an area: rounding of what is near
+    const std::vector<double> zeros(size(), 0.0);
+    std::vector<double> own(size());
+    multiply(factors_, connected, 1, own);
+    std::vector<double> near(size());
+    ExchangeProduct(factors_, areas_, 1, zeros).apply(zeros, connected, near, true);
+    scale_.assign(connected.begin(), connected.end());
+    std::vector<double> sums(size());
+    ExchangeProduct product(factors_, areas_, 1, scale_);
+    for (int step = 0; step < most_steps; ++step) {
+        product.apply(zeros, connected, sums, true);
+        double squares = 0.0;
+        double area = 0.0;
+        for (std::uint32_t i = 0; i < size(); ++i) {
+            if (connected[i] == 0.0 || !(own[i] > 0.0)) {
+                continue;
+            }
+            const double wanted = areas_[i] * own[i];
+            const double gap = sums[i] / wanted - 1.0;
+            squares += areas_[i] * gap * gap;
+            area += areas_[i];
+            if (std::min(wanted, sums[i]) - near[i] > nothing * areas_[i]) {
+                scale_[i] *= std::sqrt((wanted - near[i]) / (sums[i] - near[i]));
+            }
+        }
+        const double gap = relative(squares, area);
+        asymmetry_ = step == 0 ? gap : asymmetry_;
+        if (gap <= enough) {
+            break;
+        }
+    }
+}
+
 std::vector<std::uint32_t> ExchangeNetwork::enclosures() const {
-    std::vector<std::uint32_t> parent(size());
+    std::vector<std::uint32_t> parent(factors_.columns());
     std::iota(parent.begin(), parent.end(), 0u);
     const auto root = [&parent](std::uint32_t i) {
         while (parent[i] != i) {
@@ -273,26 +317,57 @@ std::vector<std::uint32_t> ExchangeNetwork::enclosures() const {
         }
         return i;
     };
+    const auto connect = [&](std::uint32_t i, std::uint32_t j) {
+        const std::uint32_t a = root(i);
+        const std::uint32_t b = root(j);
+        parent[std::max(a, b)] = std::min(a, b);
+    };
+    std::vector<std::uint8_t> seen(factors_.columns() - size(), 0); // clusters
     for (std::uint32_t i = 0; i < size(); ++i) {
         const RowView row = factors_.row(i);
         for (std::size_t k = 0; k < row.columns.size(); ++k) {
-            if (row.values[k] > 0.0f && row.columns[k] > i && isolated_[i] == 0 &&
-                isolated_[row.columns[k]] == 0) {
-                const std::uint32_t a = root(i);
-                const std::uint32_t b = root(row.columns[k]);
-                parent[std::max(a, b)] = std::min(a, b);
+            const std::uint32_t j = row.columns[k];
+            if (row.values[k] > 0.0f && isolated_[i] == 0 && (j >= size() || isolated_[j] == 0)) {
+                connect(i, j);
+                if (j >= size()) {
+                    seen[j - size()] = 1;
+                }
+            }
+        }
+    }
+    // What sees a cluster exchanges with all of its patches, through the clusters that make it up.
+    for (std::uint32_t k = 0; k < seen.size(); ++k) {
+        const SourceClusters::Node& node = factors_.clusters()->nodes()[k];
+        if (seen[k] == 0) {
+            continue;
+        }
+        if (node.child == 0) {
+            const std::uint32_t patch = factors_.clusters()->order()[node.begin];
+            if (isolated_[patch] == 0) {
+                connect(size() + k, patch);
+            }
+            continue;
+        }
+        const double share = factors_.clusters()->first_share(k);
+        for (const auto& [child, part] :
+             {std::pair(node.child, share), std::pair(node.child + 1, 1.0 - share)}) {
+            if (part > 0.0) {
+                connect(size() + k, size() + child);
+                seen[child] = 1;
             }
         }
     }
     for (std::uint32_t i = 0; i < size(); ++i) {
         parent[i] = root(i);
     }
+    parent.resize(size());
     return parent;
 }
 
 NetworkFluxes ExchangeNetwork::solve(const NetworkSources& sources, double tolerance,
                                      const Watcher& watcher) const {
-    return NetworkSolver(factors_, areas_, environment_, isolated_, sums_, sources).solve(tolerance, watcher);
+    return NetworkSolver(factors_, areas_, environment_, isolated_, scale_, sums_, sources)
+        .solve(tolerance, watcher);
 }
 
 } // namespace hemi

@@ -34,13 +34,16 @@ struct NetworkFluxes {
 /// comes back, so that every pair and every row balances exactly, patches that see nothing have J = G, and
 /// emissivities of 0 are allowed. Solved by conjugate gradients with a diagonal preconditioner, in what the
 /// radiosities differ from a common value. Source: A. K. Oppenheim, "Radiation analysis by the network
-/// method", Trans. ASME 78, 1956.
+/// method", Trans. ASME 78, 1956. Of rows with clusters, x_ij is as in ExchangeProduct, times d_i d_j by
+/// which its sums are again those of A_i F(i, j), as nearly as there are such d: what a patch gets of a
+/// cluster's share depends on its place in it, which the transpose does not know. Source: P. A. Knight, D.
+/// Ruiz, B. Ucar, "A symmetry preserving algorithm for matrix scaling", SIAM J. Matrix Anal. Appl. 35, 2014.
 class ExchangeNetwork {
 public:
     /// Called after every iteration with their number and the residual; false cancels.
     using Watcher = std::function<bool(std::uint32_t, double)>;
 
-    /// @param factors      N rows, all known and reciprocal; must outlive this
+    /// @param factors      N rows, all known, and reciprocal or with clusters; must outlive this
     /// @param areas        N areas; must outlive this
     /// @param environment  e of every row
     /// @param isolated     1 for patches that exchange nothing, whatever the rows say
@@ -53,6 +56,9 @@ public:
         return (sums_[i] / areas_[i]) + environment_[i];
     }
     [[nodiscard]] std::span<const double> environment() const { return environment_; }
+    /// How far the sums of x_ij over j were from those of A_i F(i, j) before they were scaled, a share of
+    /// these, rms by area: 0 but for rows with clusters.
+    [[nodiscard]] double asymmetry() const { return asymmetry_; }
     /// Of every patch the smallest patch that it is connected with.
     [[nodiscard]] std::vector<std::uint32_t> enclosures() const;
 
@@ -61,11 +67,15 @@ public:
                                       const Watcher& watcher = {}) const;
 
 private:
+    void find_scale(std::span<const double> connected);
+
     const FormFactorMatrix& factors_;
     std::span<const double> areas_;
     std::vector<double> environment_;
     std::vector<std::uint8_t> isolated_;
-    std::vector<double> sums_; // of x_ij over all other patches j
+    std::vector<double> scale_; // d, of rows with clusters
+    std::vector<double> sums_;  // of x_ij over all other patches j
+    double asymmetry_ = 0.0;
 };
 
 } // namespace hemi

@@ -148,7 +148,9 @@ TEST_CASE("Ranks: more of them than there are patches", "[mpi]") {
 TEST_CASE("Ranks: rows of some patches alone, and heat, are those of one process", "[mpi]") {
     const Directory directory;
     const Words command = GENERATE(as<Words>(), Words{"solve", room, "--patches-per-face", "4", "--factors"},
-                                   Words{"heat", HEMI_SOURCE_DIR "/scenes/furnace-hot.json", "--factors"});
+                                   Words{"heat", HEMI_SOURCE_DIR "/scenes/furnace-hot.json", "--factors"},
+                                   Words{"heat", HEMI_SOURCE_DIR "/scenes/furnace-hot.json", "--clusters",
+                                         "on", "--cluster-error", "2%", "--factors"});
     const Words settings{"--device", "cpu", "--json"};
     const Outcome one = run_hemi(with(with(command, {directory.path("one.hff")}), settings));
     INFO(one.err);

@@ -63,8 +63,15 @@ public:
     /// @param stride  values a patch
     /// @throws InvalidArgument if there are not as many
     void fill(std::span<double> values, std::size_t stride) const;
+    /// Adds what stands at the nodes to the values of their patches, by shares: the transpose of fill(). Of
+    /// the nodes' values nothing is to be used afterwards.
+    /// @param values  as in fill()
+    /// @param stride  values a patch
+    /// @throws InvalidArgument if there are not as many
+    void share_out(std::span<double> values, std::size_t stride) const;
 
 private:
+    void check_values(std::span<const double> values, std::size_t stride) const;
     void add_weights(std::span<const double> weights);
 
     std::vector<std::uint32_t> order_;

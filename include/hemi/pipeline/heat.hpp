@@ -70,6 +70,9 @@ struct HeatSolution {
     std::uint32_t outer = 0;          ///< outer iterations; 0: none were needed
     double outer_change = 0.0;        ///< last largest change of a sigma T⁴ over the largest
     double residual = 0.0;            ///< of the linear systems, the worst
+    /// Of rows with clusters: how far what a patch exchanges with all others was from what its row says, a
+    /// share of this, rms by area, once that was made symmetric and before it was scaled. 0 without clusters.
+    double asymmetry = 0.0;
 };
 
 /// Net fluxes and temperatures by J = eps f(T) sigma T⁴ + exitance + (1 - eps) G, G = F J + b J + e J_env + D
@@ -78,7 +81,9 @@ struct HeatSolution {
 /// system; several bands with fluxes, isothermal groups and emissivities by temperature by fixed-point
 /// iterations with Anderson's acceleration around it. In closed scenes leaks come back, too. Source: D. G.
 /// Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12, 1965.
-/// @param factors   all rows known, and reciprocal
+/// @param factors   all rows known, and reciprocal or with clusters: of these, the mean of A F and its
+///   transpose counts, in which a cluster gives what it gets on to its patches by their weights, scaled to
+///   what the rows exchange
 /// @param problem   of the same patches
 /// @param settings  tolerances
 /// @param observer  gets progress and may cancel; gets a warning where an open scene's environment has no
@@ -121,7 +126,8 @@ struct GroupHeat {
     double net_flux = 0.0;    ///< W/m², leaving positive
     double net_power = 0.0;   ///< W, leaving positive
     /// Of the net flux, W/m²: what the form factors' estimated error brings where the temperature is given, 0
-    /// where the flux is. Not a number where that is not known.
+    /// where the flux is. Not a number where that is not known. With clusters, what making their exchange
+    /// symmetric changes is a part of it.
     double flux_error = 0.0;
 };
 /// Of every group of the form factors; a last one with everything but the environment.
@@ -199,6 +205,7 @@ struct HeatExchange {
     std::vector<double> script_f;    ///< sum A_i eps_i B_ij over g and h over A_g, the diagonal included
     std::vector<double> conductance; ///< A_g script_f, m², symmetric
     std::vector<double> environment; ///< script-F to the environment, G
+    double asymmetry = 0.0;          ///< as in HeatSolution
 };
 /// Exchange factors by the emissivities alone, whatever is known of temperatures and fluxes: the net power
 /// from g to h is conductance·sigma (T_g⁴ - T_h⁴). One column of a linear solve a group. Source: B. Gebhart,

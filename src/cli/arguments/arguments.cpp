@@ -343,6 +343,7 @@ void add_rows_of_heat(CLI::App& app, SceneOptions& scene, RowOptions& rows, Fact
     Options(app, "Form factors")
         .flag("--no-estimate", rows.factors.estimate_error,
               "skip the error estimates, which take a tenth of the time of new form factors", false);
+    add_clusters(app, rows);
     auto* factors = add_factor_input(app, input);
     add_resume(app, rows, factors);
     add_max_memory(app, rows);

@@ -168,6 +168,7 @@ Report heat_balance_report(const FormFactors& factors, const HeatProblem& proble
                                    plural(solution.outer, "outer iteration", "outer iterations"),
                                    solution.outer_change));
     }
+    report.add(asymmetry_report(factors, solution.asymmetry));
     const auto buried = std::count(solution.buried.begin(), solution.buried.end(), std::uint8_t{1});
     if (buried > 0) {
         report.add("buried",
@@ -175,6 +176,20 @@ Report heat_balance_report(const FormFactors& factors, const HeatProblem& proble
                                plural(static_cast<std::uint64_t>(buried), "patch has", "patches have")));
     }
     report.json["buried"] = buried;
+    return report;
+}
+
+Report asymmetry_report(const FormFactors& factors, double asymmetry) {
+    Report report;
+    const bool clusters = factors.matrix.clusters() != nullptr;
+    if (clusters) {
+        report.add("clusters",
+                   fmt::format("exchange made symmetric and scaled: what a patch exchanges was {:.2g} % "
+                               "off its row (rms by area)",
+                               100.0 * asymmetry));
+    }
+    report.json["clusters"] = clusters;
+    report.json["asymmetry"] = clusters ? Json(asymmetry) : Json();
     return report;
 }
 

@@ -26,6 +26,12 @@ namespace hemi::cli {
 [[nodiscard]] Report heat_balance_report(const FormFactors& factors, const HeatProblem& problem,
                                          const HeatSolution& solution);
 
+/// What making the exchange of clusters symmetric changes; keys "clusters", and "asymmetry", null without
+/// any.
+/// @param factors    rows of the patches
+/// @param asymmetry  see HeatSolution
+[[nodiscard]] Report asymmetry_report(const FormFactors& factors, double asymmetry);
+
 /// Share of what leaves every group that meets backs of one-sided surfaces, of all that leaves; heat counts
 /// it as coming back. One value a group.
 /// @param factors   rows of the patches

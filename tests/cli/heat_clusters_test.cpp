@@ -1,0 +1,162 @@
+#include "cli/heat_scenes.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+using namespace hemi::cli_test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Of which some are as good as found in clusters: far patches, sides without a flux.
+Json far_box() {
+    return box(1.0, 1.2, 1.5, 20);
+}
+
+Outcome run_with(Words words, const Words& more) {
+    words.insert(words.end(), {"--device", "cpu", "--preset", "fast", "--json", "--quiet"});
+    words.insert(words.end(), more.begin(), more.end());
+    return run_hemi(words);
+}
+
+const Words in_clusters{"--clusters", "on", "--cluster-error", "0.5%"};
+
+/// Checks fluxes and temperatures against those of pairs, relative to the largest of all.
+void check_near(const Json& clusters, const Json& pairs, double tolerance) {
+    REQUIRE(clusters["clusters"] == true);
+    REQUIRE(pairs["clusters"] == false);
+    CHECK(pairs["asymmetry"].is_null());
+    CHECK(clusters["asymmetry"].get<double>() > 0.0);
+    CHECK(clusters["asymmetry"].get<double>() < 0.1);
+    for (const char* const key : {"net_flux", "irradiation", "temperature"}) {
+        double largest = 0.0;
+        for (const Json& value : pairs[key]) {
+            largest = std::max(largest, std::abs(value.get<double>()));
+        }
+        for (std::size_t g = 0; g < pairs["groups"].size(); ++g) {
+            INFO(key << " of " << pairs["groups"][g]);
+            CHECK(clusters[key][g].get<double>() ==
+                  Approx(pairs[key][g].get<double>()).epsilon(0).margin(tolerance * largest));
+        }
+    }
+    CHECK(clusters["balance"]["relative"].get<double>() < 1e-9);
+}
+
+} // namespace
+
+TEST_CASE("hemi heat: far patches in clusters exchange what pairs do, and heat balances",
+          "[cli][heat][clusters]") {
+    const Directory directory;
+    Json scene = far_box();
+    Words clustered = in_clusters;
+    SECTION("adiabatic sides") {}
+    SECTION("an open side, to an environment") {
+        Json left;
+        for (const Json& surface : scene["surfaces"]) {
+            if (surface["name"] != "left") {
+                left.push_back(surface);
+            }
+        }
+        scene["surfaces"] = left;
+        scene["groups"].erase("left");
+        scene["environment"] = {{"temperature", 250}};
+        scene["enclosure"] = "open";
+    }
+    SECTION("two bands") {
+        scene["bands"] = {3.0};
+        scene["materials"]["side"]["emissivity"] = {0.3, 0.8};
+    }
+    SECTION("an isothermal side") {
+        scene["groups"]["back"] = {{"power", -200}, {"isothermal", true}};
+    }
+    SECTION("something in the way") {
+        scene["surfaces"].push_back(
+            face("shield", "side", {{0.1, 0.1, 0.7}, {0.9, 0.1, 0.7}, {0.9, 1.1, 0.7}, {0.1, 1.1, 0.7}}, 16));
+        scene["surfaces"].back()["two_sided"] = true;
+        scene["groups"]["shield"] = {{"heat_flux", 0}};
+        // Clusters of the sides of which only some patches are hidden give heat on past the shield.
+        clustered.back() = "0.01%";
+    }
+    const std::string file = directory.write("box.json", scene);
+    const Outcome clusters = run_with({"heat", file, "--no-estimate"}, clustered);
+    INFO(clusters.err);
+    REQUIRE(clusters.status == 0);
+    check_near(clusters.json(), run_with({"heat", file, "--no-estimate"}, {"--clusters", "off"}).json(),
+               0.01);
+}
+
+TEST_CASE("hemi heat: one temperature everywhere makes no flux, with clusters, too",
+          "[cli][heat][clusters]") {
+    const Directory directory;
+    Json scene = far_box();
+    for (Json& group : scene["groups"]) {
+        group = {{"temperature", 400}};
+    }
+    const Outcome run = run_with({"heat", directory.write("box.json", scene), "--no-estimate"}, in_clusters);
+    INFO(run.err);
+    const Json json = run.json();
+    REQUIRE(json["clusters"] == true);
+    for (const Json& flux : json["net_flux"]) {
+        CHECK(std::abs(flux.get<double>()) < 1e-9 * sigma * std::pow(400.0, 4));
+    }
+}
+
+TEST_CASE(
+    "hemi heat: rows with clusters from a file, or where the memory is too small for pairs; their error "
+    "is told",
+    "[cli][heat][clusters]") {
+    const Directory directory;
+    const std::string scene = directory.write("box.json", far_box());
+    const std::string rows = directory.path("box.hff");
+    const std::string fluxes = directory.path("a.csv");
+    const Outcome written = run_with({"heat", scene, "--factors", rows, "--fluxes", fluxes}, in_clusters);
+    INFO(written.err);
+    const Json json = written.json();
+    for (const Json& error : json["error"]["parts"]["factors"]) {
+        CHECK(error.is_number());
+    }
+    for (const Json& error : json["error"]["net_flux"]) {
+        CHECK(error.is_number());
+    }
+    CHECK(json["error"]["net_flux"][0].get<double>() > 0.0);
+    const Outcome read =
+        run_with({"heat", scene, "--factors", rows, "--fluxes", directory.path("b.csv")}, {});
+    CHECK(read.json()["net_flux"] == json["net_flux"]);
+    CHECK(directory.read("b.csv") == directory.read("a.csv"));
+
+    const Outcome text = run_hemi({"heat", scene, "--factors", rows, "--device", "cpu", "--preset", "fast"});
+    CHECK_THAT(text.out + text.err, Contains("exchange made symmetric"));
+
+    const Outcome little = run_with({"heat", scene, "--no-estimate"}, {"--max-memory", "20M"});
+    INFO(little.err);
+    CHECK(little.json()["clusters"] == true);
+    const Outcome refused = run_with({"heat", scene, "--repair", "closure"}, in_clusters);
+    CHECK(refused.status == 2);
+    CHECK_THAT(refused.err, Contains("--clusters on excludes --repair"));
+}
+
+TEST_CASE("hemi exchange: conductances by clusters are symmetric, balance, and are near those of pairs",
+          "[cli][heat][clusters]") {
+    const Directory directory;
+    const std::string scene = directory.write("box.json", far_box());
+    const Outcome run = run_with({"exchange", scene}, in_clusters);
+    INFO(run.err);
+    const Json clusters = run.json();
+    const Json pairs = run_with({"exchange", scene}, {"--clusters", "off"}).json();
+    REQUIRE(clusters["clusters"] == true);
+    CHECK(clusters["asymmetry"].get<double>() > 0.0);
+    CHECK(pairs["asymmetry"].is_null());
+    for (std::size_t g = 0; g < clusters["groups"].size(); ++g) {
+        double sum = clusters["environment"][g].get<double>();
+        for (std::size_t h = 0; h < clusters["groups"].size(); ++h) {
+            const double conductance = clusters["conductance"][g][h].get<double>();
+            CHECK(conductance == clusters["conductance"][h][g].get<double>());
+            CHECK(conductance == Approx(pairs["conductance"][g][h].get<double>()).epsilon(0).margin(0.003));
+            sum += clusters["script_f"][g][h].get<double>();
+        }
+        CHECK(sum == Approx(clusters["emissivity"][g].get<double>()).epsilon(1e-9));
+    }
+}
