@@ -133,6 +133,11 @@ void radiate_by_conditions(const ViewerInput& input, Light& light) {
 
 Heat find_heat(const ViewerInput& input, const Light& light, Observer& observer) {
     Heat heat;
+    if (input.factors->matrix.clusters() != nullptr) {
+        heat.problem = "far patches stand in clusters, but the exchange of heat needs factors of single "
+                       "patches; --clusters off makes them";
+        return heat;
+    }
     try {
         const HeatProblem problem = problem_of(input, light);
         const HeatSolution solution = solve_heat(*input.factors, problem, {}, observer);
