@@ -1,3 +1,4 @@
+#include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/loaded_scene.hpp"
 #include "cli/output_paths.hpp"
@@ -74,7 +75,9 @@ void write_baked(const BakeArguments& arguments, const Outputs& outputs, const S
     outputs.show(report, arguments.common.json, terminal);
 }
 
-ExitStatus bake_scene(const BakeArguments& arguments, const Outputs& outputs, const Terminal& terminal) {
+ExitStatus bake_scene(const BakeArguments& given, const Outputs& outputs, const Terminal& terminal) {
+    BakeArguments arguments = given;
+    settle_clusters(arguments.common, arguments.rows, obstacle_of_solver(arguments.solver));
     TerminalObserver observer(terminal);
     const auto loaded = load_scene(arguments.scene, terminal);
     (void)channels_to_show(loaded.scene.channels, arguments.picture.show, false);

@@ -27,6 +27,13 @@ std::optional<ClusterObstacle> obstacle_of_rows(const RowOptions& rows) {
 
 } // namespace
 
+std::optional<ClusterObstacle> obstacle_of_solver(const SolverSettings& solver) {
+    if (solver.method == SolverMethod::conjugate_gradient) {
+        return {{"--solver cg", "which needs reciprocal rows"}};
+    }
+    return std::nullopt;
+}
+
 void settle_clusters(const CommonOptions& common, RowOptions& rows, std::optional<ClusterObstacle> more) {
     Clusters& clusters = rows.factors.clusters;
     const auto obstacle = more ? more : obstacle_of_rows(rows);

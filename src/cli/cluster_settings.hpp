@@ -3,6 +3,7 @@
 #include "cli/arguments/arguments.hpp"
 #include "hemi/core/diagnostics.hpp"
 #include "hemi/matrix/form_factors.hpp"
+#include "hemi/solver/solver.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -17,6 +18,9 @@ struct ClusterObstacle {
     std::string_view option;
     std::string_view why;
 };
+
+/// What of a solver keeps rows from being those of clusters.
+[[nodiscard]] std::optional<ClusterObstacle> obstacle_of_solver(const SolverSettings& solver);
 
 /// Turns clusters off where something keeps rows from being those of clusters.
 /// @param more  of the command, beside what the options of rows say

@@ -1,4 +1,5 @@
 #include "hemi/pipeline/points.hpp"
+#include "cli/cluster_settings.hpp"
 #include "cli/commands.hpp"
 #include "cli/factor_source.hpp"
 #include "cli/heat_factors.hpp"
@@ -254,9 +255,12 @@ void leave_sky(const PointsArguments& arguments, Scene& scene) {
 }
 
 /// @param find  gets the faces, before the work
-Lit light_of_scene(const PointsArguments& arguments, Observer& observer, const Terminal& terminal,
+Lit light_of_scene(const PointsArguments& given, Observer& observer, const Terminal& terminal,
                    Seconds& seconds, const std::function<void(const PatchMesh&)>& find) {
-    const bool heat = !arguments.daylight && is_thermal(arguments);
+    const bool heat = !given.daylight && is_thermal(given);
+    PointsArguments arguments = given;
+    settle_clusters(arguments.common, arguments.rows,
+                    heat ? std::nullopt : obstacle_of_solver(arguments.solver));
     if (arguments.posture && !heat) {
         throw InvalidArgument(
             fmt::format("--person needs temperatures, which neither {} nor --temperature has",

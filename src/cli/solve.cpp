@@ -56,10 +56,7 @@ std::optional<ClusterObstacle> cluster_obstacle(const SolveArguments& arguments)
     if (arguments.refines() || arguments.rows.error_target) {
         return {{"--error-target and --refine", "which need the pairs of patches"}};
     }
-    if (arguments.solver.method == SolverMethod::conjugate_gradient) {
-        return {{"--solver cg", "which needs reciprocal rows"}};
-    }
-    return std::nullopt;
+    return obstacle_of_solver(arguments.solver);
 }
 
 void check_input(const SolveArguments& arguments) {

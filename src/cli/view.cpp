@@ -232,7 +232,6 @@ private:
     [[nodiscard]] FormFactors stored_factors(const std::filesystem::path& path,
                                              const LoadedScene& loaded) const {
         FormFactors factors = read_rows(path, loaded, arguments_.rows.factors, arguments_.common);
-        refuse_clusters(factors, path, "the window, which shows what single patches get from each other,");
         if (!factors.matrix.all_known()) {
             throw InputError(
                 fmt::format("{}: rows are missing; the window needs those of all patches", path.string()));
@@ -290,9 +289,19 @@ private:
     const Terminal& terminal_;
 };
 
+/// What of `view` keeps rows from being those of clusters.
+std::optional<ClusterObstacle> cluster_obstacle(const ViewArguments& arguments) {
+    if (arguments.refinement.asked(arguments.rows)) {
+        return {{"--error-target and --refine", "which need the pairs of patches"}};
+    }
+    return obstacle_of_solver(arguments.solver);
+}
+
 } // namespace
 
-ExitStatus run(const ViewArguments& arguments, const Terminal& terminal) {
+ExitStatus run(const ViewArguments& given, const Terminal& terminal) {
+    ViewArguments arguments = given;
+    settle_clusters(arguments.common, arguments.rows, cluster_obstacle(arguments));
     check_budget(arguments.refinement, arguments.rows);
     if (arguments.rows.error_target && arguments.rows.error_of == ErrorOf::factors) {
         throw InvalidArgument(

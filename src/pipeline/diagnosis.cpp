@@ -3,7 +3,7 @@
 #include "hemi/core/buried.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/engine/leaks.hpp"
-#include "hemi/matrix/product.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 #include "hemi/scene/near_surface.hpp"
 
 #include <fmt/format.h>
@@ -81,14 +81,27 @@ void examine_rows(Diagnosis& diagnosis, const FormFactorMatrix& factors, double 
     sort_worst_first(diagnosis.back_faces);
 }
 
+/// What rows see of patches, and of clusters as a whole.
 std::vector<bool> seen_patches(const FormFactorMatrix& factors) {
-    std::vector<bool> seen(factors.size(), false);
+    std::vector<bool> seen(factors.columns(), false);
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        visit_sources(factors, factors.row(i), [&seen](std::uint32_t j, double factor) {
-            if (factor > 0.0) {
-                seen[j] = true;
-            }
-        });
+        const RowView row = factors.row(i);
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            seen[row.columns[k]] = seen[row.columns[k]] || row.values[k] > 0.0F;
+        }
+    }
+    if (factors.clusters() == nullptr) {
+        return seen;
+    }
+    const SourceClusters& clusters = *factors.clusters();
+    for (std::uint32_t node = 0; node < clusters.nodes().size(); ++node) { // parents before their children
+        if (const std::uint32_t child = clusters.nodes()[node].child; !seen[factors.size() + node]) {
+            continue;
+        } else if (child == 0) {
+            seen[clusters.patches(node).front()] = true;
+        } else {
+            seen[factors.size() + child] = seen[factors.size() + child + 1] = true;
+        }
     }
     return seen;
 }
@@ -171,17 +184,27 @@ void set_apart_outside(Diagnosis& diagnosis, const FormFactors& file, double max
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
         outside[i] = factors.row(i).environment > max_row_error;
     }
+    std::vector<double> inside(factors.columns(), 0.0); // of patches 1 or 0, of clusters the share of them
+    for (std::uint32_t i = 0; i < factors.size(); ++i) {
+        inside[i] = outside[i] ? 0.0 : 1.0;
+    }
     const auto sees_inside = [&](std::uint32_t i) {
-        double inside = 0.0;
-        visit_sources(factors, factors.row(i),
-                      [&](std::uint32_t j, double factor) { inside += outside[j] ? 0.0 : factor; });
-        return inside > max_row_error;
+        const RowView row = factors.row(i);
+        double seen = 0.0;
+        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+            seen += inside[row.columns[k]] * static_cast<double>(row.values[k]);
+        }
+        return seen > max_row_error;
     };
     for (bool changed = true; changed;) {
         changed = false;
+        if (factors.clusters() != nullptr) {
+            factors.clusters()->fill(inside, 1);
+        }
         for (std::uint32_t i = 0; i < factors.size(); ++i) {
             if (outside[i] && sees_inside(i)) {
                 outside[i] = false;
+                inside[i] = 1.0;
                 changed = true;
             }
         }
@@ -259,7 +282,9 @@ EnclosureFinding find_leaks(const FormFactors& factors, double max_row_error) {
 Diagnosis diagnose(const FormFactors& file, const PatchMesh* mesh, double max_row_error) {
     Diagnosis diagnosis;
     diagnosis.sums = row_sums(file.matrix);
-    diagnosis.reciprocity = reciprocity(file.matrix, file.areas);
+    if (file.matrix.clusters() == nullptr) {
+        diagnosis.reciprocity = reciprocity(file.matrix, file.areas);
+    }
     diagnosis.all_known = file.matrix.all_known();
     diagnosis.declared = file.enclosure != Enclosure::automatic;
     diagnosis.enclosure = judge_enclosure(file, diagnosis.sums);

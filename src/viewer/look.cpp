@@ -2,6 +2,8 @@
 
 #include "display/false_colour_scale.hpp"
 #include "display/painted.hpp"
+#include "hemi/matrix/product.hpp"
+#include "hemi/matrix/source_clusters.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +26,33 @@ std::vector<ShownName> all_names() {
     names.push_back({{View::row}, "row", "Picked patch: row of F"});
     names.push_back({{View::column}, "column", "Picked patch: column of F"});
     return names;
+}
+
+/// A column that a patch is in, and the share of it that is the patch's.
+struct Holder {
+    std::uint32_t column;
+    double share;
+};
+
+/// The patch itself and the clusters that hold it, ascending.
+std::vector<Holder> holders_of(const FormFactorMatrix& factors, std::uint32_t patch) {
+    std::vector<Holder> holders{{patch, 1.0}};
+    if (factors.clusters() == nullptr) {
+        return holders;
+    }
+    const SourceClusters& clusters = *factors.clusters();
+    const auto holds = [&](std::uint32_t node) {
+        const auto patches = clusters.patches(node);
+        return std::find(patches.begin(), patches.end(), patch) != patches.end();
+    };
+    for (std::uint32_t node = 0;;) { // from the root down, which ascends
+        holders.push_back({factors.size() + node, clusters.share(patch, node)});
+        const std::uint32_t child = clusters.nodes()[node].child;
+        if (child == 0) {
+            return holders;
+        }
+        node = holds(child) ? child : child + 1;
+    }
 }
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -204,8 +233,10 @@ double usual_largest_factor(const FormFactorMatrix& factors) {
     std::vector<double> of_rows;
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
         const RowView row = factors.row(i);
-        const auto found = std::max_element(row.values.begin(), row.values.end());
-        if (found != row.values.end()) {
+        const auto patches =
+            std::lower_bound(row.columns.begin(), row.columns.end(), factors.size()) - row.columns.begin();
+        const auto found = std::max_element(row.values.begin(), row.values.begin() + patches);
+        if (patches > 0) {
             of_rows.push_back(static_cast<double>(*found));
         }
     }
@@ -219,21 +250,24 @@ double usual_largest_factor(const FormFactorMatrix& factors) {
 
 std::vector<double> factors_from(const FormFactorMatrix& factors, std::uint32_t patch) {
     std::vector<double> result(factors.size(), 0.0);
-    const RowView row = factors.row(patch);
-    for (std::size_t k = 0; k < row.columns.size(); ++k) {
-        result[row.columns[k]] = static_cast<double>(row.values[k]);
-    }
+    visit_sources(factors, factors.row(patch),
+                  [&result](std::uint32_t j, double factor) { result[j] += factor; });
     return result;
 }
 
 std::vector<double> factors_to(const FormFactorMatrix& factors, std::uint32_t patch) {
     std::vector<double> result(factors.size(), 0.0);
+    const std::vector<Holder> holders = holders_of(factors, patch);
     for (std::uint32_t j = 0; j < factors.size(); ++j) {
         const RowView row = factors.row(j);
-        const auto found = std::lower_bound(row.columns.begin(), row.columns.end(), patch);
-        if (found != row.columns.end() && *found == patch) {
-            result[j] =
-                static_cast<double>(row.values[static_cast<std::size_t>(found - row.columns.begin())]);
+        auto next = row.columns.begin();
+        for (const Holder& holder : holders) {
+            next = std::lower_bound(next, row.columns.end(), holder.column);
+            if (next != row.columns.end() && *next == holder.column) {
+                result[j] +=
+                    holder.share *
+                    static_cast<double>(row.values[static_cast<std::size_t>(next - row.columns.begin())]);
+            }
         }
     }
     return result;

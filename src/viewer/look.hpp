@@ -130,7 +130,8 @@ struct Lit {
 [[nodiscard]] std::vector<std::array<float, 3>> light_colours(const PictureMesh& mesh, double exposure,
                                                               ToneMapping tone_mapping);
 
-/// F(i, j) of a row or F(j, i) of a column at j; 0 where nothing is stored.
+/// F(i, j) of a row or F(j, i) of a column at j; 0 where nothing is stored. What goes to a cluster is shared
+/// out among its patches by area.
 [[nodiscard]] std::vector<double> factors_from(const FormFactorMatrix& factors, std::uint32_t patch);
 [[nodiscard]] std::vector<double> factors_to(const FormFactorMatrix& factors, std::uint32_t patch);
 

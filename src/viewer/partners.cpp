@@ -1,5 +1,7 @@
 #include "viewer/partners.hpp"
 
+#include "hemi/matrix/product.hpp"
+
 #include <algorithm>
 
 namespace hemi::viewer {
@@ -7,17 +9,16 @@ namespace hemi::viewer {
 std::vector<Partner> largest_partners(const ViewerInput& input, const Light& light, std::uint32_t picked,
                                       bool column, bool by_light, std::size_t count) {
     const FormFactorMatrix& factors = input.factors->matrix;
-    const RowView row = factors.row(picked);
     std::vector<double> arriving(factors.size(), 0.0);
     double total = 0.0;
-    for (std::size_t k = 0; k < row.columns.size(); ++k) {
-        const std::uint32_t j = row.columns[k];
+    visit_sources(factors, factors.row(picked), [&](std::uint32_t j, double factor) {
+        double light_of_patch = 0.0;
         for (std::uint32_t c = 0; c < input.channels(); ++c) {
-            arriving[j] +=
-                static_cast<double>(row.values[k]) * light.radiosity[std::size_t{j} * input.channels() + c];
+            light_of_patch += factor * light.radiosity[std::size_t{j} * input.channels() + c];
         }
-        total += arriving[j];
-    }
+        arriving[j] += light_of_patch;
+        total += light_of_patch;
+    });
     const std::vector<double> values = column ? factors_to(factors, picked) : factors_from(factors, picked);
     std::vector<Partner> partners;
     for (std::uint32_t j = 0; j < factors.size(); ++j) {

@@ -178,6 +178,9 @@ void patch_section(const PanelContent& content, Choices& choices) {
         return;
     }
     heat_map_choice(choices.look);
+    if (input.factors->matrix.clusters() != nullptr) {
+        faint("Far patches stand in clusters, whose factors are shared out among them by area.");
+    }
     partner_list(content, choices);
 }
 

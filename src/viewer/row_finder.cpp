@@ -28,7 +28,11 @@ public:
     }
 
     void row(std::uint32_t patch, const RowView& row) override { gather(patch, row); }
-    void row(std::uint32_t patch, const VisibilityRow& row) override { gather(patch, row); }
+    void row(std::uint32_t patch, const VisibilityRow& row) override {
+        if (row.joint.empty()) { // else single patches do not tell what comes together
+            gather(patch, row);
+        }
+    }
 
 private:
     /// Gives the row's own patch what it has of the light that is shown: that of the preview, or of the

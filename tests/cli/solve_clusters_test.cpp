@@ -186,3 +186,67 @@ TEST_CASE("form factors with clusters: kept in a file, used again, written to ot
     CHECK_THAT(refusal(with({"factors", scene, "--error-target", "1%"}, {"--clusters", "on"})),
                Contains("--clusters on excludes --error-target"));
 }
+
+TEST_CASE("points and bake: far patches are seen in clusters as solve sees them", "[cli]") {
+    const Directory directory;
+    Json cube = coloured(16);
+    cube["materials"]["lamp"]["reflectance"] = 0.1; // or bake, which wants light alone, leaves its rows out
+    const std::string scene = directory.write("cube.json", cube);
+    const auto run = [&](Words words, const Words& more) {
+        words.insert(words.end(), {"--device", "cpu", "--preset", "fast"});
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome outcome = run_hemi(words);
+        INFO(outcome.err);
+        REQUIRE(outcome.status == 0);
+        return outcome;
+    };
+    const Words on{"--clusters", "on", "--cluster-error", "2%"};
+    const std::string rows = directory.path("a.hff");
+    const std::string result = directory.path("a.hres");
+    run({"solve", scene, "--no-estimate", "--factors", rows, "--result", result}, on);
+    const auto points = [&](const std::string& input, const Words& more) {
+        run({"points", input, "--grid", "floor", "0.25", "0.5", "-o", directory.path("points.csv")}, more);
+        return directory.read("points.csv");
+    };
+    const std::string of_result = points(result, {});
+    CHECK(points(scene, on) == of_result);
+    CHECK(points(scene, {"--factors", rows}) == of_result);
+    CHECK(points(scene, {"--clusters", "off"}) != of_result);
+
+    const auto bake = [&](const std::string& input, const Words& more) {
+        Words words{"bake", input, "--flat", "-o", directory.path("a.ply")};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome outcome = run_hemi(words);
+        INFO(outcome.err);
+        REQUIRE(outcome.status == 0);
+        return directory.read("a.ply");
+    };
+    const Words fast{"--device", "cpu", "--preset", "fast", "--clusters"};
+    const auto with = [&fast](const Words& more) {
+        Words words = fast;
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    const std::string baked = bake(result, {});
+    CHECK(bake(scene, with({"on", "--cluster-error", "2%"})) == baked);
+    CHECK(bake(scene, with({"off"})) != baked);
+
+    for (const Words& words : {Words{"points", scene, "--grid", "floor", "0.25", "0.5"},
+                               Words{"bake", scene, "-o", rows + ".ply"}}) {
+        const Outcome little = run(words, {"--max-memory", "14M"});
+        CHECK_THAT(little.err, Contains("Far patches are seen in clusters"));
+        Words refused = words;
+        refused.insert(refused.end(), {"--clusters", "on", "--solver", "cg"});
+        const Outcome refusal = run_hemi(refused);
+        CHECK(refusal.status == 2);
+        CHECK_THAT(refusal.err, Contains("--clusters on excludes --solver cg"));
+    }
+    const Outcome warm = run_hemi({"points", scene, "--grid", "floor", "0.25", "0.5", "--temperature",
+                                   "floor=300", "--clusters", "on"});
+    INFO(warm.err);
+    CHECK(warm.status == 0);
+    CHECK_THAT(warm.out, Contains("300"));
+    const Outcome trade = run_hemi({"trade", scene, "--clusters", "on"});
+    CHECK(trade.status == 2);
+    CHECK_THAT(trade.err, Contains("--clusters does not apply to `hemi trade`"));
+}

@@ -7,9 +7,11 @@
 #include "hemi/engine/engine.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
+#include "hemi/matrix/expansion.hpp"
 #include "hemi/matrix/product.hpp"
 #include "hemi/matrix/repair.hpp"
 #include "hemi/pipeline/daylight.hpp"
+#include "hemi/pipeline/diagnosis.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 
@@ -407,6 +409,35 @@ TEST_CASE("rows of clusters that were kept are not computed again, and count as 
         check_same_rows(compute(patches, {}, {}, complete), whole);
         CHECK(engine->hemicubes() == drawn);
     }
+}
+
+TEST_CASE("what is found in rows of clusters is what single patches tell") {
+    Scene scene = room_with_floating_block(8);
+    add_block(scene, "outside", Vec3(9.0, 0.2, 0.2), Vec3(9.2, 0.4, 0.4), 2);
+    const PatchMesh mesh(scene);
+    FormFactors factors;
+    factors.areas.assign(mesh.areas().begin(), mesh.areas().end());
+    factors.groups = mesh.groups();
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        factors.group_of.push_back(mesh.group(i));
+    }
+    factors.matrix = clustered(mesh, {.opening = 0.5});
+    const Diagnosis of_clusters = diagnose(factors, &mesh, 1e-4);
+    factors.matrix = expand_clusters(factors.matrix, ~std::uint64_t{0});
+    const Diagnosis of_patches = diagnose(factors, &mesh, 1e-4);
+    const auto patches = [](const std::vector<PatchFinding>& findings) {
+        std::vector<std::uint32_t> found;
+        for (const PatchFinding& finding : findings) {
+            found.push_back(finding.patch);
+        }
+        return found;
+    };
+    CHECK(of_patches.outside.size() > 16); // of 24: some texels at edges of the room see into it
+    CHECK(patches(of_clusters.outside) == patches(of_patches.outside));
+    CHECK(patches(of_clusters.leaks) == patches(of_patches.leaks));
+    CHECK(patches(of_clusters.never_visible) == patches(of_patches.never_visible));
+    CHECK(patches(of_clusters.buried) == patches(of_patches.buried));
+    CHECK(of_clusters.turned == of_patches.turned);
 }
 
 TEST_CASE("rows of clusters stop where they are told to, and within the memory") {

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <filesystem>
 #include <map>
 #include <set>
 
@@ -104,6 +105,32 @@ TEST_CASE("sources: the library neither prints nor exits", "[structure]") {
             }
         }
     }
+}
+
+TEST_CASE("sources: every script in tools tells its usage, and refuses words that it does not know",
+          "[structure]") {
+    std::size_t scripts = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(HEMI_SOURCE_DIR "/tools")) {
+        if (!entry.is_regular_file() || !read_text(entry).starts_with("#!")) {
+            continue;
+        }
+        ++scripts;
+        const std::string name = entry.path().filename().string();
+        INFO(name);
+        const auto help = run_command({"timeout", "20", entry.path().string(), "--help"});
+        CHECK(help.status == 0);
+        CHECK(help.err.empty());
+        CHECK(help.out.starts_with("usage: "));
+        CHECK(help.out.find(name) != std::string::npos);
+        if (name == "run" || name == "parts") { // hemi judges their words
+            continue;
+        }
+        const auto refusal = run_command({"timeout", "20", entry.path().string(), "--no-such-word"});
+        CHECK(refusal.status == 2);
+        CHECK(refusal.out.empty());
+        CHECK(refusal.err.find(name + ":") != std::string::npos);
+    }
+    CHECK(scripts >= 15);
 }
 
 TEST_CASE("sources: every control of the window has a tip", "[structure]") {

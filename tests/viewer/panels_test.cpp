@@ -2,11 +2,15 @@
 
 #include "support/png.hpp"
 
+#include "hemi/io/result_file.hpp"
+#include "hemi/matrix/expansion.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+using namespace hemi;
 using namespace hemi::viewer_test;
 
 namespace {
@@ -15,6 +19,14 @@ constexpr std::uint32_t no_patch = 0xFFFFFFFFU;
 
 std::uint32_t picked(const nlohmann::json& report) {
     return report["picked"].is_null() ? no_patch : report["picked"].get<std::uint32_t>();
+}
+
+double factor(const FormFactorMatrix& factors, std::uint32_t i, std::uint32_t j) {
+    const RowView row = factors.row(i);
+    const auto found = std::lower_bound(row.columns.begin(), row.columns.end(), j);
+    return found == row.columns.end() || *found != j
+               ? 0.0
+               : static_cast<double>(row.values[static_cast<std::size_t>(found - row.columns.begin())]);
 }
 
 } // namespace
@@ -54,13 +66,7 @@ TEST_CASE("Viewer: heat maps show the row and the column of the picked patch", "
     INFO(place.read("errors.txt"));
     REQUIRE(status == 0);
     const auto factors = place.factors("--preset plain --resolution 32");
-    const auto value = [&](std::uint32_t i, std::uint32_t j) {
-        const hemi::RowView row = factors.row(i);
-        const auto found = std::find(row.columns.begin(), row.columns.end(), j);
-        return found == row.columns.end()
-                   ? 0.0
-                   : static_cast<double>(row.values[static_cast<std::size_t>(found - row.columns.begin())]);
-    };
+    const auto value = [&](std::uint32_t i, std::uint32_t j) { return factor(factors, i, j); };
     const auto row = place.json("row.json");
     const auto column = place.json("column.json");
     const std::uint32_t patch = picked(row);
@@ -83,6 +89,48 @@ TEST_CASE("Viewer: heat maps show the row and the column of the picked patch", "
         largest = std::max(largest, value(patch, j));
     }
     CHECK(value(patch, row["partners"][0]) == largest);
+}
+
+TEST_CASE("Viewer: far patches are seen in clusters, and a picked one shows what they share out",
+          "[viewer][gl]") {
+    const Workplace place;
+    const std::string rows = "--preset fast --clusters on --cluster-error 10%";
+    const std::string script = "click 150 100\nshow row\nreport row.json\nkey H\nreport column.json\n"
+                               "show findings\nreport findings.json\nsave-result window.hres\n";
+    REQUIRE(place.view(script, "--size 300x200 " + rows) == 0);
+    const FormFactorMatrix with_clusters = place.factors(rows);
+    REQUIRE(with_clusters.clusters() != nullptr);
+    const FormFactorMatrix factors = expand_clusters(with_clusters, ~std::uint64_t{0});
+    const auto row = place.json("row.json");
+    const auto column = place.json("column.json");
+    const std::uint32_t patch = picked(row);
+    REQUIRE(patch < factors.size());
+    REQUIRE(row["values"].size() == factors.size());
+    CHECK(with_clusters.row(patch).columns.back() >= factors.size());
+    const auto shown = [](const nlohmann::json& report, std::uint32_t j) {
+        return report["values"][j].is_null() ? 0.0 : report["values"][j].get<double>();
+    };
+    for (std::uint32_t j = 0; j < factors.size(); ++j) {
+        CHECK(shown(row, j) == Approx(factor(factors, patch, j)).epsilon(1e-5));
+        CHECK(shown(column, j) == Approx(factor(factors, j, patch)).epsilon(1e-5));
+    }
+    REQUIRE(place.run(fmt::format("'{}' solve room.json --device osmesa {} --result solve.hres", HEMI_PROGRAM,
+                                  rows)) == 0);
+    const Solution solve = io::read_hres(place.path("solve.hres")).solution;
+    const Solution window = io::read_hres(place.path("window.hres")).solution;
+    REQUIRE(window.radiosity.size() == solve.radiosity.size());
+    for (std::size_t k = 0; k < solve.radiosity.size(); ++k) {
+        REQUIRE(window.radiosity[k] == Approx(solve.radiosity[k]).epsilon(1e-5));
+    }
+    // The same from stored rows; and where pairs do not fit.
+    REQUIRE(place.view("click 150 100\nshow row\nreport stored.json\n",
+                       "--size 300x200 --factors room.hff") == 0);
+    CHECK(place.json("stored.json")["values"] == row["values"]);
+    REQUIRE(place.view("report little.json\n",
+                       "--size 300x200 --preset fast --patches-per-face 256 --max-memory 14M") == 0);
+    INFO(place.read("errors.txt"));
+    CHECK(place.read("errors.txt").find("Far patches are seen in clusters") != std::string::npos);
+    CHECK(place.json("little.json")["light"].get<std::string>().find("no solution") == std::string::npos);
 }
 
 TEST_CASE("Viewer: the hemicube of the picked patch shows the patches of its row", "[viewer][gl]") {

@@ -61,10 +61,10 @@ struct Diagnosis {
     /// Of a kind of finding so many are looked at more closely.
     static constexpr std::size_t shown = 10;
 
-    RowSums sums;                                        ///< row sums and balance
-    Reciprocity reciprocity;                             ///< of all pairs
-    bool all_known = false;                              ///< whether every row was computed
-    bool declared = false;                               ///< the enclosure was declared, closed or open
+    RowSums sums;            ///< row sums and balance
+    Reciprocity reciprocity; ///< of all pairs; where far patches stand in clusters, of none
+    bool all_known = false;  ///< whether every row was computed
+    bool declared = false;   ///< the enclosure was declared, closed or open
     EnclosureVerdict enclosure = EnclosureVerdict::open; ///< verdict
     double largest_factor = 0.0;                         ///< of all F(i, j)
     std::uint64_t outside_bounds = 0;                    ///< entries above 1, or rows whose sum is

@@ -379,6 +379,7 @@ void add_solved_scene(CLI::App& app, A& a) {
     add_enclosure(app, a.scene, a.rows);
     add_rows(app, a.rows);
     add_repair(app, a.rows.factors.repair);
+    add_clusters(app, a.rows);
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
     add_up(app, a.scene, "axis that points upwards in the sky (z, or what the scene says)");
@@ -432,6 +433,7 @@ void add_view(CLI::App& app, ViewArguments& a) {
     add_rows(app, a.rows);
     add_repair(app, a.rows.factors.repair);
     add_estimate(app, a.rows);
+    add_clusters(app, a.rows);
     add_refinement(app, a.rows, a.refinement, false);
     add_max_memory(app, a.rows);
     add_environment(app, a.scene);
