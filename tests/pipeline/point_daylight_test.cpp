@@ -22,7 +22,7 @@ TEST_CASE("PointDaylight: clusters hide as much of the sky as their patches", "[
     }
     const PatchMesh mesh(scene);
     const ClusterTree tree(mesh);
-    const Sky sky{.horizontal = {1.0}, .ground = {0.2}, .distribution = SkyDistribution::uniform};
+    const Sky sky{.distribution = SkyDistribution::uniform, .horizontal = {1.0}, .ground = {0.2}};
     const PointDaylight singly(mesh, std::nullopt, sky, UpAxis::z);
     const PointDaylight clustered(mesh, std::nullopt, sky, UpAxis::z, tree.clusters());
     const ExchangeAreas areas(mesh);
