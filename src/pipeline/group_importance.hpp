@@ -1,6 +1,5 @@
 #pragma once
 
-#include "hemi/matrix/source_clusters.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/solver/solver.hpp"
 
@@ -16,8 +15,8 @@ namespace hemi {
 ///
 /// The adjoint of the radiosity equation: w = h + rho F w with h = 1 on the group, that is the radiosity of a
 /// scene in which the group alone glows. What a radiosity field that is wrong by a source r adds to the
-/// group's irradiance is the sum of A r (F w). Rows with clusters, which are not reciprocal, take the place
-/// of F as the symmetric exchange of ExchangeNetwork. Memory: 8 bytes a patch, group and channel.
+/// group's irradiance is the sum of A r (F w).
+/// Memory: 8 bytes a patch, group and channel.
 class GroupImportance {
 public:
     /// More groups than this are too many solutions.
@@ -25,7 +24,7 @@ public:
 
     /// No group.
     GroupImportance() = default;
-    /// @param factors      N known rows, or, without clusters, those of patches that reflect
+    /// @param factors      N known rows, or those of patches that reflect
     /// @param reflectance  N·channels
     /// @param channels     to solve for
     /// @param progress     gets the groups that are done, at every iteration
@@ -38,29 +37,16 @@ public:
                                                     std::uint64_t channels);
 
     [[nodiscard]] std::uint32_t groups() const noexcept { return groups_; }
-    /// Values of a patch.
-    [[nodiscard]] std::size_t columns() const noexcept { return std::size_t{groups_} * channels_; }
     /// Of a patch for all groups: channel c of group g at [g·channels + c].
     [[nodiscard]] std::span<const double> of(std::uint32_t patch) const {
-        return std::span(values_).subspan(patch * columns(), columns());
-    }
-
-    /// Values of the columns of rows with clusters, of which patches are parts of those of these values.
-    /// @param parents   of every column that is a patch
-    /// @param clusters  of the columns behind them; null: nothing is done
-    void add_columns(std::span<const std::uint32_t> parents, const SourceClusters* clusters);
-    /// Of a column of such rows, after add_columns(), as of().
-    [[nodiscard]] std::span<const double> of_column(std::span<const std::uint32_t> parents,
-                                                    std::uint32_t column) const {
-        return of_columns_.empty() ? of(parents[column])
-                                   : std::span(of_columns_).subspan(column * columns(), columns());
+        const std::size_t columns = std::size_t{groups_} * channels_;
+        return std::span(values_).subspan(patch * columns, columns);
     }
 
 private:
     std::uint32_t groups_ = 0;
     std::uint32_t channels_ = 1;
     std::vector<double> values_;
-    std::vector<double> of_columns_; ///< where some are clusters
 };
 
 } // namespace hemi

@@ -183,11 +183,6 @@ ExchangeNetwork make_network(const FormFactors& factors, const HeatProblem& prob
         throw InvalidArgument("heat exchange needs reciprocal rows; repair them (closure or reciprocity)",
                               {"repair"});
     }
-    return make_network(factors);
-}
-
-ExchangeNetwork make_network(const FormFactors& factors) {
-    const std::uint32_t size = factors.matrix.size();
     // What little a covered patch sees by the sampling of its visibility is not there.
     constexpr double all_of_it = 0.999;
     std::vector<std::uint8_t> isolated(size, 0);

@@ -14,8 +14,6 @@ namespace hemi {
 /// @throws InvalidArgument unless all rows are known, and reciprocal or with clusters, and the problem is of
 ///   as many patches
 [[nodiscard]] ExchangeNetwork make_network(const FormFactors& factors, const HeatProblem& problem);
-/// The same of rows that are known to suit.
-[[nodiscard]] ExchangeNetwork make_network(const FormFactors& factors);
 
 /// e of every row; 0 in an enclosure, whose leaks come back: the environment gets nothing of it.
 [[nodiscard]] std::vector<double> shares_of_environment(const FormFactors& factors);

@@ -96,8 +96,11 @@ public:
         const FormFactorMatrix factors = compute_quarter_rows(*cut_, plan_rows(settings, mesh_.size()),
                                                               settings, scene_, clusters, observer);
         direct_ = direct_irradiances(scene_, cut_->mesh, factors, cut_->rows);
-        find_importance(bytes, settings, observer);
-        importance_.add_columns(cut_->parents, factors.clusters().get());
+        if (clusters) { // rows that cannot be solved backwards
+            observer.detail("errors of groups are not estimated where far patches stand in clusters");
+        } else {
+            find_importance(bytes, settings, observer);
+        }
         find_sources(factors.clusters().get());
         find_variation(factors.clusters().get());
         std::vector<SampledErrors> vertices(channels_);
@@ -314,14 +317,6 @@ private:
             observer.detail(fmt::format("errors of groups are not estimated: there are {}, more than {}",
                                         groups, GroupImportance::most_groups));
             return;
-        }
-        if (factors_.matrix.clusters() != nullptr) {
-            if (!factors_.matrix.all_known()) {
-                observer.detail("errors of groups are not estimated: with clusters that needs all rows");
-                return;
-            }
-            constexpr std::uint64_t columns = 3; // a patch, and two nodes
-            bytes += columns * sizeof(double) * cut_->mesh.size() * groups * channels_;
         }
         bytes += GroupImportance::memory_bytes(mesh_.size(), groups, channels_);
         if (bytes > memory_limit(settings)) {
@@ -558,9 +553,9 @@ private:
                 continue; // nobody sees it; the patch's mean has its part of it all the same
             }
             const std::vector<double> importance =
-                groups.empty() ? std::vector<double>()
+                groups.empty() ? std::vector<double>() // there is none of clusters
                                : gathered(row, groups.size(), [this](std::uint32_t column) {
-                                     return importance_.of_column(cut_->parents, column);
+                                     return importance_.of(cut_->parents[column]);
                                  });
             const std::vector<double> varying = varying_light(row);
             const auto weights = shown_.weights(patch, fine.corners(quarters[q]));

@@ -241,11 +241,6 @@ TEST_CASE("points and bake: far patches are seen in clusters as solve sees them"
         CHECK(refusal.status == 2);
         CHECK_THAT(refusal.err, Contains("--clusters on excludes --solver cg"));
     }
-    const Outcome warm = run_hemi({"points", scene, "--grid", "floor", "0.25", "0.5", "--temperature",
-                                   "floor=300", "--clusters", "on"});
-    INFO(warm.err);
-    CHECK(warm.status == 0);
-    CHECK_THAT(warm.out, Contains("300"));
     const Outcome trade = run_hemi({"trade", scene, "--clusters", "on"});
     CHECK(trade.status == 2);
     CHECK_THAT(trade.err, Contains("--clusters does not apply to `hemi trade`"));

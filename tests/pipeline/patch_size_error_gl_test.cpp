@@ -494,13 +494,8 @@ TEST_CASE(
         CHECK(by_part->sampled == by_all->sampled);
         CHECK(by_part->vertices.rms == Approx(by_all->vertices.rms).epsilon(0.05));
         CHECK(by_part->field.rms == Approx(by_all->field.rms).epsilon(0.05));
-        REQUIRE(!by_all->groups.empty());
-        REQUIRE(by_part->groups.size() == by_all->groups.size());
-        for (std::size_t g = 0; g < by_all->groups.size(); ++g) {
-            CAPTURE(g);
-            CHECK(by_part->groups[g].patch_size ==
-                  Approx(by_all->groups[g].patch_size).epsilon(0.1).margin(1e-3));
-        }
+        CHECK(by_part->groups.empty());
+        CHECK(!by_all->groups.empty());
     }
     // All pairs of the cut sample would need more.
     settings.max_memory = std::uint64_t{1} << 20;

@@ -22,28 +22,35 @@ void keep_rows_in(const std::filesystem::path& folder);
 /// process, and throws std::bad_alloc or, where there is no room for the file, OutOfMemory.
 [[nodiscard]] std::pmr::memory_resource* row_memory() noexcept;
 
-/// Allocator of rows of form factors. Arrays stay where they were made.
+/// Allocator of rows of form factors. Arrays stay where they were made, and take their memory with them when
+/// they move.
 template <class T>
 class RowAllocator {
 public:
-    using value_type = T;
-    using propagate_on_container_move_assignment = std::true_type;
-    using propagate_on_container_swap = std::true_type;
+    using value_type = T;                                          ///< of the arrays
+    using propagate_on_container_move_assignment = std::true_type; ///< moved arrays keep their memory
+    using propagate_on_container_swap = std::true_type;            ///< likewise
 
+    /// Of row_memory().
     RowAllocator() = default;
+    /// The same memory, for arrays of another type.
     template <class Other>
     RowAllocator(const RowAllocator<Other>& other) noexcept // NOLINT(google-explicit-constructor)
         : memory_(other.memory()) {}
 
+    /// Memory for so many values.
     [[nodiscard]] T* allocate(std::size_t count) {
         return static_cast<T*>(memory_->allocate(count * sizeof(T), alignof(T)));
     }
+    /// Gives it back.
     void deallocate(T* data, std::size_t count) noexcept {
         memory_->deallocate(data, count * sizeof(T), alignof(T));
     }
+    /// Of copies: row_memory().
     [[nodiscard]] RowAllocator select_on_container_copy_construction() const { return {}; }
+    /// Where its arrays are.
     [[nodiscard]] std::pmr::memory_resource* memory() const noexcept { return memory_; }
-    bool operator==(const RowAllocator& other) const = default;
+    bool operator==(const RowAllocator& other) const = default; ///< the same memory
 
 private:
     std::pmr::memory_resource* memory_ = row_memory();
