@@ -105,7 +105,7 @@ TEST_CASE("hemi heat: one temperature everywhere makes no flux, with clusters, t
 }
 
 TEST_CASE(
-    "hemi heat: rows with clusters from a file, or where the memory is too small for pairs; their error "
+    "hemi heat: rows with clusters from a file, or where the memory is too small for pairs, their error "
     "is told",
     "[cli][heat][clusters]") {
     const Directory directory;
