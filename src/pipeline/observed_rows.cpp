@@ -1,6 +1,7 @@
 #include "pipeline/observed_rows.hpp"
 
 #include "engine/raw_row.hpp"
+
 #include <algorithm>
 #include <iterator>
 

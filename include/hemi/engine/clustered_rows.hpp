@@ -72,8 +72,7 @@ public:
 /// @param enclosure    as the scene says
 /// @param progress     called after every row of this rank; may be empty
 /// @param keeper       of the rows of this rank: gives those that are not computed again, and gets all
-/// others;
-///   may be null
+///   others; may be null
 /// @throws Cancelled; OutOfMemory if the rows do not fit; InvalidArgument for settings that do not fit; what
 ///   the keeper throws
 [[nodiscard]] FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMesh& mesh,
