@@ -93,14 +93,14 @@ void warn_of_isolated(const std::vector<std::string>& names, const ExchangeCutof
 
 ExitStatus run(const ExchangeArguments& arguments, const Terminal& terminal) {
     const Outputs outputs = check_outputs(arguments);
+    RowOptions rows = arguments.rows;
+    settle_clusters(arguments.common, rows);
     Seconds seconds({"load", "factors", "estimate", "repair", "solve"});
     const LoadedScene loaded =
         load_thermal_scene("exchange", arguments.scene, arguments.input, arguments.heat, false, terminal);
     seconds["load"] = loaded.seconds;
     TerminalObserver observer(terminal);
     const HeatProblem problem = heat_problem(loaded.scene, loaded.mesh, observer, false);
-    RowOptions rows = arguments.rows;
-    settle_clusters(arguments.common, rows);
     if (!arguments.input.factors) {
         rows.factors.estimate_error = false; // only a file would show it
     }

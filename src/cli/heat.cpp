@@ -338,7 +338,8 @@ ExitStatus run(const HeatArguments& given, const Terminal& terminal) {
         picture = draw_heat(arguments, loaded, factors, problem, solution);
     }
     std::vector<double> errors(factors.groups.size(), std::numeric_limits<double>::quiet_NaN());
-    if (arguments.rows.factors.estimate_error && factors.error) {
+    // With clusters errors of groups are not to be had.
+    if (arguments.rows.factors.estimate_error && factors.error && factors.matrix.clusters() == nullptr) {
         const Stopwatch estimate_watch;
         errors = patch_size_flux_errors(loaded.scene, loaded.mesh, loaded.subdivision, factors, problem,
                                         solution, arguments.rows.factors, observer);

@@ -8,14 +8,17 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <map>
-#include <memory>
 #include <memory_resource>
 #include <mutex>
 #include <new>
+#include <set>
 #include <string>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -25,8 +28,9 @@ namespace hemi {
 
 namespace {
 
-/// Memory that lies in a file without a name. Every piece is a mapping of its own, so that there must be few:
-/// a pool deals them out.
+/// Memory that lies in a file without a name. The file is mapped to one range of addresses, so that its
+/// pieces are one mapping, of which a process may have some ten thousands only. Room that is given back is
+/// used again; the file does not shrink.
 class FileMemory final : public std::pmr::memory_resource {
 public:
     explicit FileMemory(const std::filesystem::path& folder) : folder_(folder) {
@@ -42,68 +46,123 @@ public:
             throw InputError(fmt::format("{}: no file of rows can be made there: {}", folder.string(),
                                          std::strerror(errno)));
         }
+        reserve_addresses();
     }
-    ~FileMemory() override { close(file_); }
+    ~FileMemory() override {
+        munmap(addresses_, addresses_size_);
+        close(file_);
+    }
     FileMemory(const FileMemory&) = delete;
     FileMemory& operator=(const FileMemory&) = delete;
 
 private:
+    /// Of all pieces and their places.
+    static constexpr std::size_t granule = 64;
+    /// By how much the file grows at least and at most, unless a piece needs more.
+    static constexpr std::size_t least_growth = std::size_t{1} << 20;
+    static constexpr std::size_t most_growth = std::size_t{1} << 28;
+
     void* do_allocate(std::size_t bytes, std::size_t /*alignment*/) override {
         const std::lock_guard lock(mutex_);
-        const std::size_t size = pages(bytes);
-        // Room that is only promised would end the process when it is used.
-        if (const int failed = posix_fallocate(file_, end_, static_cast<off_t>(size)); failed != 0) {
-            throw OutOfMemory(fmt::format("{}: no room for {} more of rows, beside {} that are there: {}",
-                                          folder_.string(), memory_text(size),
-                                          memory_text(static_cast<std::uint64_t>(end_)),
-                                          std::strerror(failed)),
-                              {"scratch"});
+        const std::size_t size = round_up(bytes, granule);
+        auto found = by_size_.lower_bound({size, 0});
+        if (found == by_size_.end()) {
+            grow(size);
+            found = by_size_.lower_bound({size, 0});
         }
-        void* const data = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file_, end_);
-        if (data == MAP_FAILED) {
-            throw std::bad_alloc();
+        const auto [free_size, place] = *found;
+        by_size_.erase(found);
+        by_place_.erase(place);
+        if (free_size > size) {
+            add_free(place + size, free_size - size);
         }
-        places_[data] = end_;
-        end_ += static_cast<off_t>(size);
-        return data;
+        return addresses_ + place;
     }
     void do_deallocate(void* data, std::size_t bytes, std::size_t /*alignment*/) override {
         const std::lock_guard lock(mutex_);
-        const std::size_t size = pages(bytes);
-        munmap(data, size);
-        const auto place = places_.extract(data);
-        // Where the file system cannot, the room is taken until the end.
-        (void)fallocate(file_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, place.mapped(),
-                        static_cast<off_t>(size));
+        add_free(static_cast<std::size_t>(static_cast<std::byte*>(data) - addresses_),
+                 round_up(bytes, granule));
     }
     [[nodiscard]] bool do_is_equal(const std::pmr::memory_resource& other) const noexcept override {
         return this == &other;
     }
 
-    static std::size_t pages(std::size_t bytes) {
+    /// As many as there are, up to 16 TiB: the file is not to be larger.
+    void reserve_addresses() {
+        addresses_size_ = std::size_t{1} << 44;
+        void* data = MAP_FAILED;
+        while (data == MAP_FAILED && addresses_size_ > most_growth) {
+            addresses_size_ /= 2;
+            data =
+                mmap(nullptr, addresses_size_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        }
+        if (data == MAP_FAILED) {
+            close(file_);
+            throw std::bad_alloc();
+        }
+        addresses_ = static_cast<std::byte*>(data);
+    }
+
+    /// Adds free room for a piece of that size.
+    void grow(std::size_t size) {
         static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-        return (bytes + page - 1) / page * page;
+        std::size_t more = round_up(std::max(size, std::clamp(end_ / 8, least_growth, most_growth)), page);
+        const auto make_room = [&] { // room that is only promised would end the process when it is used
+            return posix_fallocate(file_, static_cast<off_t>(end_), static_cast<off_t>(more));
+        };
+        int failed = make_room();
+        if (failed != 0) {
+            more = round_up(size, page);
+            failed = make_room();
+        }
+        if (failed != 0) {
+            throw OutOfMemory(fmt::format("{}: no room for {} more of rows, beside {} that are there: {}",
+                                          folder_.string(), memory_text(more), memory_text(end_),
+                                          std::strerror(failed)),
+                              {"scratch"});
+        }
+        if (more > addresses_size_ - end_ ||
+            mmap(addresses_ + end_, more, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_FIXED, file_,
+                 static_cast<off_t>(end_)) == MAP_FAILED) {
+            throw std::bad_alloc();
+        }
+        add_free(end_, more);
+        end_ += more;
+    }
+
+    /// Free room, as one with that beside it.
+    void add_free(std::size_t place, std::size_t size) {
+        auto next = by_place_.lower_bound(place);
+        if (next != by_place_.end() && next->first == place + size) {
+            size += next->second;
+            by_size_.erase({next->second, next->first});
+            next = by_place_.erase(next);
+        }
+        if (next != by_place_.begin()) {
+            const auto before = std::prev(next);
+            if (before->first + before->second == place) {
+                place = before->first;
+                size += before->second;
+                by_size_.erase({before->second, before->first});
+                by_place_.erase(before);
+            }
+        }
+        by_place_[place] = size;
+        by_size_.insert({size, place});
+    }
+
+    static std::size_t round_up(std::size_t size, std::size_t step) {
+        return (size + step - 1) / step * step;
     }
 
     std::filesystem::path folder_;
     int file_ = -1;
-    off_t end_ = 0;
-    std::map<void*, off_t> places_; ///< in the file
+    std::byte* addresses_ = nullptr; ///< of the file's beginning
+    std::size_t addresses_size_ = 0;
+    std::size_t end_ = 0;                                   ///< of the file
+    std::map<std::size_t, std::size_t> by_place_;           ///< sizes of free rooms
+    std::set<std::pair<std::size_t, std::size_t>> by_size_; ///< their sizes and places
     std::mutex mutex_;
-};
-
-/// Pieces of a file of all sizes.
-class RowFile {
-public:
-    explicit RowFile(const std::filesystem::path& folder)
-        : memory_(folder), pool_({most_blocks, 0}, &memory_) {}
-    [[nodiscard]] std::pmr::memory_resource& pool() { return pool_; }
-
-private:
-    static constexpr std::size_t most_blocks = 512; ///< that the pool asks for at once
-
-    FileMemory memory_;
-    std::pmr::synchronized_pool_resource pool_;
 };
 
 /// Of the process; null: there is none. Never taken down, since arrays may outlive all else.
@@ -112,7 +171,7 @@ std::atomic<std::pmr::memory_resource*> row_file{nullptr};
 } // namespace
 
 void keep_rows_in(const std::filesystem::path& folder) {
-    row_file.store(&(new RowFile(folder))->pool());
+    row_file.store(new FileMemory(folder));
 }
 
 bool rows_are_in_file() noexcept {

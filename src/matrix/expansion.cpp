@@ -2,6 +2,7 @@
 
 #include "core/parallel_for.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/row_memory.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/matrix/product.hpp"
 
@@ -72,7 +73,7 @@ FormFactorMatrix expand_clusters(const FormFactorMatrix& factors, std::uint64_t 
     for (std::uint32_t i = 0; i < size; ++i) {
         entries += expanded_entries(factors, factors.row(i));
     }
-    if (entries > max_memory / entry_bytes) {
+    if (entries > max_memory / entry_bytes && !rows_are_in_file()) {
         throw OutOfMemory(
             fmt::format("far patches stand in clusters; factors of single patches would take up "
                         "to {}, and the limit is {}",

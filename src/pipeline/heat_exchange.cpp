@@ -14,12 +14,6 @@ namespace hemi {
 
 namespace {
 
-/// Groups whose columns are solved side by side: every product reads the rows once for all of them. With
-/// clusters, whose products need three times as much memory a column, fewer.
-std::uint32_t columns_at_once(const FormFactorMatrix& factors) {
-    return factors.clusters() == nullptr ? 16 : 4;
-}
-
 double divisor(double area) {
     return area > 0.0 ? area : 1.0;
 }

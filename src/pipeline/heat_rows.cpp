@@ -193,6 +193,10 @@ ExchangeNetwork make_network(const FormFactors& factors, const HeatProblem& prob
                            std::move(isolated));
 }
 
+std::uint32_t columns_at_once(const FormFactorMatrix& factors) {
+    return factors.clusters() == nullptr ? 16 : 4;
+}
+
 std::vector<double> shares_of_environment(const FormFactors& factors) {
     std::vector<double> shares(factors.matrix.size(), 0.0);
     if (find_leaks(factors, 0.0).closed) {

@@ -15,6 +15,10 @@ namespace hemi {
 ///   as many patches
 [[nodiscard]] ExchangeNetwork make_network(const FormFactors& factors, const HeatProblem& problem);
 
+/// Columns that are solved side by side: every product reads the rows once for all of them. With clusters,
+/// whose products need some six times as much memory a column, fewer.
+[[nodiscard]] std::uint32_t columns_at_once(const FormFactorMatrix& factors);
+
 /// e of every row; 0 in an enclosure, whose leaks come back: the environment gets nothing of it.
 [[nodiscard]] std::vector<double> shares_of_environment(const FormFactors& factors);
 

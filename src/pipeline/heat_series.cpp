@@ -249,55 +249,77 @@ private:
 
     /// One column a source and band; the last one of a band is everything that the schedule leaves alone.
     void find_responses(const ExchangeNetwork& network, const std::vector<std::uint8_t>& buried) {
-        const std::uint32_t sources = static_cast<std::uint32_t>(columns_) + 1;
-        const std::vector<double> fixed_fluxes = condition_fluxes(factors_, problem_, buried);
-        const std::vector<double> bright = environment_exitance(problem_);
-        const bool own_environment = std::count(condition_.begin(), condition_.end(), of_environment) == 0;
+        const auto sources = static_cast<std::uint32_t>(columns_) + 1;
+        const std::uint32_t at_once = columns_at_once(factors_.matrix);
         responses_.assign(std::size_t{problem_.bands} * sources, {});
         for (std::uint32_t k = 0; k < problem_.bands; ++k) {
-            NetworkSources columns;
-            columns.columns = sources;
-            columns.environment.assign(sources, 0.0);
-            const double beside = problem_.environment.empty() ? 0.0 : problem_.environment[k];
-            columns.environment.back() = own_environment ? bright[k] : beside;
-            if (!problem_.direct.empty()) {
-                columns.direct.assign(std::size_t{network.size()} * sources, 0.0);
-                for (std::uint32_t i = 0; i < network.size(); ++i) {
-                    columns.direct[std::size_t{i} * sources + columns_] =
-                        problem_.direct[std::size_t{i} * problem_.bands + k];
-                }
-            }
-            for (std::size_t c = 0; c < columns_; ++c) {
-                columns.environment[c] = condition_[c] == of_environment ? 1.0 : 0.0;
-            }
-            for (std::uint32_t i = 0; i < network.size(); ++i) {
-                add_sources(columns, i, k, fixed_fluxes, buried[i] != 0);
-            }
-            const NetworkFluxes fluxes =
-                network.solve(columns, settings_.tolerance, heat_progress(observer_, settings_.tolerance));
-            for (std::uint32_t s = 0; s < sources; ++s) {
-                Response& response = responses_[std::size_t{k} * sources + s];
-                response.net.assign(groups_, 0.0);
-                for (std::uint32_t i = 0; i < network.size(); ++i) {
-                    const std::size_t at = std::size_t{i} * sources + s;
-                    const double area = factors_.areas[i] * problem_.unit * problem_.unit;
-                    if (buried[i] == 0) {
-                        const double direct = columns.direct.empty() ? 0.0 : columns.direct[at];
-                        response.environment += area * (network.environment()[i] *
-                                                            (columns.environment[s] - fluxes.radiosity[at]) +
-                                                        direct);
-                        response.net[factors_.group_of[i]] +=
-                            area * (columns.source[at] - columns.emissivity[at] * fluxes.irradiation[at]);
-                    }
-                }
-                for (const std::uint32_t i : followers_) {
-                    response.arriving.push_back(fluxes.irradiation[std::size_t{i} * sources + s]);
-                }
+            for (std::uint32_t first = 0; first < sources; first += at_once) {
+                add_responses(network, buried, k, first, std::min(at_once, sources - first));
             }
         }
     }
 
-    void add_sources(NetworkSources& columns, std::uint32_t i, std::uint32_t k,
+    /// Those of some columns of a band.
+    void add_responses(const ExchangeNetwork& network, const std::vector<std::uint8_t>& buried,
+                       std::uint32_t band, std::uint32_t first, std::uint32_t count) {
+        NetworkSources columns = sources_of(network.size(), buried, band, first, count);
+        const NetworkFluxes fluxes =
+            network.solve(columns, settings_.tolerance, heat_progress(observer_, settings_.tolerance));
+        for (std::uint32_t s = 0; s < count; ++s) {
+            Response& response = responses_[std::size_t{band} * (columns_ + 1) + first + s];
+            response.net.assign(groups_, 0.0);
+            for (std::uint32_t i = 0; i < network.size(); ++i) {
+                const std::size_t at = std::size_t{i} * count + s;
+                const double area = factors_.areas[i] * problem_.unit * problem_.unit;
+                if (buried[i] == 0) {
+                    const double direct = columns.direct.empty() ? 0.0 : columns.direct[at];
+                    response.environment +=
+                        area *
+                        (network.environment()[i] * (columns.environment[s] - fluxes.radiosity[at]) + direct);
+                    response.net[factors_.group_of[i]] +=
+                        area * (columns.source[at] - columns.emissivity[at] * fluxes.irradiation[at]);
+                }
+            }
+            for (const std::uint32_t i : followers_) {
+                response.arriving.push_back(fluxes.irradiation[std::size_t{i} * count + s]);
+            }
+        }
+    }
+
+    [[nodiscard]] NetworkSources sources_of(std::uint32_t patches, const std::vector<std::uint8_t>& buried,
+                                            std::uint32_t band, std::uint32_t first,
+                                            std::uint32_t count) const {
+        const std::vector<double> fixed_fluxes = condition_fluxes(factors_, problem_, buried);
+        NetworkSources columns;
+        columns.columns = count;
+        for (std::uint32_t s = first; s < first + count; ++s) {
+            columns.environment.push_back(s == columns_                     ? environment_beside(band)
+                                          : condition_[s] == of_environment ? 1.0
+                                                                            : 0.0);
+        }
+        const bool rest = first + count > columns_;
+        if (rest && !problem_.direct.empty()) {
+            columns.direct.assign(std::size_t{patches} * count, 0.0);
+            for (std::uint32_t i = 0; i < patches; ++i) {
+                columns.direct[(std::size_t{i} + 1) * count - 1] =
+                    problem_.direct[std::size_t{i} * problem_.bands + band];
+            }
+        }
+        for (std::uint32_t i = 0; i < patches; ++i) {
+            add_sources(columns, i, band, first, fixed_fluxes, buried[i] != 0);
+        }
+        return columns;
+    }
+
+    /// Of what the schedule leaves alone, W/m².
+    [[nodiscard]] double environment_beside(std::uint32_t band) const {
+        if (std::count(condition_.begin(), condition_.end(), of_environment) == 0) {
+            return environment_exitance(problem_)[band];
+        }
+        return problem_.environment.empty() ? 0.0 : problem_.environment[band];
+    }
+
+    void add_sources(NetworkSources& columns, std::uint32_t i, std::uint32_t k, std::uint32_t first,
                      const std::vector<double>& fixed_fluxes, bool buried) const {
         const std::uint32_t c = problem_.condition_of[i];
         const bool flux = has_flux(problem_, i);
@@ -305,7 +327,7 @@ private:
         const double eps = problem_.emissivity[at];
         const auto changed =
             c == no_heat ? condition_.end() : std::find(condition_.begin(), condition_.end(), c);
-        for (std::size_t s = 0; s <= columns_; ++s) {
+        for (std::size_t s = first; s < std::size_t{first} + columns.columns; ++s) {
             columns.emissivity.push_back(flux ? 0.0 : eps);
             double source = 0.0;
             if (s < columns_ && changed == condition_.begin() + static_cast<std::ptrdiff_t>(s)) {

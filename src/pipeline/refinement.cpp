@@ -2,6 +2,7 @@
 
 #include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
+#include "hemi/core/row_memory.hpp"
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/core/text.hpp"
 #include "hemi/display/vertex_colours.hpp"
@@ -566,9 +567,10 @@ private:
             }
         }
         const double growth = static_cast<double>(finer.mesh.size()) / result_.mesh.size();
+        const double of_entry = rows_are_in_file() ? 0.0 : entry_bytes;
         const double bytes =
             pair_bytes * static_cast<double>(fresh.size() * image_count(finer.mesh)) * finer.mesh.size() +
-            entry_bytes * growth * growth * static_cast<double>(result_.raw.matrix.entries());
+            of_entry * growth * growth * static_cast<double>(result_.raw.matrix.entries());
         if (bytes > static_cast<double>(memory_limit(settings_))) {
             result_.stopped =
                 fmt::format("{} would need about {} of memory", plural(finer.mesh.size(), "patch", "patches"),

@@ -170,8 +170,7 @@ std::unique_ptr<VisibilityProvider> make_point_visibility_provider(const PatchMe
                                                                    const HemicubeSettings& hemicube,
                                                                    const FactorSettings& settings,
                                                                    DirectionMeasure measure) {
-    return divided(
-        make_point_visibility_engine(mesh, points, hemicube, with_workers(settings.engine), measure));
+    return make_point_visibility_engine(mesh, points, hemicube, with_workers(settings.engine), measure);
 }
 
 } // namespace hemi

@@ -104,21 +104,25 @@ TEST_CASE("hemi heat: one temperature everywhere makes no flux, with clusters, t
     }
 }
 
-TEST_CASE("hemi points: where all is of one temperature, it is the radiant one by clusters, too",
-          "[cli][heat][clusters]") {
+TEST_CASE("hemi points: the radiant temperature by clusters is that by pairs", "[cli][heat][clusters]") {
     const Directory directory;
-    Json scene = far_box();
-    for (auto& [name, group] : scene["groups"].items()) {
-        group = {{"temperature", 300}};
-    }
-    Words words{"points", directory.write("box.json", scene), "--grid", "bottom", "0.25", "0.6", "--spheres"};
-    const Outcome run = run_with(words, in_clusters);
-    INFO(run.err);
-    REQUIRE(run.status == 0);
-    const Json json = run.json();
-    REQUIRE(!json["mean_radiant_temperature"].empty());
-    for (const Json& temperature : json["mean_radiant_temperature"]) {
-        CHECK(temperature.get<double>() == Approx(300.0).epsilon(1e-5));
+    const std::string scene = directory.write("box.json", far_box());
+    Words words{"points", scene, "--grid", "bottom", "0.25", "0.6", "--spheres"};
+    const auto temperatures = [&](const Words& clusters) {
+        const Outcome run = run_with(words, clusters);
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        return run.json()["mean_radiant_temperature"];
+    };
+    const Json pairs = temperatures({"--clusters", "off"});
+    const Json clusters = temperatures(in_clusters);
+    REQUIRE(!pairs.empty());
+    REQUIRE(clusters.size() == pairs.size());
+    CHECK(clusters != pairs); // other rows
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        CHECK(pairs[k].get<double>() > 400.0); // of surfaces from 300 K to 550 K
+        CHECK(pairs[k].get<double>() < 540.0);
+        CHECK(clusters[k].get<double>() == Approx(pairs[k].get<double>()).epsilon(0).margin(0.1));
     }
 }
 
@@ -140,6 +144,8 @@ TEST_CASE(
     for (const Json& error : json["error"]["net_flux"]) {
         CHECK(error.is_null()); // the part of the patches' size is not estimated with clusters
     }
+    const Words scratch{"--clusters", "on", "--cluster-error", "0.5%", "--scratch", directory.path(".")};
+    CHECK(run_with({"heat", scene}, scratch).json()["net_flux"] == json["net_flux"]);
     const Outcome read =
         run_with({"heat", scene, "--factors", rows, "--fluxes", directory.path("b.csv")}, {});
     CHECK(read.json()["net_flux"] == json["net_flux"]);

@@ -155,7 +155,7 @@ TEST_CASE("Resume: rows of clusters go on as others do, and are not confused wit
     interrupt(command("a.hff", on), directory);
     CHECK_THAT(refusal({}), Contains("rows of clusters, here visibility"));
     CHECK_THAT(refusal(with(on, {"--cluster-error", "1%"})), Contains("cluster error 0.001, here 0.01"));
-    const Outcome run = run_hemi(command("a.hff", with(on, {"--resume"})));
+    const Outcome run = run_hemi(command("a.hff", with(on, {"--resume", "--scratch", directory.path(".")})));
     INFO(run.err);
     REQUIRE(run.status == 0);
     CHECK(run.err_has(" of 864 rows taken from the checkpoint"));

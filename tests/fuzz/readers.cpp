@@ -62,6 +62,22 @@ FormFactorMatrix small_matrix(bool visibility) {
     return matrix;
 }
 
+/// The two patches, and both of them as one.
+std::shared_ptr<const SourceClusters> small_clusters() {
+    return std::make_shared<const SourceClusters>(
+        std::vector<std::uint32_t>{1, 0}, std::vector<SourceClusters::Node>{{0, 2, 1}, {0, 1, 0}, {1, 2, 0}},
+        std::vector<double>{1.0, 0.5});
+}
+
+/// Of which the first row has a cluster.
+FormFactorMatrix clustered_matrix() {
+    std::vector<RowBlock> blocks = small_matrix(true).take_blocks();
+    blocks[0].columns[0] = 2;
+    FormFactorMatrix matrix(2, small_clusters());
+    matrix.set_block(std::move(blocks[0]));
+    return matrix;
+}
+
 /// Two patches that face each other.
 Scene small_scene() {
     Scene scene;
@@ -90,13 +106,7 @@ void seed_hff(const fs::path& folder) {
     io::write_hff(folder / "judged.hff", file);
     file.cuts = {{{1, 1}}, {{{1, 0, 0}, {1, 0, 1}}}};
     io::write_hff(folder / "cut.hff", file);
-    const auto clusters = std::make_shared<const SourceClusters>(
-        std::vector<std::uint32_t>{1, 0}, std::vector<SourceClusters::Node>{{0, 2, 1}, {0, 1, 0}, {1, 2, 0}},
-        std::vector<double>{1.0, 0.5});
-    std::vector<RowBlock> blocks = file.matrix.take_blocks();
-    blocks[0].columns[0] = 2;
-    file.matrix = FormFactorMatrix(2, clusters);
-    file.matrix.set_block(std::move(blocks[0]));
+    file.matrix = clustered_matrix();
     io::write_hff(folder / "clusters.hff", file);
 }
 
@@ -138,6 +148,10 @@ void seed_rows(const fs::path& folder) {
     io::CheckpointFile checkpoint(folder / "a", false);
     checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2), {});
     checkpoint.append(small_matrix(true).blocks().front());
+    io::CheckpointFile clustered(folder / "clusters", false);
+    clustered.start({{"seed", "0"}}, FormFactorMatrix(2, small_clusters()), {});
+    const std::vector<std::uint8_t> marks{1, 0};
+    clustered.append(clustered_matrix().blocks().front(), marks);
 }
 
 void seed_glb(const fs::path& folder) {
@@ -354,9 +368,11 @@ const std::map<std::string, Reader> readers{
     {"rows",
      {"fuzzed.rows",
       [](const fs::path& path) {
-          io::CheckpointFile checkpoint(path.parent_path() / "fuzzed", true);
-          checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2),
-                           [](std::uint32_t, const RowView& row, bool) { (void)row.sum(); });
+          for (const auto& clusters : {std::shared_ptr<const SourceClusters>(), small_clusters()}) {
+              io::CheckpointFile checkpoint(path.parent_path() / "fuzzed", true);
+              checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2, clusters),
+                               [](std::uint32_t, const RowView& row, bool) { (void)row.sum(); });
+          }
       },
       seed_rows, true}},
     {"mtx",

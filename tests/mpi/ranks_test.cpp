@@ -133,6 +133,30 @@ TEST_CASE("Ranks: with far patches in clusters, a solution and its error are tho
     }
 }
 
+TEST_CASE("Ranks: vertices of a large scene are gathered as in one process", "[mpi][slow]") {
+    const Directory directory;
+    // So many patches that vertices see what is far in clusters, too; few of them see anything.
+    const std::string scene = directory.write("plate.json", R"({"hemi": 1, "patch_size": 0.1,
+        "materials": {"floor": {"reflectance": 0.5}, "lamp": {"reflectance": 0, "exitance": 10}}, "surfaces": [
+        {"material": "floor", "polygon": [[0,0,0],[18.2,0,0],[18.2,18.2,0],[0,18.2,0]]},
+        {"material": "lamp", "polygon": [[8,8,0.5],[8,8.2,0.5],[8.2,8.2,0.5],[8.2,8,0.5]]}]})");
+    const auto command = [&](const std::string& name) {
+        return Words{"solve",         scene,      "--device",          "cpu",
+                     "--preset",      "fast",     "--clusters",        "on",
+                     "--gather",      "on",       "--scratch",         directory.path("."),
+                     "--no-estimate", "--result", directory.path(name)};
+    };
+    const Outcome one = run_hemi(command("one.hres"));
+    INFO(one.err);
+    REQUIRE(one.status == 0);
+    for (const int ranks : {2, 3}) {
+        const CommandOutcome run = run_ranks(ranks, command("a.hres"));
+        INFO(ranks << " ranks\n" << run.err);
+        REQUIRE(run.status == 0);
+        CHECK((directory.read("a.hres") == directory.read("one.hres")));
+    }
+}
+
 TEST_CASE("Ranks: more of them than there are patches", "[mpi]") {
     const Directory directory;
     const std::string scene = directory.write(

@@ -71,10 +71,11 @@ struct PointRowOptions {
 /// solid angle of the patch over 4 pi.
 ///
 /// In scenes of many patches those far away are taken by clusters, as in compute_clustered(), but for bright
-/// ones. What a row costs then hardly depends on N. Gathered light changes by less than 0.1 % (rms), by 0.4 %
-/// where small bright lamps are strewn over curved surfaces. The visibility may tell of sets of patches there
-/// (HemicubeSettings::joint).
-/// @param visibility  see make_point_visibility_engine()
+/// ones. What a row costs then hardly depends on N, unless columns must be patches: it is as long as patches
+/// in view are many. Gathered light changes by less than 0.1 % (rms), by 0.4 % where small bright lamps are
+/// strewn over curved surfaces. The visibility may tell of sets of patches there (HemicubeSettings::joint).
+/// Where there are several ranks, each makes the rows of some of the points, and all get the rows of all.
+/// @param visibility  see make_point_visibility_engine(); the rank's own
 /// @param mesh        N patches
 /// @param points      that `visibility` is of
 /// @param settings    rule of F0, shadow rays a pair

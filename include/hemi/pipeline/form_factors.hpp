@@ -37,7 +37,7 @@ namespace hemi {
 /// @param patches     whose rows are wanted, ascending; all others stay unknown
 /// @param settings    how
 /// @param observer    gets progress and may cancel
-/// @param checkpoint  where finished rows are kept, or null; only for all patches
+/// @param checkpoint  where finished rows are kept, and those of before taken from; or null
 /// @throws as compute_form_factors
 [[nodiscard]] FormFactors compute_raw_form_factors(const Scene& scene, const PatchMesh& mesh,
                                                    std::span<const std::uint32_t> patches,

@@ -88,7 +88,8 @@ struct RowPlan {
 [[nodiscard]] std::unique_ptr<VisibilityProvider> make_visibility_provider(const PatchMesh& mesh,
                                                                            const HemicubeSettings& hemicube,
                                                                            const FactorSettings& settings);
-/// The same from points, see make_point_visibility_engine().
+/// The same from points, see make_point_visibility_engine(); not shared out among ranks, since
+/// compute_point_rows() does that.
 [[nodiscard]] std::unique_ptr<VisibilityProvider>
 make_point_visibility_provider(const PatchMesh& mesh, std::span<const SurfacePoint> points,
                                const HemicubeSettings& hemicube, const FactorSettings& settings,

@@ -176,8 +176,16 @@ private:
             block.known[*patch - first] = there_[*patch] == 0 ? 1 : 0;
         }
         const ClusteredRow none;
+        const auto row_of = [&](std::uint32_t local) -> const ClusteredRow& {
+            return block.known[local] != 0 ? rows_[first + local] : none;
+        };
+        std::size_t entries = 0;
         for (std::uint32_t local = 0; local < count; ++local) {
-            const ClusteredRow& row = block.known[local] != 0 ? rows_[first + local] : none;
+            entries += row_of(local).near.size() + row_of(local).far.size();
+        }
+        reserve(block, entries);
+        for (std::uint32_t local = 0; local < count; ++local) {
+            const ClusteredRow& row = row_of(local);
             append(block, row.near);
             append(block, row.far);
             block.begin.push_back(block.columns.size());

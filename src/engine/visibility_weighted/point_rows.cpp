@@ -34,6 +34,9 @@ namespace {
 /// Rows whose factors are found at once, by all threads. Memory: 6 bytes a patch that texels cover and row,
 /// and the rows.
 constexpr std::size_t batch_rows = 128;
+constexpr std::size_t least_batch_rows = 8;
+/// Entries of these, where rows may be as long as there are patches.
+constexpr std::size_t batch_entries = std::size_t{1} << 22;
 /// Patches of a row that get shadow rays: enough for the lamps of a room, few enough that rays take about as
 /// much time as all else. Chosen, not fitted.
 constexpr std::size_t max_traced = 48;
@@ -73,9 +76,11 @@ struct SampledPoint {
 
 /// A row of factors.
 struct PointRow {
+    std::uint32_t index = 0; ///< of the point
     std::vector<std::uint32_t> columns;
     std::vector<float> values;
     double environment = 0.0;
+    double blocked = 0.0;
 };
 
 /// Factors of single rows; thread-safe.
@@ -87,13 +92,15 @@ public:
               std::span<const double> weights, const PointRowOptions& options)
         : images_(images), points_(points), rays_a_pair_(settings.shadow_rays), enclosure_(enclosure),
           weights_(weights), spheres_(options.measure == DirectionMeasure::solid_angle), rule_(settings.rule),
-          areas_(images.mesh(), settings.rule), neighbours_(images.mesh()), opening_(options.opening),
-          tree_(options.clusters), expands_(tree_ == nullptr) {
+          areas_(images.mesh(), settings.rule), opening_(options.opening), tree_(options.clusters),
+          expands_(tree_ == nullptr) {
         if (tree_ == nullptr && images.mesh().size() > options.singly) {
             tree_ = &own_tree_.emplace(images.mesh());
         }
         if (tree_ != nullptr) {
             find_light();
+        } else {
+            neighbours_.emplace(images.mesh());
         }
         if (enclosure == Enclosure::automatic) {
             space_.emplace(images.mesh());
@@ -103,6 +110,11 @@ public:
         }
     }
 
+    /// How many rows are made at once.
+    [[nodiscard]] std::size_t at_once() const {
+        const std::size_t longest = tree_ != nullptr && expands_ ? images_.mesh().size() : 0;
+        return std::clamp<std::size_t>(batch_entries / (longest + 1), least_batch_rows, batch_rows);
+    }
     /// Whether rows may tell of sets of patches.
     [[nodiscard]] bool takes_sets() const { return tree_ != nullptr; }
     /// The sets that all rows tell of.
@@ -200,7 +212,7 @@ private:
     void add_unknown(const SurfacePoint& point, std::uint32_t j, const Bench& bench, double assumed,
                      std::vector<Entry>& entries) const {
         if (const double factor = unoccluded(point, j); factor > 0.0) {
-            const VisibilitySample sample = neighbours_.stand_in(bench.samples, j);
+            const VisibilitySample sample = neighbours_->stand_in(bench.samples, j);
             entries.push_back({j, factor, sample.known() ? sample.share() : assumed, 0.0, false, true});
         }
     }
@@ -419,6 +431,8 @@ private:
             .enclosed = space_ && space_->contains_in_front(point.position, point.normal, 0.0)};
         const bool open = is_open({&evidence, 1}, enclosure_);
         PointRow row;
+        row.index = sampled.index;
+        row.blocked = sampled.blocked;
         row.environment = environment_share(evidence, enclosure_, open);
         // What the environment has is what the factors leave, or else they are scaled for it.
         const bool scaled = sum > 0.0 && !(open && row.environment > 0.0);
@@ -441,7 +455,7 @@ private:
     bool spheres_;
     ExchangeRule rule_;
     ExchangeAreas areas_;
-    CoplanarNeighbours neighbours_;
+    std::optional<CoplanarNeighbours> neighbours_; ///< where rows are made patch by patch
     double opening_;
     const ClusterTree* tree_; ///< of scenes that are not taken patch by patch, or null
     std::optional<ClusterTree> own_tree_;
@@ -454,30 +468,37 @@ private:
     std::vector<std::unique_ptr<Bench>> benches_; ///< idle
 };
 
-/// Gives all ranks the rows of all, of which this one has made those from `first` to before `last`.
-void exchange_rows(std::span<PointRow> rows, std::size_t first, std::size_t last) {
-    std::vector<double> environment;
-    std::vector<std::uint64_t> counts;
+/// The rows of all ranks, of which this one has made some.
+std::vector<PointRow> rows_of_ranks(std::span<const PointRow> own) {
+    struct Head {
+        std::uint64_t index;
+        std::uint64_t entries;
+        double environment;
+        double blocked;
+    };
+    std::vector<Head> heads;
     std::vector<std::uint32_t> columns;
     std::vector<float> values;
-    for (const PointRow& row : rows.subspan(first, last - first)) {
-        environment.push_back(row.environment);
-        counts.push_back(row.columns.size());
+    for (const PointRow& row : own) {
+        heads.push_back({row.index, row.columns.size(), row.environment, row.blocked});
         columns.insert(columns.end(), row.columns.begin(), row.columns.end());
         values.insert(values.end(), row.values.begin(), row.values.end());
     }
-    environment = gather_values(ranks(), std::span<const double>(environment));
-    counts = gather_values(ranks(), std::span<const std::uint64_t>(counts));
+    heads = gather_values(ranks(), std::span<const Head>(heads));
     columns = gather_values(ranks(), std::span<const std::uint32_t>(columns));
     values = gather_values(ranks(), std::span<const float>(values));
+    std::vector<PointRow> rows;
     std::ptrdiff_t next = 0;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-        const auto end = next + static_cast<std::ptrdiff_t>(counts[k]);
-        rows[k].columns.assign(columns.begin() + next, columns.begin() + end);
-        rows[k].values.assign(values.begin() + next, values.begin() + end);
-        rows[k].environment = environment[k];
+    for (const Head& head : heads) {
+        const auto end = next + static_cast<std::ptrdiff_t>(head.entries);
+        rows.push_back({static_cast<std::uint32_t>(head.index),
+                        {columns.begin() + next, columns.begin() + end},
+                        {values.begin() + next, values.begin() + end},
+                        head.environment,
+                        head.blocked});
         next = end;
     }
+    return rows;
 }
 
 } // namespace
@@ -502,35 +523,33 @@ void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
     PointRows rows(images, points, settings, enclosure, weights, options);
     std::vector<SampledPoint> batch;
     std::size_t samples = 0; // of the batch
-    std::size_t done = 0;
+    std::size_t done = 0;    // by all ranks
+    std::size_t made = 0;    // samples, by this one
     const auto finish_batch = [&] {
-        // All ranks have the same batch, and each finishes some of it.
         std::vector<PointRow> finished(batch.size());
-        const std::size_t first = begin_of_share(ranks(), ranks().rank(), batch.size());
-        const std::size_t last = begin_of_share(ranks(), ranks().rank() + 1, batch.size());
-        parallel_for(last - first, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = first + begin; k < first + end; ++k) {
+        parallel_for(batch.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
                 finished[k] = rows(batch[k]);
             }
         });
         if (ranks().size() > 1) {
-            exchange_rows(std::span(finished), first, last);
+            finished = rows_of_ranks(finished);
         }
-        for (std::size_t k = 0; k < batch.size(); ++k) {
-            const RowView row{
-                finished[k].columns, finished[k].values, {}, finished[k].environment, batch[k].blocked};
-            sink(batch[k].index, images.any() ? fold(row) : row);
+        for (const PointRow& of_point : finished) {
+            const RowView row{of_point.columns, of_point.values, {}, of_point.environment, of_point.blocked};
+            sink(of_point.index, images.any() ? fold(row) : row);
         }
-        done += batch.size();
+        done += finished.size();
         batch.clear();
         samples = 0;
         if (progress && !progress(done, points.size())) {
             throw Cancelled();
         }
     };
-    std::vector<std::uint32_t> all(points.size());
-    std::iota(all.begin(), all.end(), 0u);
-    visibility.rows(all, [&](std::uint32_t index, const VisibilityRow& row) {
+    const std::size_t first = begin_of_share(ranks(), ranks().rank(), points.size());
+    std::vector<std::uint32_t> own(begin_of_share(ranks(), ranks().rank() + 1, points.size()) - first);
+    std::iota(own.begin(), own.end(), static_cast<std::uint32_t>(first));
+    visibility.rows(own, [&](std::uint32_t index, const VisibilityRow& row) {
         SampledPoint& sampled = batch.emplace_back();
         sampled.index = index;
         sampled.columns.assign(row.columns.begin(), row.columns.end());
@@ -549,16 +568,16 @@ void compute_point_rows(VisibilityProvider& visibility, const PatchMesh& mesh,
         sampled.blocked = row.blocked;
         sampled.hides = std::find(row.shares.begin(), row.shares.end(), 0.0F) != row.shares.end();
         samples += row.columns.size();
-        if (batch.size() == batch_rows || samples >= batch_samples) {
+        if (batch.size() == rows.at_once() || samples >= batch_samples) {
             finish_batch();
         }
+        ++made;
     });
-    if (!batch.empty()) {
-        finish_batch();
+    if (made != own.size()) {
+        throw Error(fmt::format("{} gave {} of {} rows of points", visibility.renderer(), made, own.size()));
     }
-    if (done != points.size()) {
-        throw Error(
-            fmt::format("{} gave {} of {} rows of points", visibility.renderer(), done, points.size()));
+    while (done < points.size()) { // the last batches, which other ranks may have more of
+        finish_batch();
     }
 }
 
