@@ -488,6 +488,14 @@ std::vector<double> irradiation_errors(const FormFactors& factors, const HeatPro
     std::vector<double> sums(groups + 1, 0.0);
     std::vector<double> squares(groups + 1, 0.0);
     std::vector<std::size_t> counts(groups + 1, 0);
+    std::vector<double> asymmetry(groups + 1, 0.0); // times the area
+    std::vector<double> areas(groups + 1, 0.0);
+    for (std::uint32_t i = 0; i < solution.asymmetry_change.size(); ++i) {
+        for (const std::size_t g : {std::size_t{factors.group_of[i]}, groups}) {
+            asymmetry[g] += factors.areas[i] * solution.asymmetry_change[i];
+            areas[g] += solution.buried[i] == 0 ? factors.areas[i] : 0.0;
+        }
+    }
     if (factors.reference.size() == factors.matrix.size()) {
         const std::vector<double> radiosity = zero_where_unknown(solution.radiosity);
         const IrradianceErrors errors = irradiance_errors(factors.matrix, factors.reference, problem.bands,
@@ -513,15 +521,14 @@ std::vector<double> irradiation_errors(const FormFactors& factors, const HeatPro
         }
     }
     constexpr std::size_t few = 4;
-    const std::vector<double> asymmetry = asymmetry_errors(factors, problem, solution);
     std::vector<double> result;
     for (std::size_t g = 0; g <= groups; ++g) {
         const std::size_t from = counts[g] < few ? groups : g;
         const auto count = static_cast<double>(counts[from]);
         const double mean = sums[from] / count; // not a number where there are none
         const double spread = std::max(squares[from] / count - mean * mean, 0.0);
-        result.push_back(
-            std::hypot(mean, count > 1.0 ? std::sqrt(spread / (count - 1.0)) : 0.0, asymmetry[g]));
+        result.push_back(std::hypot(mean, count > 1.0 ? std::sqrt(spread / (count - 1.0)) : 0.0,
+                                    areas[g] > 0.0 ? asymmetry[g] / areas[g] : 0.0));
     }
     return result;
 }
@@ -532,7 +539,11 @@ HeatSolution solve_heat(const FormFactors& factors, const HeatProblem& problem, 
                         Observer& observer) {
     const ExchangeNetwork network = make_network(factors, problem);
     warn_of_environment(factors, problem, network, observer);
-    return solve_heat_network(network, factors, problem, settings, observer);
+    HeatSolution solution = solve_heat_network(network, factors, problem, settings, observer);
+    if (factors.matrix.clusters() != nullptr) {
+        solution.asymmetry_change = asymmetry_changes(network, factors, problem, solution, observer);
+    }
+    return solution;
 }
 
 HeatSolution solve_heat_network(const ExchangeNetwork& network, const FormFactors& factors,

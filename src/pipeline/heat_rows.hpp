@@ -22,11 +22,12 @@ namespace hemi {
 /// e of every row; 0 in an enclosure, whose leaks come back: the environment gets nothing of it.
 [[nodiscard]] std::vector<double> shares_of_environment(const FormFactors& factors);
 
-/// What the mean irradiation of every group, and a last one of all of them, is by the exchange that was made
-/// symmetric, over what it would be by rows with clusters as they are, W/m², whatever its sign; 0 without
-/// clusters.
-[[nodiscard]] std::vector<double> asymmetry_errors(const FormFactors& factors, const HeatProblem& problem,
-                                                   const HeatSolution& solution);
+/// By how much the irradiation of every patch, over all bands, would change if what arrives at the patches
+/// were what their rows with clusters say, not what the symmetric exchange makes of these: to the first
+/// order, where temperatures and fluxes are given, W/m², N.
+[[nodiscard]] std::vector<double> asymmetry_changes(const ExchangeNetwork& network,
+                                                    const FormFactors& factors, const HeatProblem& problem,
+                                                    const HeatSolution& solution, Observer& observer);
 
 /// 1 for every patch that sees nothing.
 [[nodiscard]] std::vector<std::uint8_t> buried_patches(const ExchangeNetwork& network);

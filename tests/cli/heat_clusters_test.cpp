@@ -16,6 +16,14 @@ Json far_box() {
     return box(1.0, 1.2, 1.5, 20);
 }
 
+/// Past which little heat finds its way.
+void add_shield(Json& box) {
+    box["surfaces"].push_back(
+        face("shield", "side", {{0.1, 0.1, 0.7}, {0.9, 0.1, 0.7}, {0.9, 1.1, 0.7}, {0.1, 1.1, 0.7}}, 16));
+    box["surfaces"].back()["two_sided"] = true;
+    box["groups"]["shield"] = {{"heat_flux", 0}};
+}
+
 Outcome run_with(Words words, const Words& more) {
     words.insert(words.end(), {"--device", "cpu", "--preset", "fast", "--json", "--quiet"});
     words.insert(words.end(), more.begin(), more.end());
@@ -73,10 +81,7 @@ TEST_CASE("hemi heat: far patches in clusters exchange what pairs do, and heat b
         scene["groups"]["back"] = {{"power", -200}, {"isothermal", true}};
     }
     SECTION("something in the way") {
-        scene["surfaces"].push_back(
-            face("shield", "side", {{0.1, 0.1, 0.7}, {0.9, 0.1, 0.7}, {0.9, 1.1, 0.7}, {0.1, 1.1, 0.7}}, 16));
-        scene["surfaces"].back()["two_sided"] = true;
-        scene["groups"]["shield"] = {{"heat_flux", 0}};
+        add_shield(scene);
         // Clusters of the sides of which only some patches are hidden give heat on past the shield.
         clustered.back() = "0.01%";
     }
@@ -86,6 +91,23 @@ TEST_CASE("hemi heat: far patches in clusters exchange what pairs do, and heat b
     REQUIRE(clusters.status == 0);
     check_near(clusters.json(), run_with({"heat", file, "--no-estimate"}, {"--clusters", "off"}).json(),
                0.01);
+}
+
+TEST_CASE("hemi heat: what clusters carry past a shield is in the error that is told",
+          "[cli][heat][clusters]") {
+    const Directory directory;
+    Json scene = far_box();
+    add_shield(scene);
+    const std::string file = directory.write("box.json", scene);
+    const Json pairs = run_with({"heat", file, "--no-estimate"}, {"--clusters", "off"}).json();
+    const Json clusters = run_with({"heat", file}, in_clusters).json();
+    for (const std::size_t g : {0, 1}) {
+        INFO(pairs["groups"][g]);
+        const double difference =
+            std::abs(clusters["net_flux"][g].get<double>() - pairs["net_flux"][g].get<double>());
+        CHECK(difference > 0.02 * std::abs(pairs["net_flux"][g].get<double>()));
+        CHECK(difference < 6.0 * clusters["error"]["parts"]["factors"][g].get<double>());
+    }
 }
 
 TEST_CASE("hemi heat: one temperature everywhere makes no flux, with clusters, too",

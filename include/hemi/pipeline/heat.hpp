@@ -73,6 +73,9 @@ struct HeatSolution {
     /// Of rows with clusters: how far what a patch exchanges with all others was from what its row says, a
     /// share of this, rms by area, once that was made symmetric and before it was scaled. 0 without clusters.
     double asymmetry = 0.0;
+    /// Of rows with clusters: by how much G, over all bands, would change if what arrives at the patches were
+    /// what their rows say: to the first order, W/m², N. Empty without clusters, and of lines of a series.
+    std::vector<double> asymmetry_change;
 };
 
 /// Net fluxes and temperatures by J = eps f(T) sigma T⁴ + exitance + (1 - eps) G, G = F J + b J + e J_env + D
