@@ -1,5 +1,6 @@
 #include "hemi/engine/clustered_rows.hpp"
 
+#include "core/freed_memory.hpp"
 #include "core/parallel_for.hpp"
 #include "engine/clusters/cluster_tree.hpp"
 #include "engine/clusters/row_maker.hpp"
@@ -567,6 +568,7 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
         rows = collector.finish();
     }
     FormFactorMatrix near = near_pairs(rows, patches, mesh);
+    give_freed_memory_back();
     (void)repair(near, mesh.areas(), Repair::reciprocity);
     const Evidence evidence(rows, near, mesh, *tree.clusters(), settings.rule, enclosure);
     const bool open = settle_environment(rows, evidence, patches, enclosure);
@@ -574,12 +576,17 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
     FormFactorMatrix matrix(
         mesh.size(), std::make_shared<SourceClusters>(tree.clusters()->with_weights(seen_areas(rows, mesh))));
     std::vector<RowBlock> pairs = near.take_blocks();
-    parallel_for(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) {
-            const RowBlock of_block = std::exchange(pairs[b], {}); // whose memory is soon needed for others
-            matrix.set_block(whole_block(of_block, rows));
-        }
-    });
+    // Single rows become blocks; so that both are not there at once, memory is given back several times.
+    const std::size_t at_once = pairs.size() / 16 + 1;
+    for (std::size_t first = 0; first < pairs.size(); first += at_once) {
+        parallel_for(std::min(at_once, pairs.size() - first), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t b = first + begin; b < first + end; ++b) {
+                const RowBlock of_block = std::exchange(pairs[b], {}); // whose memory others soon need
+                matrix.set_block(whole_block(of_block, rows));
+            }
+        });
+        give_freed_memory_back();
+    }
     return matrix;
 }
 
