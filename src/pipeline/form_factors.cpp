@@ -1,5 +1,6 @@
 #include "hemi/pipeline/form_factors.hpp"
 
+#include "engine/environment_verdict.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/interrupt.hpp"
 #include "hemi/core/stopwatch.hpp"
@@ -21,9 +22,6 @@
 namespace hemi {
 
 namespace {
-
-// Relative error of unoccluded factors by the exact rule, see RepairSettings.
-constexpr double exact_unoccluded_error = 3e-5;
 
 /// Whether the table of pairs and the matrix fit; says so where they do not, and what is done instead.
 bool pairs_fit(VisibilityProvider& visibility, const PatchMesh& mesh, std::span<const std::uint32_t> patches,
@@ -241,7 +239,7 @@ void prepare_form_factors(FormFactors& factors, std::optional<Repair> wanted, Ob
                                                                                     : Repair::none);
         RepairSettings settings;
         if (factors.provenance.exchange_rule == ExchangeRule::exact) {
-            settings.unoccluded_error = exact_unoccluded_error;
+            settings.unoccluded_error = unoccluded_error(ExchangeRule::exact);
         }
         factors.repair = repair(factors.matrix, factors.areas, chosen, settings,
                                 [&observer](std::size_t done, std::size_t total) {

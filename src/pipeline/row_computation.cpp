@@ -19,9 +19,12 @@ constexpr double reference_share = 0.08;
 } // namespace
 
 std::vector<std::uint8_t> emitting_patches(const Scene& scene, const PatchMesh& mesh) {
-    const std::vector<double> exitance = patch_values(mesh, scene.materials, &Material::exitance);
-    const std::size_t channels = mesh.size() > 0 ? exitance.size() / mesh.size() : 0;
-    std::vector<std::uint8_t> emits(mesh.size(), 0);
+    return emitting_patches(mesh.size(), patch_values(mesh, scene.materials, &Material::exitance));
+}
+
+std::vector<std::uint8_t> emitting_patches(std::uint32_t patches, std::span<const double> exitance) {
+    const std::size_t channels = patches > 0 ? exitance.size() / patches : 0;
+    std::vector<std::uint8_t> emits(patches, 0);
     for (std::size_t k = 0; k < exitance.size(); ++k) {
         if (exitance[k] > 0.0) {
             emits[k / channels] = 1;

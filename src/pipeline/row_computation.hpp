@@ -30,6 +30,10 @@ inline constexpr std::size_t unsampled_rows = 256;
 /// Of N patches those that emit light, 1 each; others 0. Their clusters would be brighter than what stands
 /// beside them.
 [[nodiscard]] std::vector<std::uint8_t> emitting_patches(const Scene& scene, const PatchMesh& mesh);
+/// The same by exitances.
+/// @param exitance  N·channels
+[[nodiscard]] std::vector<std::uint8_t> emitting_patches(std::uint32_t patches,
+                                                         std::span<const double> exitance);
 
 /// What raw rows depend on, besides the renderer.
 [[nodiscard]] io::CheckpointKey raw_row_key(const FormFactors& factors, const FactorSettings& settings);

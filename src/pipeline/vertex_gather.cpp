@@ -13,6 +13,7 @@
 #include "hemi/matrix/source_clusters.hpp"
 #include "pipeline/gathered_radiosity.hpp"
 #include "pipeline/point_daylight.hpp"
+#include "pipeline/row_computation.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
 #include <fmt/format.h>
@@ -117,16 +118,11 @@ struct VertexGather::State {
         if (mesh.size() <= points_ask_singly || mesh.symmetry()) {
             return;
         }
-        std::vector<std::uint8_t> shines(mesh.size(), 0);
         std::vector<double> seen_areas(mesh.areas().begin(), mesh.areas().end());
-        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-            const auto own =
-                std::span(values.exitance).subspan(std::size_t{i} * values.channels, values.channels);
-            shines[i] = std::any_of(own.begin(), own.end(), [](double exitance) { return exitance > 0.0; });
-            seen_areas[i] *=
-                std::max(0.0, 1.0 - (blocked.empty() ? 0.0 : blocked[i])); // not what lies buried
+        for (std::uint32_t i = 0; i < blocked.size(); ++i) { // not what lies buried
+            seen_areas[i] *= std::max(0.0, 1.0 - blocked[i]);
         }
-        tree.emplace(mesh, shines);
+        tree.emplace(mesh, emitting_patches(mesh.size(), values.exitance));
         clusters = std::make_shared<SourceClusters>(tree->clusters()->with_weights(seen_areas));
     }
 
