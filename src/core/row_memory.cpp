@@ -87,9 +87,10 @@ private:
         return this == &other;
     }
 
-    /// As many as there are, up to 16 TiB: the file is not to be larger.
+    /// As many as can be had, up to 1 TiB, hundred times what a million patches take: more the file cannot
+    /// hold.
     void reserve_addresses() {
-        addresses_size_ = std::size_t{1} << 44;
+        addresses_size_ = std::size_t{1} << 41;
         void* data = MAP_FAILED;
         while (data == MAP_FAILED && addresses_size_ > most_growth) {
             addresses_size_ /= 2;
