@@ -101,7 +101,7 @@ TEST_CASE("hemi heat: what clusters carry past a shield is in the error that is 
     const std::string file = directory.write("box.json", scene);
     const Json pairs = run_with({"heat", file, "--no-estimate"}, {"--clusters", "off"}).json();
     const Json clusters = run_with({"heat", file}, in_clusters).json();
-    for (const std::size_t g : {0, 1}) {
+    for (const std::size_t g : {0U, 1U}) {
         INFO(pairs["groups"][g]);
         const double difference =
             std::abs(clusters["net_flux"][g].get<double>() - pairs["net_flux"][g].get<double>());
