@@ -126,6 +126,24 @@ TEST_CASE("hemi heat: one temperature everywhere makes no flux, with clusters, t
     }
 }
 
+TEST_CASE("hemi points: where all is of one temperature, it is the radiant one by clusters, too",
+          "[cli][heat][clusters]") {
+    const Directory directory;
+    Json scene = far_box();
+    for (auto& [name, group] : scene["groups"].items()) {
+        group = {{"temperature", 300}};
+    }
+    Words words{"points", directory.write("box.json", scene), "--grid", "bottom", "0.25", "0.6", "--spheres"};
+    const Outcome run = run_with(words, in_clusters);
+    INFO(run.err);
+    REQUIRE(run.status == 0);
+    const Json json = run.json();
+    REQUIRE(!json["mean_radiant_temperature"].empty());
+    for (const Json& temperature : json["mean_radiant_temperature"]) {
+        CHECK(temperature.get<double>() == Approx(300.0).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("hemi points: the radiant temperature by clusters is that by pairs", "[cli][heat][clusters]") {
     const Directory directory;
     const std::string scene = directory.write("box.json", far_box());

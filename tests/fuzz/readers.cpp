@@ -148,10 +148,13 @@ void seed_rows(const fs::path& folder) {
     io::CheckpointFile checkpoint(folder / "a", false);
     checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2), {});
     checkpoint.append(small_matrix(true).blocks().front());
-    io::CheckpointFile clustered(folder / "clusters", false);
-    clustered.start({{"seed", "0"}}, FormFactorMatrix(2, small_clusters()), {});
+}
+
+void seed_clustered_rows(const fs::path& folder) {
+    io::CheckpointFile checkpoint(folder / "a", false);
+    checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2, small_clusters()), {});
     const std::vector<std::uint8_t> marks{1, 0};
-    clustered.append(clustered_matrix().blocks().front(), marks);
+    checkpoint.append(clustered_matrix().blocks().front(), marks);
 }
 
 void seed_glb(const fs::path& folder) {
@@ -368,13 +371,19 @@ const std::map<std::string, Reader> readers{
     {"rows",
      {"fuzzed.rows",
       [](const fs::path& path) {
-          for (const auto& clusters : {std::shared_ptr<const SourceClusters>(), small_clusters()}) {
-              io::CheckpointFile checkpoint(path.parent_path() / "fuzzed", true);
-              checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2, clusters),
-                               [](std::uint32_t, const RowView& row, bool) { (void)row.sum(); });
-          }
+          io::CheckpointFile checkpoint(path.parent_path() / "fuzzed", true);
+          checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2),
+                           [](std::uint32_t, const RowView& row, bool) { (void)row.sum(); });
       },
       seed_rows, true}},
+    {"clustered-rows",
+     {"fuzzed.rows",
+      [](const fs::path& path) {
+          io::CheckpointFile checkpoint(path.parent_path() / "fuzzed", true);
+          checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2, small_clusters()),
+                           [](std::uint32_t, const RowView& row, bool) { (void)row.sum(); });
+      },
+      seed_clustered_rows, true}},
     {"mtx",
      {"fuzzed.mtx", [](const fs::path& path) { (void)io::read_mtx(path); },
       [](const fs::path& folder) { io::write_mtx(folder / "a.mtx", small_matrix(false)); }}},
