@@ -285,7 +285,7 @@ void LoadedScene::write_patches(const std::filesystem::path& path) const {
 void LoadedScene::write_patches(const std::filesystem::path& path, const FormFactorMatrix& factors) const {
     std::vector<double> environment;
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        environment.push_back(factors.known(i) ? factors.row(i).environment
+        environment.push_back(factors.known(i) ? factors.environment(i)
                                                : std::numeric_limits<double>::quiet_NaN());
     }
     const std::vector<io::CellArray> arrays{{"environment", means(environment, 1), {}}};

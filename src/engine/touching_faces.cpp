@@ -35,7 +35,7 @@ std::vector<std::uint32_t> find_touching_faces(const FormFactorMatrix& factors, 
     constexpr double whole_view = 1.0 - 1e-6; // but for the rounding of shares
     std::vector<std::uint32_t> looking_out;
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        if (factors.known(i) && factors.row(i).environment >= whole_view) {
+        if (factors.known(i) && factors.environment(i) >= whole_view) {
             looking_out.push_back(i);
         }
     }
@@ -55,7 +55,7 @@ void mark_touching_faces_buried(FormFactorMatrix& factors, std::span<const std::
     }
     if (enclosure == Enclosure::automatic) {
         for (std::uint32_t i = 0; i < factors.size(); ++i) {
-            if (factors.known(i) && factors.row(i).environment > 0.0 &&
+            if (factors.known(i) && factors.environment(i) > 0.0 &&
                 !std::binary_search(contacts.begin(), contacts.end(), i)) {
                 return;
             }
@@ -69,7 +69,7 @@ void mark_touching_faces_buried(FormFactorMatrix& factors, std::span<const std::
             block.reset();
         }
         if (!block) {
-            block = factors.blocks()[index];
+            block = factors.block(index);
         }
         const std::uint32_t local = patch - block->first_row;
         block->blocked[local] += std::exchange(block->environment[local], 0.0);

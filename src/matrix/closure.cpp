@@ -33,8 +33,8 @@ double visibility(std::uint8_t code) {
 Closure::Closure(std::vector<RowBlock>& blocks, std::span<const double> areas, bool with_visibility,
                  const RepairSettings& settings, const Progress& progress)
     : blocks_(blocks), areas_(areas), with_visibility_(with_visibility), settings_(settings),
-      progress_(progress), cuts_(slice_rows(blocks)),
-      pairs_(blocks, static_cast<std::uint32_t>(areas.size()), PairEntries::right_of_diagonal, 1),
+      progress_(progress), cuts_(slice_rows(blocks)), rows_(blocks),
+      pairs_(rows_, cuts_, static_cast<std::uint32_t>(areas.size()), PairEntries::right_of_diagonal, 1),
       gap_(areas.size(), 0.0), diagonal_(areas.size(), 0.0), multiplier_(areas.size(), 0.0) {
     for (std::uint32_t i = 0; i < gap_.size(); ++i) {
         const RowBlock& block = block_of(blocks, i);
@@ -60,9 +60,9 @@ void Closure::multiply(const std::vector<double>& z, std::vector<double>& y) {
     if (with_visibility_) {
         pairs_.apply(
             scale,
-            [this](const RowBlock& block, std::uint32_t) {
-                return [values = block.values.data(), codes = block.visibility.data(),
-                        variance = variance_.data()](std::uint64_t k) {
+            [this](const RowView& row, std::uint32_t) {
+                return [values = row.values.data(), codes = row.visibility.data(),
+                        variance = variance_.data()](std::size_t k) {
                     const double value = movable(values[k]);
                     return value * value * variance[codes[k]];
                 };
@@ -71,8 +71,8 @@ void Closure::multiply(const std::vector<double>& z, std::vector<double>& y) {
     } else {
         pairs_.apply(
             scale,
-            [](const RowBlock& block, std::uint32_t) {
-                return [values = block.values.data()](std::uint64_t k) {
+            [](const RowView& row, std::uint32_t) {
+                return [values = row.values.data()](std::size_t k) {
                     const double value = movable(values[k]);
                     return value * value;
                 };
@@ -90,8 +90,8 @@ void Closure::find_gaps() {
     const std::vector<double> ones(gap_.size(), 1.0);
     std::vector<double> sums(gap_.size());
     pairs_.apply([this](std::uint32_t i) { return areas_[i]; },
-                 [](const RowBlock& block, std::uint32_t) {
-                     return [values = block.values.data()](std::uint64_t k) { return magnitude(values[k]); };
+                 [](const RowView& row, std::uint32_t) {
+                     return [values = row.values.data()](std::size_t k) { return magnitude(values[k]); };
                  },
                  ones.data(), sums.data());
     for (const auto& [i, k] : own_) {

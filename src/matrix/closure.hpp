@@ -59,7 +59,8 @@ private:
     std::size_t told_ = 0;   // per cent
     bool all_known_ = true;
     std::vector<std::uint32_t> cuts_;
-    PairProduct pairs_;
+    RowsOfBlocks rows_;
+    PairProduct<RowsOfBlocks> pairs_;
     std::vector<Own> own_;               // ascending
     std::array<double, 256> variance_{}; // of a pair over its x², by the code of its visibility
     std::vector<double> gap_;            // target less sum of x, per row

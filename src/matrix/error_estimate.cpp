@@ -132,7 +132,8 @@ public:
         const std::uint32_t size = factors.size();
         std::vector<std::uint32_t> column_of(size);
         std::iota(column_of.begin(), column_of.end(), 0u);
-        for (const std::uint32_t column : factors.row(i).columns) {
+        const RowView row = factors.row(i);
+        for (const std::uint32_t column : row.columns) {
             if (column >= size) {
                 for (const std::uint32_t patch : factors.clusters()->patches(column - size)) {
                     column_of[patch] = column;

@@ -10,7 +10,7 @@ namespace hemi {
 ExchangeProduct::ExchangeProduct(const FormFactorMatrix& factors, std::span<const double> areas,
                                  std::size_t stride, std::span<const double> scale)
     : factors_(factors), areas_(areas), stride_(stride), scale_(scale), all_known_(factors.all_known()),
-      pairs_(factors.blocks(), factors.columns(),
+      pairs_(factors, slice_rows(factors), factors.columns(),
              factors.clusters() == nullptr ? PairEntries::right_of_diagonal : PairEntries::all, stride) {
     if (factors.clusters() != nullptr) {
         if (!all_known_) {
@@ -32,8 +32,8 @@ void ExchangeProduct::apply(std::span<const double> diagonal, std::span<const do
         apply_clusters(z, y);
     } else {
         pairs_.apply([this](std::uint32_t i) { return areas_[i]; },
-                     [](const RowBlock& block, std::uint32_t) {
-                         return [values = block.values.data()](std::uint64_t k) {
+                     [](const RowView& row, std::uint32_t) {
+                         return [values = row.values.data()](std::size_t k) {
                              return static_cast<double>(values[k]);
                          };
                      },
@@ -68,9 +68,9 @@ void ExchangeProduct::apply_clusters(std::span<const double> z, std::span<double
     factors_.clusters()->fill(from_, stride_);
     std::copy(z.begin(), z.end(), from_.begin());
     pairs_.apply([this](std::uint32_t i) { return 0.5 * areas_[i]; },
-                 [this](const RowBlock& block, std::uint32_t i) {
-                     return [values = block.values.data(), columns = block.columns.data(),
-                             size = factors_.size(), far = scale(i)](std::uint64_t k) {
+                 [this](const RowView& row, std::uint32_t i) {
+                     return [values = row.values.data(), columns = row.columns.data(), size = factors_.size(),
+                             far = scale(i)](std::size_t k) {
                          return static_cast<double>(values[k]) * (columns[k] < size ? 1.0 : far);
                      };
                  },

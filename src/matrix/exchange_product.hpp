@@ -44,7 +44,7 @@ private:
     std::size_t stride_;
     std::span<const double> scale_;
     bool all_known_;
-    PairProduct pairs_;
+    PairProduct<FormFactorMatrix> pairs_;
     std::vector<double> from_; ///< z with the means of clusters, if there are any
     std::vector<double> to_;   ///< what patches and clusters get
 };

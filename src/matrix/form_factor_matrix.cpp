@@ -56,7 +56,8 @@ void check_share(const RowBlock& block, std::uint32_t row, const char* name, dou
     }
 }
 
-void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t all_columns) {
+/// @param size  columns from here on are clusters
+void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t size, std::uint32_t all_columns) {
     const std::uint32_t row = block.first_row + local;
     const std::uint64_t begin = block.begin[local];
     const std::uint64_t end = block.begin[local + 1];
@@ -77,6 +78,10 @@ void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t all_col
     for (std::uint64_t k = begin; k < end; ++k) {
         wrong |= values[k] >= 0.0F && values[k] <= std::numeric_limits<float>::max() ? 0u : 1u;
     }
+    // Clusters are last.
+    for (std::uint64_t k = end; k > begin && columns[k - 1] >= size; --k) {
+        wrong |= values[k - 1] < PackedEntries::too_large ? 0u : 1u;
+    }
     for (std::uint64_t k = begin; k < end && wrong != 0; ++k) {
         const std::uint32_t column = block.columns[k];
         if (column >= all_columns || (k > begin && column <= block.columns[k - 1])) {
@@ -87,7 +92,60 @@ void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t all_col
             refuse(block, fmt::format("F({}, {}) = {}; it must be finite and not negative", row, column,
                                       block.values[k]));
         }
+        if (column >= size && !(block.values[k] < PackedEntries::too_large)) {
+            refuse(block,
+                   fmt::format("row {}: {} for a cluster; no factor is above 1", row, block.values[k]));
+        }
     }
+}
+
+/// The entries of a block's row that are clusters.
+std::uint64_t clusters_from(const RowBlock& block, std::uint32_t local, std::uint32_t size) {
+    const auto columns = block.columns.begin();
+    return static_cast<std::uint64_t>(
+        std::lower_bound(columns + static_cast<std::ptrdiff_t>(block.begin[local]),
+                         columns + static_cast<std::ptrdiff_t>(block.begin[local + 1]), size) -
+        columns);
+}
+
+template <class T>
+std::span<const T> part_of(const RowArray<T>& array, std::uint64_t begin, std::uint64_t end) {
+    return array.empty() ? std::span<const T>() : std::span(array).subspan(begin, end - begin);
+}
+
+/// The block without entries of clusters, which are packed.
+/// @param size    columns from here on are clusters
+/// @param packed  gets those of every row
+RowBlock without_clusters(const RowBlock& block, std::uint32_t size, std::span<PackedEntries> packed) {
+    RowBlock rest;
+    rest.first_row = block.first_row;
+    rest.environment = block.environment;
+    rest.blocked = block.blocked;
+    rest.known = block.known;
+    rest.begin.assign(1, 0);
+    for (std::uint32_t local = 0; local < block.rows(); ++local) {
+        const std::uint64_t begin = block.begin[local];
+        const std::uint64_t far = clusters_from(block, local, size);
+        const std::uint64_t end = block.begin[local + 1];
+        packed[local] = PackedEntries(part_of(block.columns, far, end), part_of(block.values, far, end),
+                                      part_of(block.visibility, far, end));
+        rest.begin.push_back(rest.begin.back() + (far - begin));
+    }
+    rest.columns.reserve(rest.begin.back());
+    rest.values.reserve(rest.begin.back());
+    rest.visibility.reserve(block.visibility.empty() ? 0 : rest.begin.back());
+    for (std::uint32_t local = 0; local < block.rows(); ++local) {
+        const std::uint64_t begin = block.begin[local];
+        const std::uint64_t end = begin + rest.begin[local + 1] - rest.begin[local];
+        const auto append = [&](auto& to, const auto& from) {
+            const auto part = part_of(from, begin, end);
+            to.insert(to.end(), part.begin(), part.end());
+        };
+        append(rest.columns, block.columns);
+        append(rest.values, block.values);
+        append(rest.visibility, block.visibility);
+    }
+    return rest;
 }
 
 } // namespace
@@ -100,6 +158,16 @@ double RowView::sum() const {
     return sum;
 }
 
+RowView RowBlock::row(std::uint32_t local) const {
+    const std::uint64_t from = begin[local];
+    const std::uint64_t to = begin[local + 1];
+    return {.columns = part_of(columns, from, to),
+            .values = part_of(values, from, to),
+            .visibility = part_of(visibility, from, to),
+            .environment = environment[local],
+            .blocked = blocked[local]};
+}
+
 FormFactorMatrix::FormFactorMatrix(std::uint32_t size, std::shared_ptr<const SourceClusters> clusters)
     : size_(size), columns_(size), clusters_(std::move(clusters)) {
     if (clusters_ != nullptr) {
@@ -108,6 +176,7 @@ FormFactorMatrix::FormFactorMatrix(std::uint32_t size, std::shared_ptr<const Sou
                                               clusters_->size()));
         }
         columns_ += static_cast<std::uint32_t>(clusters_->nodes().size());
+        packed_.resize(size);
     }
     blocks_.resize(size / block_rows + (size % block_rows != 0 ? 1 : 0));
     std::uint32_t first_row = 0;
@@ -123,16 +192,58 @@ FormFactorMatrix::FormFactorMatrix(std::uint32_t size, std::shared_ptr<const Sou
 }
 
 RowView FormFactorMatrix::row(std::uint32_t i) const {
-    const RowBlock& block = blocks_[i / block_rows];
-    const std::uint32_t local = i % block_rows;
-    const std::size_t begin = block.begin[local];
-    const std::size_t count = block.begin[local + 1] - begin;
-    return {.columns = std::span(block.columns).subspan(begin, count),
-            .values = std::span(block.values).subspan(begin, count),
-            .visibility = block.visibility.empty() ? std::span<const std::uint8_t>()
-                                                   : std::span(block.visibility).subspan(begin, count),
-            .environment = block.environment[local],
-            .blocked = block.blocked[local]};
+    RowView row = blocks_[i / block_rows].row(i % block_rows);
+    if (!packed_.empty() && packed_[i].size() > 0) {
+        const PackedEntries& far = packed_[i];
+        const std::size_t near = row.columns.size();
+        const std::size_t count = near + far.size();
+        const std::size_t codes = far.has_visibility() ? count : 0;
+        const auto room = std::make_shared_for_overwrite<std::byte[]>(
+            count * (sizeof(std::uint32_t) + sizeof(float)) + codes);
+        auto* const columns = reinterpret_cast<std::uint32_t*>(room.get());
+        auto* const values = reinterpret_cast<float*>(columns + count);
+        auto* const visibility = reinterpret_cast<std::uint8_t*>(values + count);
+        std::copy(row.columns.begin(), row.columns.end(), columns);
+        std::copy(row.values.begin(), row.values.end(), values);
+        std::copy(row.visibility.begin(), row.visibility.end(), visibility);
+        far.unpack(columns + near, values + near, visibility + near);
+        row.columns = {columns, count};
+        row.values = {values, count};
+        row.visibility = {visibility, codes};
+        row.unpacked = room;
+    }
+    return row;
+}
+
+RowBlock FormFactorMatrix::block(std::size_t b) const {
+    if (packed_.empty()) {
+        return blocks_[b];
+    }
+    RowBlock whole;
+    whole.first_row = blocks_[b].first_row;
+    whole.environment = blocks_[b].environment;
+    whole.blocked = blocks_[b].blocked;
+    whole.known = blocks_[b].known;
+    whole.begin.assign(1, 0);
+    const std::uint64_t count = entries(b);
+    whole.columns.reserve(count);
+    whole.values.reserve(count);
+    for (std::uint32_t local = 0; local < whole.rows(); ++local) {
+        const RowView row = this->row(whole.first_row + local);
+        whole.columns.insert(whole.columns.end(), row.columns.begin(), row.columns.end());
+        whole.values.insert(whole.values.end(), row.values.begin(), row.values.end());
+        whole.visibility.insert(whole.visibility.end(), row.visibility.begin(), row.visibility.end());
+        whole.begin.push_back(whole.columns.size());
+    }
+    return whole;
+}
+
+double FormFactorMatrix::environment(std::uint32_t i) const {
+    return blocks_[i / block_rows].environment[i % block_rows];
+}
+
+double FormFactorMatrix::blocked(std::uint32_t i) const {
+    return blocks_[i / block_rows].blocked[i % block_rows];
 }
 
 bool FormFactorMatrix::known(std::uint32_t i) const {
@@ -146,15 +257,27 @@ bool FormFactorMatrix::all_known() const {
 }
 
 bool FormFactorMatrix::has_visibility() const noexcept {
-    return entries() > 0 && std::all_of(blocks_.begin(), blocks_.end(), [](const RowBlock& block) {
-               return block.visibility.size() == block.values.size();
+    return entries() > 0 &&
+           std::all_of(
+               blocks_.begin(), blocks_.end(),
+               [](const RowBlock& block) { return block.visibility.size() == block.values.size(); }) &&
+           std::all_of(packed_.begin(), packed_.end(), [](const PackedEntries& entries) {
+               return entries.size() == 0 || entries.has_visibility();
            });
 }
 
 std::uint64_t FormFactorMatrix::entries() const noexcept {
     std::uint64_t count = 0;
-    for (const RowBlock& block : blocks_) {
-        count += block.columns.size();
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        count += entries(b);
+    }
+    return count;
+}
+
+std::uint64_t FormFactorMatrix::entries(std::size_t b) const noexcept {
+    std::uint64_t count = blocks_[b].columns.size();
+    for (std::uint32_t local = 0; local < blocks_[b].rows() && !packed_.empty(); ++local) {
+        count += packed_[blocks_[b].first_row + local].size();
     }
     return count;
 }
@@ -167,19 +290,37 @@ std::uint64_t FormFactorMatrix::memory_bytes() const noexcept {
         bytes += (block.environment.size() + block.blocked.size()) * sizeof(double);
         bytes += block.known.size();
     }
+    for (const PackedEntries& entries : packed_) {
+        bytes += sizeof(entries) + entries.bytes();
+    }
     return bytes;
 }
 
 void FormFactorMatrix::set_block(RowBlock block) {
     check_shape(block, size_);
     for (std::uint32_t local = 0; local < block.rows(); ++local) {
-        check_row(block, local, columns_);
+        check_row(block, local, size_, columns_);
     }
-    blocks_[block.first_row / block_rows] = std::move(block);
+    RowBlock& place = blocks_[block.first_row / block_rows];
+    if (packed_.empty()) {
+        place = std::move(block);
+    } else {
+        place = without_clusters(block, size_, std::span(packed_).subspan(block.first_row, block.rows()));
+    }
 }
 
 std::vector<RowBlock> FormFactorMatrix::take_blocks() {
-    return std::exchange(blocks_, FormFactorMatrix(size_).blocks_);
+    std::vector<RowBlock> blocks;
+    if (packed_.empty()) {
+        blocks = std::move(blocks_);
+    } else {
+        for (std::size_t b = 0; b < blocks_.size(); ++b) {
+            blocks.push_back(block(b));
+        }
+        std::fill(packed_.begin(), packed_.end(), PackedEntries());
+    }
+    blocks_ = FormFactorMatrix(size_).blocks_;
+    return blocks;
 }
 
 } // namespace hemi

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace hemi {
@@ -19,24 +20,42 @@ enum class PairEntries {
     all                ///< each adds to w_ij and w_ji, whether or not there is one at (j, i)
 };
 
+/// Rows that lie in blocks, as PairProduct takes them.
+class RowsOfBlocks {
+public:
+    /// @param blocks  must outlive this
+    explicit RowsOfBlocks(std::span<const RowBlock> blocks) : blocks_(blocks) {}
+
+    [[nodiscard]] RowView row(std::uint32_t i) const {
+        return block_of(blocks_, i).row(i % FormFactorMatrix::block_rows);
+    }
+
+private:
+    std::span<const RowBlock> blocks_;
+};
+
 /// Products of a symmetric matrix over pairs of patches with a field: y_i = sum_j w_ij z_j. Rows are summed
 /// by slice and then in the order of slices: the same bits on any number of threads, and on any number of
 /// ranks, which share the slices. Memory: up to 16 fields.
+/// @tparam Rows  RowsOfBlocks or a FormFactorMatrix: row(i) is a RowView
+template <class Rows>
 class PairProduct {
 public:
+    /// @param rows     must outlive this
+    /// @param cuts     slices of the rows, see slice_rows()
     /// @param columns  of the rows: as many as rows, or more, which then have no rows
     /// @param entries  that count
     /// @param stride   values a column, side by side: 1, 2 or a multiple of 4
-    PairProduct(std::span<const RowBlock> blocks, std::uint32_t columns, PairEntries entries,
+    PairProduct(const Rows& rows, std::vector<std::uint32_t> cuts, std::uint32_t columns, PairEntries entries,
                 std::size_t stride)
-        : blocks_(blocks), columns_(columns), entries_(entries), stride_(stride), cuts_(slice_rows(blocks)) {
+        : rows_(rows), columns_(columns), entries_(entries), stride_(stride), cuts_(std::move(cuts)) {
         for (std::size_t s = 0; s + 1 < cuts_.size(); ++s) {
             partial_.emplace_back((columns_ - first_column(s)) * stride_);
         }
     }
 
-    /// @param weight_of  weight_of(block, row): a function of an entry's position in the block, the weight
-    ///   of its pair over `scale(row)`
+    /// @param weight_of  weight_of(view, row): a function of an entry's position in the row, the weight of
+    ///   its pair over `scale(row)`
     /// @param z,y  columns·stride values
     template <class Scale, class WeightOf>
     void apply(const Scale& scale, const WeightOf& weight_of, const double* z, double* y) {
@@ -46,7 +65,8 @@ public:
             for (std::size_t s = first_slice + begin; s < first_slice + end; ++s) {
                 std::fill(partial_[s].begin(), partial_[s].end(), 0.0);
                 for (std::uint32_t i = cuts_[s]; i < cuts_[s + 1]; ++i) {
-                    add_row(s, i, scale(i), weight_of(block_of(blocks_, i), i), z);
+                    const RowView row = rows_.row(i);
+                    add_row(s, row, i, scale(i), weight_of(row, i), z);
                 }
             }
         });
@@ -93,40 +113,43 @@ private:
     }
 
     template <class Weight>
-    void add_row(std::size_t slice, std::uint32_t i, double scale, const Weight& weight, const double* z) {
-        const RowBlock& block = block_of(blocks_, i);
-        const std::uint32_t local = i % FormFactorMatrix::block_rows;
-        const std::uint64_t begin =
-            entries_ == PairEntries::all ? block.begin[local] : first_from(block, local, i + 1);
-        const std::uint64_t end = block.begin[local + 1];
+    void add_row(std::size_t slice, const RowView& row, std::uint32_t i, double scale, const Weight& weight,
+                 const double* z) {
+        const std::span<const std::uint32_t> columns = row.columns;
+        const std::size_t begin =
+            entries_ == PairEntries::all
+                ? 0
+                : static_cast<std::size_t>(std::upper_bound(columns.begin(), columns.end(), i) -
+                                           columns.begin());
         double* const y = partial_[slice].data();
         const std::size_t first = first_column(slice);
         if (stride_ == 1) {
-            add_entries<1>(block, begin, end, i, scale, weight, z, y, first);
+            add_entries<1>(columns, begin, i, scale, weight, z, y, first);
         } else if (stride_ == 2) {
-            add_entries<2>(block, begin, end, i, scale, weight, z, y, first);
+            add_entries<2>(columns, begin, i, scale, weight, z, y, first);
         } else {
             for (std::size_t c = 0; c < stride_; c += 4) {
-                add_entries<4>(block, begin, end, i, scale, weight, z + c, y + c, first);
+                add_entries<4>(columns, begin, i, scale, weight, z + c, y + c, first);
             }
         }
     }
 
     /// Both directions of the pairs of one row, for `width` neighbouring channels.
     template <std::size_t width, class Weight>
-    void add_entries(const RowBlock& block, std::uint64_t begin, std::uint64_t end, std::uint32_t i,
+    void add_entries(std::span<const std::uint32_t> all_columns, std::size_t begin, std::uint32_t i,
                      double scale, const Weight& weight, const double* z, double* y,
                      std::size_t first) const {
         // Independent partial sums hide the latency of the additions; as many for every width, so that all
         // channels are summed alike.
         constexpr std::size_t lanes = 4;
-        const std::uint32_t* const columns = block.columns.data();
+        const std::uint32_t* const columns = all_columns.data();
+        const std::size_t end = all_columns.size();
         std::array<std::array<double, width>, lanes> sums{};
         std::array<double, width> from_i{};
         for (std::size_t c = 0; c < width; ++c) {
             from_i[c] = scale * z[i * stride_ + c];
         }
-        const auto add = [&](std::uint64_t k, std::array<double, width>& sum) {
+        const auto add = [&](std::size_t k, std::array<double, width>& sum) {
             const double w = weight(k);
             const std::size_t j = columns[k];
             const double* const z_j = z + j * stride_;
@@ -136,7 +159,7 @@ private:
                 y_j[c] += w * from_i[c];
             }
         };
-        std::uint64_t k = begin;
+        std::size_t k = begin;
         for (; k + lanes <= end; k += lanes) {
             for (std::size_t lane = 0; lane < lanes; ++lane) {
                 add(k + lane, sums[lane]);
@@ -150,7 +173,7 @@ private:
         }
     }
 
-    std::span<const RowBlock> blocks_;
+    const Rows& rows_;
     std::uint32_t columns_;
     PairEntries entries_;
     std::size_t stride_;

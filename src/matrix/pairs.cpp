@@ -22,24 +22,38 @@ void check_areas(const FormFactorMatrix& factors, std::span<const double> areas)
     }
 }
 
-std::vector<std::uint32_t> slice_rows(std::span<const RowBlock> blocks) {
+namespace {
+
+/// @param count  entries of a block by its position
+template <class Count>
+std::vector<std::uint32_t> cut(std::span<const RowBlock> blocks, const Count& count) {
     constexpr std::uint64_t max_slices = 16;
     constexpr std::uint64_t min_entries = 1 << 18; // in a slice; below, a thread costs more than it gains
     std::uint64_t entries = 0;
-    for (const RowBlock& block : blocks) {
-        entries += block.columns.size();
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        entries += count(b);
     }
     const std::uint64_t slices = std::clamp<std::uint64_t>(entries / min_entries, 1, max_slices);
     std::vector<std::uint32_t> cuts{0};
     std::uint64_t before = 0;
-    for (const RowBlock& block : blocks) {
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
         if (cuts.size() < slices && before * slices >= cuts.size() * entries) {
-            cuts.push_back(block.first_row);
+            cuts.push_back(blocks[b].first_row);
         }
-        before += block.columns.size();
+        before += count(b);
     }
     cuts.push_back(blocks.empty() ? 0 : blocks.back().first_row + blocks.back().rows());
     return cuts;
+}
+
+} // namespace
+
+std::vector<std::uint32_t> slice_rows(std::span<const RowBlock> blocks) {
+    return cut(blocks, [blocks](std::size_t b) { return blocks[b].columns.size(); });
+}
+
+std::vector<std::uint32_t> slice_rows(const FormFactorMatrix& factors) {
+    return cut(factors.blocks(), [&factors](std::size_t b) { return factors.entries(b); });
 }
 
 } // namespace hemi

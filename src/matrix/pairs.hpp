@@ -45,6 +45,8 @@ void visit_unknown_left(std::span<const RowBlock> blocks, std::uint32_t i, const
 /// Where rows are cut for threads: slice s is rows [cuts[s], cuts[s + 1]), whole blocks with about equal
 /// numbers of entries. Depends on the matrix alone, so that sums over slices do not depend on the machine.
 [[nodiscard]] std::vector<std::uint32_t> slice_rows(std::span<const RowBlock> blocks);
+/// The same, of all entries, those of clusters too.
+[[nodiscard]] std::vector<std::uint32_t> slice_rows(const FormFactorMatrix& factors);
 
 /// Stands for an entry that is not stored.
 inline constexpr std::uint64_t not_stored = ~std::uint64_t{0};

@@ -38,7 +38,7 @@ double lost_share(const FormFactors& file) {
     double area = 0.0;
     for (std::uint32_t i = 0; i < file.matrix.size(); ++i) {
         if (file.matrix.known(i)) {
-            lost += file.areas[i] * file.matrix.row(i).environment;
+            lost += file.areas[i] * file.matrix.environment(i);
             area += file.areas[i];
         }
     }
@@ -119,7 +119,7 @@ void examine_columns(Diagnosis& diagnosis, const FormFactors& file, const PatchM
     const std::vector<bool> seen = seen_patches(factors);
     std::vector<Unit> units(mesh != nullptr ? mesh->surfaces().size() : file.groups.size());
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        const bool buried = factors.row(i).blocked > buried_above;
+        const bool buried = factors.blocked(i) > buried_above;
         const std::uint32_t index = mesh != nullptr ? mesh->surface_of()[i] : file.group_of[i];
         Unit& unit = units[index];
         unit.group = file.group_of[i];
@@ -182,7 +182,7 @@ void set_apart_outside(Diagnosis& diagnosis, const FormFactors& file, double max
     const FormFactorMatrix& factors = file.matrix;
     std::vector<bool> outside(factors.size());
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
-        outside[i] = factors.row(i).environment > max_row_error;
+        outside[i] = factors.environment(i) > max_row_error;
     }
     std::vector<double> inside(factors.columns(), 0.0); // of patches 1 or 0, of clusters the share of them
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
@@ -220,7 +220,7 @@ void set_apart_outside(Diagnosis& diagnosis, const FormFactors& file, double max
     }
     for (std::uint32_t i = 0; i < factors.size(); ++i) {
         if (outside[i]) {
-            diagnosis.outside.push_back({i, factors.row(i).environment});
+            diagnosis.outside.push_back({i, factors.environment(i)});
         }
     }
     for (std::vector<PatchFinding>* findings :
@@ -266,7 +266,7 @@ EnclosureFinding find_leaks(const FormFactors& factors, double max_row_error) {
     finding.declared = factors.enclosure == Enclosure::closed;
     bool leaks = false;
     for (std::uint32_t i = 0; i < matrix.size(); ++i) {
-        const double share = matrix.known(i) ? matrix.row(i).environment : 0.0;
+        const double share = matrix.known(i) ? matrix.environment(i) : 0.0;
         leaks = leaks || share > 0.0;
         if (finding.declared && share > max_row_error) {
             finding.leaks.push_back(i);
@@ -274,7 +274,7 @@ EnclosureFinding find_leaks(const FormFactors& factors, double max_row_error) {
     }
     finding.closed = finding.declared || (factors.enclosure == Enclosure::automatic && !leaks);
     std::stable_sort(finding.leaks.begin(), finding.leaks.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return matrix.row(a).environment > matrix.row(b).environment;
+        return matrix.environment(a) > matrix.environment(b);
     });
     return finding;
 }

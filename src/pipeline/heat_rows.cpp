@@ -187,7 +187,7 @@ ExchangeNetwork make_network(const FormFactors& factors, const HeatProblem& prob
     constexpr double all_of_it = 0.999;
     std::vector<std::uint8_t> isolated(size, 0);
     for (std::uint32_t i = 0; i < size; ++i) {
-        isolated[i] = factors.matrix.row(i).blocked > all_of_it ? 1 : 0;
+        isolated[i] = factors.matrix.blocked(i) > all_of_it ? 1 : 0;
     }
     return ExchangeNetwork(factors.matrix, factors.areas, shares_of_environment(factors),
                            std::move(isolated));
@@ -203,7 +203,7 @@ std::vector<double> shares_of_environment(const FormFactors& factors) {
         return shares;
     }
     for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
-        shares[i] = factors.matrix.row(i).environment;
+        shares[i] = factors.matrix.environment(i);
     }
     return shares;
 }
@@ -239,7 +239,7 @@ void refuse_singular(const FormFactors& factors, const HeatProblem& problem, con
         Enclosed& enclosed = all[root(enclosure[i])];
         const double area = factors.areas[i] * problem.unit * problem.unit;
         enclosed.held = enclosed.held || holds(problem, i);
-        enclosed.seen = enclosed.seen || factors.matrix.row(i).blocked <= buried_above;
+        enclosed.seen = enclosed.seen || factors.matrix.blocked(i) <= buried_above;
         enclosed.lost += area * network.environment()[i];
         enclosed.area += area;
         enclosed.groups.insert(factors.group_of[i]);

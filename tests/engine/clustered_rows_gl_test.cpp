@@ -95,8 +95,8 @@ public:
 void check_same_rows(const FormFactorMatrix& a, const FormFactorMatrix& b) {
     REQUIRE(a.blocks().size() == b.blocks().size());
     for (std::size_t k = 0; k < a.blocks().size(); ++k) {
-        const RowBlock& one = a.blocks()[k];
-        const RowBlock& other = b.blocks()[k];
+        const RowBlock one = a.block(k);
+        const RowBlock other = b.block(k);
         CHECK(one.known == other.known);
         CHECK(one.begin == other.begin);
         CHECK(one.columns == other.columns);

@@ -154,7 +154,7 @@ void seed_clustered_rows(const fs::path& folder) {
     io::CheckpointFile checkpoint(folder / "a", false);
     checkpoint.start({{"seed", "0"}}, FormFactorMatrix(2, small_clusters()), {});
     const std::vector<std::uint8_t> marks{1, 0};
-    checkpoint.append(clustered_matrix().blocks().front(), marks);
+    checkpoint.append(clustered_matrix().block(0), marks);
 }
 
 void seed_glb(const fs::path& folder) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hemi/core/row_memory.hpp"
+#include "hemi/matrix/packed_entries.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,8 @@ struct RowView {
     std::span<const std::uint8_t> visibility = {};
     double environment = 0.0; ///< e_i, share that meets nothing
     double blocked = 0.0;     ///< b_i, share that meets back faces
+    /// Keeps alive what was unpacked for this view; null where the spans lie in the matrix.
+    std::shared_ptr<const std::byte[]> unpacked = {};
 
     /// Sum of the values, in double, in column order.
     [[nodiscard]] double sum() const;
@@ -44,6 +47,8 @@ struct RowBlock {
 
     /// Number of rows, known or not.
     [[nodiscard]] std::uint32_t rows() const noexcept { return static_cast<std::uint32_t>(known.size()); }
+    /// Row first_row + local, valid while the block is.
+    [[nodiscard]] RowView row(std::uint32_t local) const;
 };
 
 /// Form factors F(i, j) of N patches: compressed sparse rows (float32 values, 32-bit columns) in independent
@@ -51,8 +56,8 @@ struct RowBlock {
 ///
 /// In scenes of very many patches, far sources may stand together in clusters: columns from N on are the
 /// nodes of SourceClusters. Such factors are neither square nor reciprocal, but the rows balance as others
-/// do. Memory: 8 bytes an entry (9 with visibility), or none where keep_rows_in() has a file for them, plus
-/// about 25 bytes a row.
+/// do; what comes from clusters is PackedEntries. Memory: 8 bytes an entry (9 with visibility), 4 or 5 of a
+/// cluster, or none where keep_rows_in() has a file for them, plus about 25 bytes a row.
 class FormFactorMatrix {
 public:
     /// Rows in every block but the last.
@@ -69,8 +74,12 @@ public:
     [[nodiscard]] const std::shared_ptr<const SourceClusters>& clusters() const noexcept { return clusters_; }
     /// Number of columns: N, and one for every cluster.
     [[nodiscard]] std::uint32_t columns() const noexcept { return columns_; }
-    /// Row i, valid until its block is replaced; empty if it is not known.
+    /// Row i, valid until its block is replaced; empty if it is not known. What is packed in it is unpacked.
     [[nodiscard]] RowView row(std::uint32_t i) const;
+    /// e_i of row i, for which nothing is unpacked; 0 if it is not known.
+    [[nodiscard]] double environment(std::uint32_t i) const;
+    /// b_i of row i, likewise.
+    [[nodiscard]] double blocked(std::uint32_t i) const;
     /// Whether row i was computed; `solve` leaves out rows that the scene does not require.
     [[nodiscard]] bool known(std::uint32_t i) const;
     /// Whether every row was computed.
@@ -82,21 +91,27 @@ public:
     /// Bytes that the rows take, in memory or in a file.
     [[nodiscard]] std::uint64_t memory_bytes() const noexcept;
 
-    /// All blocks, in the order of their rows.
+    /// All blocks, in the order of their rows. Where there are clusters, their entries are not in them.
     [[nodiscard]] std::span<const RowBlock> blocks() const noexcept { return blocks_; }
+    /// A copy of block b, with the entries of clusters.
+    [[nodiscard]] RowBlock block(std::size_t b) const;
     /// Replaces the block that starts at `block.first_row`.
     /// @throws InvalidArgument if it does not fit the matrix: wrong first row or row count, offsets that do
-    ///   not ascend, columns out of range or not ascending, values that are not finite or negative, a
-    ///   visibility of another length than the values.
+    ///   not ascend, columns out of range or not ascending, values that are not finite or negative, 2 or more
+    ///   for a cluster, a visibility of another length than the values.
     void set_block(RowBlock block);
-    /// All blocks, to be changed and set again; until then every row is unknown.
+    /// All blocks, with the entries of clusters, to be changed and set again; until then every row is
+    /// unknown.
     [[nodiscard]] std::vector<RowBlock> take_blocks();
+    /// Stored entries of block b.
+    [[nodiscard]] std::uint64_t entries(std::size_t b) const noexcept;
 
 private:
     std::uint32_t size_;
     std::uint32_t columns_;
     std::shared_ptr<const SourceClusters> clusters_;
-    std::vector<RowBlock> blocks_;
+    std::vector<RowBlock> blocks_;      ///< without entries of clusters
+    std::vector<PackedEntries> packed_; ///< entries of clusters of every row, if there are clusters
 };
 
 } // namespace hemi

@@ -205,7 +205,7 @@ std::vector<double> power_to_backs(const FormFactors& factors, const HeatSolutio
             leaving += factors.areas[i] * solution.radiosity[std::size_t{i} * solution.bands + k];
         }
         all += leaving;
-        shares[factors.group_of[i]] += leaving * factors.matrix.row(i).blocked;
+        shares[factors.group_of[i]] += leaving * factors.matrix.blocked(i);
     }
     for (double& share : shares) {
         share = all > 0.0 ? share / all : 0.0;

@@ -43,6 +43,12 @@ void append(RowBlock& block, const EntryList& entries) {
     }
 }
 
+void append(RowBlock& block, const PackedEntries& entries) {
+    entries.visit([&block](std::uint32_t column, float value, std::uint8_t visibility) {
+        append(block, {column, value, visibility});
+    });
+}
+
 void reserve(RowBlock& block, std::size_t entries) {
     block.columns.reserve(entries);
     block.values.reserve(entries);
@@ -151,12 +157,14 @@ private:
         const auto far = std::lower_bound(row.columns.begin(), row.columns.end(), mesh_.size());
         const auto near = static_cast<std::size_t>(far - row.columns.begin());
         std::vector<ClusterEntry> entries;
-        for (std::size_t k = 0; k < row.columns.size(); ++k) {
+        for (std::size_t k = 0; k < near; ++k) {
             entries.push_back({row.columns[k], row.values[k], row.visibility[k]});
         }
-        const std::span all(entries);
-        rows_[patch] = {EntryList(all.first(near)), EntryList(all.subspan(near)), row.environment,
-                        row.blocked, hides};
+        rows_[patch] = {EntryList(entries),
+                        {row.columns.subspan(near), row.values.subspan(near), row.visibility.subspan(near)},
+                        row.environment,
+                        row.blocked,
+                        hides};
         there_[patch] = 1;
         made_.push_back(patch);
         --missing_[patch / FormFactorMatrix::block_rows];
@@ -227,19 +235,23 @@ private:
                 const ClusteredRow& row = rows_[made_[k]];
                 heads.push_back({made_[k], row.near.size(), row.far.size(), row.environment, row.blocked,
                                  row.hides ? 1u : 0u});
-                for (const EntryList* const list : {&row.near, &row.far}) {
-                    for (std::uint32_t e = 0; e < list->size(); ++e) {
-                        entries.push_back((*list)[e]);
-                    }
+                for (std::uint32_t e = 0; e < row.near.size(); ++e) {
+                    entries.push_back(row.near[e]);
                 }
+                row.far.visit([&](std::uint32_t column, float value, std::uint8_t visibility) {
+                    entries.push_back({column, value, visibility});
+                });
             }
             heads = gather_values(ranks(), std::span<const Head>(heads));
             entries = gather_values(ranks(), std::span<const ClusterEntry>(entries));
             auto next = entries.begin();
+            EntryArrays of_clusters;
             for (const Head& head : heads) {
                 const auto far = next + static_cast<std::ptrdiff_t>(head.near);
                 const auto end = far + static_cast<std::ptrdiff_t>(head.far);
-                rows_[head.patch] = {EntryList({next, far}), EntryList({far, end}), head.environment,
+                of_clusters.clear();
+                std::for_each(far, end, [&](const ClusterEntry& entry) { of_clusters.add(entry); });
+                rows_[head.patch] = {EntryList({next, far}), of_clusters.packed(), head.environment,
                                      head.blocked, head.hides != 0};
                 bytes_ += rows_[head.patch].bytes();
                 next = end;
@@ -370,15 +382,14 @@ private:
         for (std::size_t k = 0; k < near.columns.size() && shared; ++k) {
             variances += variance(static_cast<double>(near.values[k]), near.visibility[k]);
         }
-        for (std::uint32_t k = 0; k < row.far.size(); ++k) {
-            variances += variance(static_cast<double>(row.far[k].value), row.far[k].visibility);
-        }
-        for (std::uint32_t k = 0; k < row.far.size(); ++k) {
-            const auto value = static_cast<double>(row.far[k].value);
-            row.far.set_value(
-                k, static_cast<float>(
-                       std::max(0.0, value + missing * variance(value, row.far[k].visibility) / variances)));
-        }
+        row.far.visit([&](std::uint32_t, float value, std::uint8_t visibility) {
+            variances += variance(static_cast<double>(value), visibility);
+        });
+        row.far.change_values([&](float old, std::uint8_t visibility) {
+            const auto value = static_cast<double>(old);
+            return static_cast<float>(
+                std::max(0.0, value + missing * variance(value, visibility) / variances));
+        });
     }
 
     std::vector<ClusteredRow>& rows_;
@@ -441,9 +452,9 @@ private:
             add({near.columns[k], near.values[k], near.visibility[k]});
         }
         const ClusteredRow& row = rows_[i];
-        for (std::uint32_t k = 0; k < row.far.size(); ++k) {
-            add(row.far[k]);
-        }
+        row.far.visit([&](std::uint32_t column, float of_cluster, std::uint8_t seen) {
+            add({column, of_cluster, seen});
+        });
         return evidence_of({columns, values, visibility, row.environment, row.blocked}, row.hides, rule);
     }
 

@@ -33,16 +33,15 @@ ClusteredRow RowMaker::make(const SeenRow& seen, const SetPlaces* places) {
         sums_.add_set(*places, joint.set, seen_share(joint.share, joint.texels));
     }
     sums_.finish();
-    const auto entries_of = [this](std::span<const Source> sources) {
-        entries_.clear();
-        for (const Source& source : sources) {
-            entries_.push_back(entry_of(source));
-        }
-        return EntryList(entries_);
-    };
-    EntryList near = entries_of(sums_.near());
-    EntryList far = entries_of(sums_.far());
-    return {std::move(near), std::move(far), seen.environment, seen.blocked, sums_.hides()};
+    entries_.clear();
+    for (const Source& source : sums_.near()) {
+        entries_.push_back(entry_of(source));
+    }
+    far_.clear();
+    for (const Source& source : sums_.far()) {
+        far_.add(entry_of(source));
+    }
+    return {EntryList(entries_), far_.packed(), seen.environment, seen.blocked, sums_.hides()};
 }
 
 } // namespace hemi

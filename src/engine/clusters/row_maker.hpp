@@ -5,6 +5,7 @@
 #include "hemi/core/row_memory.hpp"
 #include "hemi/engine/exchange_area.hpp"
 #include "hemi/engine/visibility_provider.hpp"
+#include "hemi/matrix/packed_entries.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 
 #include <bit>
@@ -22,7 +23,7 @@ struct ClusterEntry {
     std::uint8_t visibility;
 };
 
-/// Entries of a row, 9 bytes each: all rows together are what takes most of the memory.
+/// Entries of a row, 9 bytes each.
 class EntryList {
 public:
     EntryList() = default;
@@ -30,7 +31,7 @@ public:
         : size_(static_cast<std::uint32_t>(entries.size())), words_(entries.empty() ? 0 : word_count()) {
         for (std::uint32_t k = 0; k < size_; ++k) {
             words_[k] = entries[k].column;
-            set_value(k, entries[k].value);
+            words_[size_ + k] = std::bit_cast<std::uint32_t>(entries[k].value);
             reinterpret_cast<std::uint8_t*>(&words_[2 * std::size_t{size_}])[k] = entries[k].visibility;
         }
     }
@@ -39,15 +40,6 @@ public:
     [[nodiscard]] ClusterEntry operator[](std::uint32_t k) const {
         return {words_[k], std::bit_cast<float>(words_[size_ + k]),
                 reinterpret_cast<const std::uint8_t*>(&words_[2 * std::size_t{size_}])[k]};
-    }
-    void set_value(std::uint32_t k, float value) { words_[size_ + k] = std::bit_cast<std::uint32_t>(value); }
-    /// Of all values, in double, in their order.
-    [[nodiscard]] double sum() const {
-        double sum = 0.0;
-        for (std::uint32_t k = 0; k < size_; ++k) {
-            sum += static_cast<double>((*this)[k].value);
-        }
-        return sum;
     }
     [[nodiscard]] std::size_t bytes() const { return size_ > 0 ? word_count() * sizeof(std::uint32_t) : 0; }
 
@@ -58,10 +50,29 @@ private:
     RowArray<std::uint32_t> words_; ///< columns, values, and four codes of visibility in each
 };
 
+/// Entries as separate arrays.
+struct EntryArrays {
+    std::vector<std::uint32_t> columns;
+    std::vector<float> values;
+    std::vector<std::uint8_t> visibility;
+
+    void clear() {
+        columns.clear();
+        values.clear();
+        visibility.clear();
+    }
+    void add(const ClusterEntry& entry) {
+        columns.push_back(entry.column);
+        values.push_back(entry.value);
+        visibility.push_back(entry.visibility);
+    }
+    [[nodiscard]] PackedEntries packed() const { return {columns, values, visibility}; }
+};
+
 /// One row while all are computed.
 struct ClusteredRow {
-    EntryList near; ///< patches, ascending
-    EntryList far;  ///< clusters, ascending
+    EntryList near;    ///< patches, ascending
+    PackedEntries far; ///< clusters, ascending: nearly all entries, and most of the memory
     double environment = 0.0;
     double blocked = 0.0;
     bool hides = false; ///< whether it sees nothing of some patch that faces it
@@ -97,6 +108,7 @@ private:
     SourceSums sums_;
     std::vector<ClusterTree::Part> parts_; ///< what the patch sees
     std::vector<ClusterEntry> entries_;
+    EntryArrays far_;
 };
 
 } // namespace hemi

@@ -267,8 +267,12 @@ void write_hff(const std::filesystem::path& path, const FormFactors& file) {
     if (has_clusters(file)) {
         write_clusters(writer, *file.matrix.clusters());
     }
-    for (const RowBlock& block : file.matrix.blocks()) {
-        write_row_block(writer.sink(), "ROWS", block);
+    for (std::size_t b = 0; b < file.matrix.blocks().size(); ++b) {
+        if (has_clusters(file)) {
+            write_row_block(writer.sink(), "ROWS", file.matrix.block(b));
+        } else {
+            write_row_block(writer.sink(), "ROWS", file.matrix.blocks()[b]);
+        }
     }
     for (const std::uint32_t first_row : known_blocks(file.reference)) {
         write_row_block(writer.sink(), "REFR",
