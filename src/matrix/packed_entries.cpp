@@ -40,14 +40,28 @@ PackedEntries::PackedEntries(std::span<const std::uint32_t> columns, std::span<c
 
 void PackedEntries::unpack(std::uint32_t* columns, float* values, std::uint8_t* visibility) const {
     const std::uint8_t* step = steps();
+    const std::uint8_t* const end = bytes_.data() + bytes_.size();
     std::uint32_t column = 0;
-    for (std::uint32_t k = 0; k < size_; ++k) {
-        column += next_step(step);
-        columns[k] = column;
+    for (std::uint32_t k = 0; k < size_;) {
+        std::uint64_t next = ~std::uint64_t{0};
+        if (end - step >= static_cast<std::ptrdiff_t>(sizeof(next))) {
+            std::memcpy(&next, step, sizeof(next));
+        }
+        if ((next & 0x8080808080808080U) == 0) { // as many steps of a byte each
+            for (std::size_t b = 0; b < sizeof(next); ++b) {
+                column += *step++;
+                columns[k++] = column;
+            }
+        } else {
+            column += next_step(step);
+            columns[k++] = column;
+        }
     }
-    const std::uint8_t* const packed = bytes_.data();
-    for (std::uint32_t k = 0; k < size_; ++k) {
-        values[k] = value_at(packed + bytes_a_value * k);
+    const std::uint8_t* const upper = bytes_.data();
+    const std::uint8_t* const low = lower();
+    const std::size_t count = size_;
+    for (std::size_t k = 0; k < count; ++k) {
+        values[k] = value_at(upper, low, k);
     }
     if (has_visibility_) {
         std::copy_n(codes(), size_, visibility);
@@ -68,10 +82,9 @@ void PackedEntries::set_value(std::uint32_t k, float value) {
     constexpr std::uint32_t largest = (1U << (8U * bytes_a_value)) - 1U;
     const std::uint32_t code =
         bits + half < smallest ? 0 : std::min(largest, ((bits + half - smallest) >> dropped_bits) + 1U);
-    std::uint8_t* const at = &bytes_[bytes_a_value * k];
-    at[0] = static_cast<std::uint8_t>(code);
-    at[1] = static_cast<std::uint8_t>(code >> 8U);
-    at[2] = static_cast<std::uint8_t>(code >> 16U);
+    const auto upper = static_cast<std::uint16_t>(code >> 8U);
+    std::memcpy(&bytes_[sizeof(upper) * k], &upper, sizeof(upper));
+    bytes_[2 * std::size_t{size_} + k] = static_cast<std::uint8_t>(code);
 }
 
 } // namespace hemi

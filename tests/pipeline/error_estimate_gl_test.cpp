@@ -133,7 +133,7 @@ void judge(const KnownScene& scene, const Trial& trial, std::uint64_t seed, Fact
            std::vector<LightTallies>& by_light) {
     FactorSettings settings = trial.settings;
     settings.seed = seed;
-    settings.engine.device = "osmesa";
+    settings.engine.device = cpu_device;
     settings.engine.jobs = 1;
     const FormFactors found_factors = compute_form_factors(scene.scene, scene.mesh, settings);
     const FormFactorMatrix& factors = found_factors.matrix;

@@ -136,6 +136,7 @@ Scene furnished_room(std::uint32_t seed) {
 TEST_CASE("Imprint: in furnished rooms all light that is emitted is absorbed", "[imprint][slow]") {
     FactorSettings settings;
     settings.engine.device = cpu_device;
+    settings.preset = Preset::fast;
     settings.estimate_error = false;
     SolverSettings solver;
     solver.tolerance = 1e-10;

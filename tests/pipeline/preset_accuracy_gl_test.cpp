@@ -22,14 +22,15 @@ struct Computed {
     double seconds = 0.0; ///< for the factors
 };
 
-/// Raw factors of a scene by a preset as it ships, on software OpenGL.
-Computed compute(const Scene& scene, Preset preset, std::optional<std::uint32_t> shadow_rays = {}) {
+/// Raw factors of a scene by a preset as it ships.
+Computed compute(const Scene& scene, Preset preset, std::string_view device = "osmesa",
+                 std::optional<std::uint32_t> shadow_rays = {}) {
     const PatchMesh mesh(scene);
     FactorSettings settings;
     settings.preset = preset;
     settings.shadow_rays = shadow_rays;
     settings.estimate_error = false;
-    settings.engine.device = "osmesa";
+    settings.engine.device = device;
     const Stopwatch watch;
     FormFactors factors = compute_raw_form_factors(scene, mesh, all_patches(mesh.size()), settings);
     return {std::move(factors.matrix), watch.seconds()};
@@ -107,11 +108,11 @@ TEST_CASE("presets: a room with two turned boxes, 5,790 patches", "[pipeline][gl
     const PatchMesh mesh(scene);
     const OccludedReference reference(mesh, {"first", "second"}, 14);
     const auto patches = sampled_patches(mesh, 32);
-    const Computed fair = compute(scene, Preset::standard);
+    const Computed fair = compute(scene, Preset::standard, cpu_device);
     const RowErrors default_errors = compare(fair.factors, reference, patches);
-    const Computed best = compute(scene, Preset::exact);
+    const Computed best = compute(scene, Preset::exact, cpu_device);
     const RowErrors exact_errors = compare(best.factors, reference, patches);
-    const Computed without = compute(scene, Preset::standard, 0);
+    const Computed without = compute(scene, Preset::standard, cpu_device, 0);
     const RowErrors errors_without = compare(without.factors, reference, patches);
     INFO(describe("default", default_errors, fair.seconds)
          << "; " << describe("exact", exact_errors, best.seconds) << "; "
@@ -154,7 +155,7 @@ TEST_CASE("presets: the shared cases of 16 patches a face", "[pipeline][gl][slow
             FactorSettings settings;
             settings.preset = limit.preset;
             settings.estimate_error = false;
-            settings.engine.device = "osmesa";
+            settings.engine.device = cpu_device;
             const FormFactors factors = compute_form_factors(scene, mesh, settings);
             const GroupFactors groups = group_factors(factors.matrix, factors.areas, factors.group_of,
                                                       static_cast<std::uint32_t>(factors.groups.size()));

@@ -70,20 +70,25 @@ private:
         }
         return step;
     }
-    [[nodiscard]] const std::uint8_t* codes() const { return bytes_.data() + bytes_a_value * size_; }
-    [[nodiscard]] const std::uint8_t* steps() const {
-        return bytes_.data() + (bytes_a_value + (has_visibility_ ? 1 : 0)) * std::size_t{size_};
-    }
-    [[nodiscard]] float value(std::uint32_t k) const { return value_at(bytes_.data() + bytes_a_value * k); }
-    static float value_at(const std::uint8_t* at) {
-        const std::uint32_t code = at[0] | std::uint32_t{at[1]} << 8U | std::uint32_t{at[2]} << 16U;
+    static float value_of(std::uint32_t code) {
         return code == 0 ? 0.0F : std::bit_cast<float>(smallest + ((code - 1U) << dropped_bits));
     }
+    // Values lie as their upper 16 bits, all, and their lower 8, all: they are unpacked many at a time.
+    static float value_at(const std::uint8_t* upper, const std::uint8_t* lower, std::size_t k) {
+        std::uint16_t bits = 0;
+        std::memcpy(&bits, upper + sizeof(bits) * k, sizeof(bits));
+        return value_of(std::uint32_t{bits} << 8U | lower[k]);
+    }
+    [[nodiscard]] float value(std::uint32_t k) const { return value_at(bytes_.data(), lower(), k); }
     void set_value(std::uint32_t k, float value);
+    [[nodiscard]] const std::uint8_t* lower() const { return bytes_.data() + 2 * std::size_t{size_}; }
+    [[nodiscard]] const std::uint8_t* codes() const { return bytes_.data() + bytes_a_value * size_; }
+    [[nodiscard]] const std::uint8_t* steps() const { return codes() + (has_visibility_ ? size_ : 0); }
 
     std::uint32_t size_ = 0;
     bool has_visibility_ = false;
-    RowArray<std::uint8_t> bytes_; ///< values, codes of visibility, steps from column to column
+    RowArray<std::uint8_t>
+        bytes_; ///< values, codes of visibility, steps from column to column, 7 bits a byte
 };
 
 } // namespace hemi

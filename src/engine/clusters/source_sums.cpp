@@ -206,7 +206,7 @@ double SourceSums::factor_of_point(const Vec3& at, const Vec3& normal) const {
 double SourceSums::factor_of_area(std::uint32_t part, const Stratum& stratum) const {
     const ClusterMoments& own = tree_.moments(stratum.node);
     const SourceClusters::Node& node = tree_.clusters()->nodes()[stratum.node];
-    if (node.child != 0) {
+    if (tree_.clusters()->nodes()[parts_[part].node].child != 0) {
         const ClusterMoments& whole = tree_.moments(parts_[part].node);
         const double projected = glm::length(own.normals);
         const double seen = factor_of_point(whole.centre + whole.spread * (own.centre - whole.centre),
