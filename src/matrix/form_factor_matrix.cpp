@@ -93,19 +93,39 @@ void check_row(const RowBlock& block, std::uint32_t local, std::uint32_t size, s
                                       block.values[k]));
         }
         if (column >= size && !(block.values[k] < PackedEntries::too_large)) {
-            refuse(block,
-                   fmt::format("row {}: {} for a cluster; no factor is above 1", row, block.values[k]));
+            refuse(block, fmt::format("row {}: {} for a cluster; it must be below 2", row, block.values[k]));
         }
     }
 }
 
-/// The entries of a block's row that are clusters.
-std::uint64_t clusters_from(const RowBlock& block, std::uint32_t local, std::uint32_t size) {
+/// Where the entries of clusters of a block's row begin, which begins at `begin`.
+std::uint64_t clusters_from(const RowBlock& block, std::uint32_t local, std::uint64_t begin,
+                            std::uint32_t size) {
     const auto columns = block.columns.begin();
     return static_cast<std::uint64_t>(
-        std::lower_bound(columns + static_cast<std::ptrdiff_t>(block.begin[local]),
+        std::lower_bound(columns + static_cast<std::ptrdiff_t>(begin),
                          columns + static_cast<std::ptrdiff_t>(block.begin[local + 1]), size) -
         columns);
+}
+
+/// Packed values are as they must be.
+void check_packed(const RowBlock& block, std::uint32_t local, const PackedEntries& entries,
+                  std::uint32_t size, std::uint32_t all_columns) {
+    const std::uint32_t row = block.first_row + local;
+    if (block.known[local] == 0 && entries.size() > 0) {
+        refuse(block,
+               fmt::format("row {} is unknown and has {} entries; it must be empty", row, entries.size()));
+    }
+    std::uint64_t next = size;
+    bool ascending = true;
+    entries.visit([&](std::uint32_t column, float /*value*/, std::uint8_t /*visibility*/) {
+        ascending = ascending && column >= next;
+        next = std::uint64_t{column} + 1;
+    });
+    if (!ascending || next > all_columns) {
+        refuse(block,
+               fmt::format("row {}: clusters must ascend from {} and be below {}", row, size, all_columns));
+    }
 }
 
 template <class T>
@@ -113,39 +133,40 @@ std::span<const T> part_of(const RowArray<T>& array, std::uint64_t begin, std::u
     return array.empty() ? std::span<const T>() : std::span(array).subspan(begin, end - begin);
 }
 
-/// The block without entries of clusters, which are packed.
-/// @param size    columns from here on are clusters
-/// @param packed  gets those of every row
-RowBlock without_clusters(const RowBlock& block, std::uint32_t size, std::span<PackedEntries> packed) {
-    RowBlock rest;
-    rest.first_row = block.first_row;
-    rest.environment = block.environment;
-    rest.blocked = block.blocked;
-    rest.known = block.known;
-    rest.begin.assign(1, 0);
+/// Takes the entries of clusters out of a block and packs them.
+/// @param size  columns from here on are clusters
+/// @return those of every row
+std::vector<PackedEntries> take_clusters(RowBlock& block, std::uint32_t size) {
+    std::vector<PackedEntries> packed;
+    std::uint64_t kept = 0;
+    std::uint64_t begin = 0;
     for (std::uint32_t local = 0; local < block.rows(); ++local) {
-        const std::uint64_t begin = block.begin[local];
-        const std::uint64_t far = clusters_from(block, local, size);
+        const std::uint64_t far = clusters_from(block, local, begin, size);
         const std::uint64_t end = block.begin[local + 1];
-        packed[local] = PackedEntries(part_of(block.columns, far, end), part_of(block.values, far, end),
-                                      part_of(block.visibility, far, end));
-        rest.begin.push_back(rest.begin.back() + (far - begin));
-    }
-    rest.columns.reserve(rest.begin.back());
-    rest.values.reserve(rest.begin.back());
-    rest.visibility.reserve(block.visibility.empty() ? 0 : rest.begin.back());
-    for (std::uint32_t local = 0; local < block.rows(); ++local) {
-        const std::uint64_t begin = block.begin[local];
-        const std::uint64_t end = begin + rest.begin[local + 1] - rest.begin[local];
-        const auto append = [&](auto& to, const auto& from) {
-            const auto part = part_of(from, begin, end);
-            to.insert(to.end(), part.begin(), part.end());
+        packed.emplace_back(part_of(block.columns, far, end), part_of(block.values, far, end),
+                            part_of(block.visibility, far, end));
+        const auto move_forward = [&](auto& array) {
+            if (!array.empty()) {
+                const auto at = array.begin();
+                std::copy(at + static_cast<std::ptrdiff_t>(begin), at + static_cast<std::ptrdiff_t>(far),
+                          at + static_cast<std::ptrdiff_t>(kept));
+            }
         };
-        append(rest.columns, block.columns);
-        append(rest.values, block.values);
-        append(rest.visibility, block.visibility);
+        move_forward(block.columns);
+        move_forward(block.values);
+        move_forward(block.visibility);
+        kept += far - begin;
+        begin = end;
+        block.begin[local + 1] = kept;
     }
-    return rest;
+    const auto cut = [kept](auto& array) {
+        array.resize(std::min<std::size_t>(array.size(), kept));
+        array.shrink_to_fit();
+    };
+    cut(block.columns);
+    cut(block.values);
+    cut(block.visibility);
+    return packed;
 }
 
 } // namespace
@@ -301,12 +322,28 @@ void FormFactorMatrix::set_block(RowBlock block) {
     for (std::uint32_t local = 0; local < block.rows(); ++local) {
         check_row(block, local, size_, columns_);
     }
-    RowBlock& place = blocks_[block.first_row / block_rows];
-    if (packed_.empty()) {
-        place = std::move(block);
-    } else {
-        place = without_clusters(block, size_, std::span(packed_).subspan(block.first_row, block.rows()));
+    if (!packed_.empty()) {
+        put(take_clusters(block, size_), block.first_row);
     }
+    blocks_[block.first_row / block_rows] = std::move(block);
+}
+
+void FormFactorMatrix::set_block(RowBlock block, std::vector<PackedEntries> clusters) {
+    check_shape(block, size_);
+    if (packed_.empty() || clusters.size() != block.rows()) {
+        refuse(block, fmt::format("{} rows with and {} without clusters; it must be as many",
+                                  packed_.empty() ? 0 : clusters.size(), block.rows()));
+    }
+    for (std::uint32_t local = 0; local < block.rows(); ++local) {
+        check_row(block, local, size_, size_);
+        check_packed(block, local, clusters[local], size_, columns_);
+    }
+    put(std::move(clusters), block.first_row);
+    blocks_[block.first_row / block_rows] = std::move(block);
+}
+
+void FormFactorMatrix::put(std::vector<PackedEntries> clusters, std::uint32_t first_row) {
+    std::move(clusters.begin(), clusters.end(), packed_.begin() + static_cast<std::ptrdiff_t>(first_row));
 }
 
 std::vector<RowBlock> FormFactorMatrix::take_blocks() {
@@ -317,7 +354,7 @@ std::vector<RowBlock> FormFactorMatrix::take_blocks() {
         for (std::size_t b = 0; b < blocks_.size(); ++b) {
             blocks.push_back(block(b));
         }
-        std::fill(packed_.begin(), packed_.end(), PackedEntries());
+        packed_ = std::vector<PackedEntries>(size_);
     }
     blocks_ = FormFactorMatrix(size_).blocks_;
     return blocks;

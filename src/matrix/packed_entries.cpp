@@ -1,13 +1,18 @@
 #include "hemi/matrix/packed_entries.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace hemi {
 
 namespace {
 
-std::size_t bytes_of_step(std::uint32_t step) {
-    return (static_cast<std::size_t>(std::bit_width(step | 1U)) + 6) / 7;
+/// In as many bytes as it takes, 7 bits in each, the lowest first.
+void append_number(std::vector<std::uint8_t>& bytes, std::uint32_t number) {
+    for (; number >= 128; number >>= 7U) {
+        bytes.push_back(static_cast<std::uint8_t>(number & 127U) | 128U);
+    }
+    bytes.push_back(static_cast<std::uint8_t>(number));
 }
 
 } // namespace
@@ -15,48 +20,29 @@ std::size_t bytes_of_step(std::uint32_t step) {
 PackedEntries::PackedEntries(std::span<const std::uint32_t> columns, std::span<const float> values,
                              std::span<const std::uint8_t> visibility)
     : size_(static_cast<std::uint32_t>(columns.size())), has_visibility_(!visibility.empty()) {
-    std::size_t bytes = bytes_a_value * values.size() + visibility.size();
+    std::vector<std::uint8_t> steps(size_);
     std::uint32_t before = 0;
-    for (const std::uint32_t column : columns) {
-        bytes += bytes_of_step(column - before);
-        before = column;
+    std::uint32_t last_large = 0;
+    for (std::uint32_t k = 0; k < size_; ++k) {
+        const std::uint32_t step = columns[k] - before;
+        before = columns[k];
+        steps[k] = static_cast<std::uint8_t>(step);
+        if (step > 255) {
+            append_number(steps, k - last_large);
+            append_number(steps, step >> 8U);
+            last_large = k;
+        }
     }
-    bytes_.resize(bytes);
+    bytes_.resize(bytes_a_value * values.size() + visibility.size() + steps.size());
     for (std::uint32_t k = 0; k < size_; ++k) {
         set_value(k, values[k]);
     }
     const auto codes = bytes_.begin() + static_cast<std::ptrdiff_t>(bytes_a_value * values.size());
-    auto at = std::copy(visibility.begin(), visibility.end(), codes);
-    before = 0;
-    for (const std::uint32_t column : columns) {
-        std::uint32_t step = column - before;
-        for (; step >= 128; step >>= 7U) {
-            *at++ = static_cast<std::uint8_t>(step & 127U) | 128U;
-        }
-        *at++ = static_cast<std::uint8_t>(step);
-        before = column;
-    }
+    std::copy(steps.begin(), steps.end(), std::copy(visibility.begin(), visibility.end(), codes));
 }
 
 void PackedEntries::unpack(std::uint32_t* columns, float* values, std::uint8_t* visibility) const {
-    const std::uint8_t* step = steps();
-    const std::uint8_t* const end = bytes_.data() + bytes_.size();
-    std::uint32_t column = 0;
-    for (std::uint32_t k = 0; k < size_;) {
-        std::uint64_t next = ~std::uint64_t{0};
-        if (end - step >= static_cast<std::ptrdiff_t>(sizeof(next))) {
-            std::memcpy(&next, step, sizeof(next));
-        }
-        if ((next & 0x8080808080808080U) == 0) { // as many steps of a byte each
-            for (std::size_t b = 0; b < sizeof(next); ++b) {
-                column += *step++;
-                columns[k++] = column;
-            }
-        } else {
-            column += next_step(step);
-            columns[k++] = column;
-        }
-    }
+    visit_columns([columns](std::uint32_t k, std::uint32_t column) { columns[k] = column; });
     const std::uint8_t* const upper = bytes_.data();
     const std::uint8_t* const low = lower();
     const std::size_t count = size_;

@@ -132,15 +132,14 @@ void measure_clusters(FactorCost& cost, const PatchMesh& mesh, const FactorSetti
         const Stopwatch watch;
         FormFactorMatrix matrix =
             compute_clustered(rows_of_rank(*provider), mesh, rows, clusters, Enclosure::automatic);
-        return std::pair(watch.seconds(),
-                         static_cast<double>(matrix.entries()) / static_cast<double>(rows.size()));
+        return std::pair(watch.seconds(), std::move(matrix));
     };
     const std::uint32_t few = std::max(1u, cost.sampled_rows / 4);
     const double first = time(few).first;
-    const auto [last, entries] = time(cost.sampled_rows);
+    const auto [last, sample] = time(cost.sampled_rows);
     cost.clusters = true;
-    cost.entries_per_row = entries;
-    cost.memory = matrix_memory(entries, mesh.size(), mesh.size());
+    cost.entries_per_row = static_cast<double>(sample.entries()) / cost.sampled_rows;
+    cost.memory = clustered_memory(sample, cost.sampled_rows, mesh.size());
     cost.seconds = few < cost.sampled_rows
                        ? std::max(0.0, last - first) / (cost.sampled_rows - few) * mesh.size()
                        : last / cost.sampled_rows * mesh.size();

@@ -68,10 +68,10 @@ public:
     }
 
     [[nodiscard]] PointDaylight::Environment seen(std::uint32_t i) const {
-        const RowView row = factors_.row(i);
-        if (!factors_.known(i) || !(row.environment > 0.0)) {
+        if (!factors_.known(i) || !(factors_.environment(i) > 0.0)) {
             return {};
         }
+        const RowView row = factors_.row(i);
         const Eyes eyes = eyes_of(i);
         SkyMoments hidden;
         for (std::size_t k = 0; k < row.columns.size(); ++k) {

@@ -24,8 +24,8 @@ constexpr double max_lost_share = 0.001;
 constexpr double reversed_above = 0.1;
 // Of all area: bodies that stick out of a room, not a room with a window beside one without.
 constexpr double max_outside = 0.1;
-// float32 values may round up by a few units in the last place.
-constexpr double rounding = 1e-6;
+// float32 values may round up by a few units in the last place, those of clusters to 2e-6 of themselves.
+constexpr double rounding = 2e-6;
 
 void sort_worst_first(std::vector<PatchFinding>& findings) {
     std::stable_sort(findings.begin(), findings.end(),

@@ -93,7 +93,7 @@ MatrixEstimate estimate_clustered(VisibilityProvider& engine, const PatchMesh& m
                           });
     MatrixEstimate estimate;
     estimate.entries_per_row = static_cast<double>(rows.entries()) / sampled_rows;
-    estimate.memory_bytes = matrix_memory(estimate.entries_per_row, patches.size(), mesh.size());
+    estimate.memory_bytes = clustered_memory(rows, sampled_rows, patches.size());
     estimate.seconds = seconds / sampled_rows * static_cast<double>(patches.size());
     return estimate;
 }

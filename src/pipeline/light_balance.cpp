@@ -35,7 +35,8 @@ std::optional<LightBalance> light_balance(const FormFactors& factors, const Patc
     balance.lost_of_group.resize(factors.groups.size(), 0.0);
     for (std::uint32_t i = 0; i < patches; ++i) {
         const double area = factors.areas[i];
-        const RowView row = factors.matrix.row(i);
+        const double environment = factors.matrix.environment(i);
+        const double blocked = factors.matrix.blocked(i);
         for (std::size_t c = 0; c < channels; ++c) {
             const std::size_t at = i * channels + c;
             if (!factors.matrix.known(i) && (radiosity[at] > 0.0 || is_lit_from_outside)) {
@@ -44,14 +45,14 @@ std::optional<LightBalance> light_balance(const FormFactors& factors, const Patc
             const double counted = weights.empty() ? area : weights[c] * area;
             const double leaving = counted * radiosity[at];
             const double coming =
-                counted * ((values.environment.empty() ? 0.0 : row.environment * values.environment[c]) +
+                counted * ((values.environment.empty() ? 0.0 : environment * values.environment[c]) +
                            (values.direct.empty() ? 0.0 : values.direct[at]));
             balance.emitted += counted * values.exitance[at];
             balance.incoming += counted * values.exitance[at] + coming;
             balance.absorbed += leaving * absorbed_share[at] + coming * absorbing[at];
-            balance.environment += leaving * row.environment - coming;
-            balance.lost += leaving * row.blocked;
-            balance.lost_of_group[factors.group_of[i]] += leaving * row.blocked;
+            balance.environment += leaving * environment - coming;
+            balance.lost += leaving * blocked;
+            balance.lost_of_group[factors.group_of[i]] += leaving * blocked;
         }
     }
     return balance;

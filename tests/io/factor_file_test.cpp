@@ -177,7 +177,8 @@ TEST_CASE("HFF: clusters are kept bit for bit, and must be a tree of all patches
     RowBlock block;
     block.begin = {0, 2, 3, 3, 3};
     block.columns = {1, 6, 5};
-    block.values = {0.25F, 0.5F, 0.75F};
+    block.values = {0.25F, 0.5F, 0.7F}; // the last one takes more than 24 bits
+    block.visibility = {255, 7, 130};
     block.environment = {0.25, 0.25, 1.0, 1.0};
     block.blocked.assign(4, 0.0);
     block.known.assign(4, 1);

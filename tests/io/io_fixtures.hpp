@@ -104,10 +104,12 @@ inline FormFactorMatrix random_matrix(std::uint32_t size, bool all_known, bool w
 inline void require_same_entries(const FormFactorMatrix& a, const FormFactorMatrix& b) {
     REQUIRE(a.size() == b.size());
     for (std::size_t k = 0; k < a.blocks().size(); ++k) {
-        REQUIRE(a.blocks()[k].begin == b.blocks()[k].begin);
-        REQUIRE(a.blocks()[k].columns == b.blocks()[k].columns);
-        REQUIRE(a.blocks()[k].values == b.blocks()[k].values);
-        REQUIRE(a.blocks()[k].visibility == b.blocks()[k].visibility);
+        const RowBlock one = a.block(k);
+        const RowBlock other = b.block(k);
+        REQUIRE(one.begin == other.begin);
+        REQUIRE(one.columns == other.columns);
+        REQUIRE(one.values == other.values);
+        REQUIRE(one.visibility == other.visibility);
     }
 }
 

@@ -176,5 +176,40 @@ TEST_CASE("FormFactorMatrix: entries of clusters take 5 bytes, and rows are whol
     RowBlock wrong = given;
     wrong.values[2] = 2.0F;
     CHECK_THROWS_WITH(matrix.set_block(wrong),
-                      Catch::Contains("row 64: 2 for a cluster; no factor is above 1"));
+                      Catch::Contains("row 64: 2 for a cluster; it must be below 2"));
+}
+
+TEST_CASE("FormFactorMatrix: packed entries of clusters are taken as they are, or refused", "[matrix]") {
+    constexpr std::uint32_t size = 3;
+    FormFactorMatrix matrix(size, clusters_of(size)); // columns 3 to 7 are clusters
+    RowBlock near = matrix.take_blocks()[0];
+    near.known = {1, 0, 1};
+    near.begin = {0, 1, 1, 1};
+    near.columns = {2};
+    near.values = {0.25F};
+    near.visibility = {255};
+    const auto packed = [](std::vector<std::uint32_t> columns) {
+        return PackedEntries(columns, std::vector<float>(columns.size(), 0.5F),
+                             std::vector<std::uint8_t>(columns.size(), 9));
+    };
+    matrix.set_block(near, {packed({3, 7}), PackedEntries(), packed({4})});
+    CHECK(matrix.entries() == 4);
+    const RowView row = matrix.row(0);
+    CHECK(std::vector(row.columns.begin(), row.columns.end()) == std::vector<std::uint32_t>{2, 3, 7});
+    CHECK(std::vector(row.visibility.begin(), row.visibility.end()) == std::vector<std::uint8_t>{255, 9, 9});
+    const RowView other = matrix.row(2);
+    CHECK(std::vector(other.columns.begin(), other.columns.end()) == std::vector<std::uint32_t>{4});
+
+    const auto refused = [&](std::vector<PackedEntries> clusters, const char* why) {
+        CHECK_THROWS_WITH(matrix.set_block(near, std::move(clusters)), Catch::Contains(why));
+    };
+    refused({packed({3})}, "1 rows with and 3 without clusters; it must be as many");
+    refused({packed({2}), PackedEntries(), PackedEntries()},
+            "row 0: clusters must ascend from 3 and be below 8");
+    refused({packed({8}), PackedEntries(), PackedEntries()},
+            "row 0: clusters must ascend from 3 and be below 8");
+    refused({packed({4, 4}), PackedEntries(), PackedEntries()},
+            "row 0: clusters must ascend from 3 and be below 8");
+    refused({PackedEntries(), packed({3}), PackedEntries()}, "row 1 is unknown and has 1 entries");
+    CHECK_THROWS_WITH(FormFactorMatrix(size).set_block(near, {{}, {}, {}}), Catch::Contains("0 rows with"));
 }

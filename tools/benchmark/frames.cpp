@@ -52,22 +52,22 @@ Series frames(PictureRenderer& renderer, const PatchMesh& mesh, GLuint target, s
 
 } // namespace
 
-int run_frames(const std::string& device) {
+int run_frames(const std::string& device, const std::filesystem::path& mesh) {
     const auto context = gl::make_context(device);
-    const Case room = make_room(patches);
+    const Case shown = mesh.empty() ? make_room(patches) : read_case(mesh);
     std::vector<double> radiosity;
-    for (std::uint32_t i = 0; i < room.mesh.size(); ++i) {
+    for (std::uint32_t i = 0; i < shown.mesh.size(); ++i) {
         radiosity.push_back(0.2 + 0.001 * (i % 500)); // what the pixels show does not matter
     }
     PictureRenderer renderer;
-    renderer.upload(make_picture_mesh(room.mesh, 1, radiosity, {}, {0, 0, 0}));
+    renderer.upload(make_picture_mesh(shown.mesh, 1, radiosity, {}, {0, 0, 0}));
     const gl::Texture2D picture;
     glTextureStorage2D(picture.get(), 1, GL_RGBA8, width, height);
     const gl::Framebuffer target;
     glNamedFramebufferTexture(target.get(), GL_COLOR_ATTACHMENT0, picture.get(), 0);
-    const double moving = median(frames(renderer, room.mesh, target.get(), 1, 61));
-    const double resting = median(frames(renderer, room.mesh, target.get(), PictureSettings{}.samples, 11));
-    fmt::print("{} {} {} {}\n", moving, resting, context->software() ? 1 : 0, room.mesh.size());
+    const double moving = median(frames(renderer, shown.mesh, target.get(), 1, 61));
+    const double resting = median(frames(renderer, shown.mesh, target.get(), PictureSettings{}.samples, 11));
+    fmt::print("{} {} {} {}\n", moving, resting, context->software() ? 1 : 0, shown.mesh.size());
     return EXIT_SUCCESS;
 }
 

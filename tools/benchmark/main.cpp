@@ -175,8 +175,8 @@ void run(const Options& options) {
 } // namespace
 
 int main(int argc, char** argv) try {
-    if (argc == 3 && std::string_view(argv[1]) == frames_argument) {
-        return run_frames(argv[2]);
+    if ((argc == 3 || argc == 4) && std::string_view(argv[1]) == frames_argument) {
+        return run_frames(argv[2], argc == 4 ? argv[3] : "");
     }
     // One thread a context, naive or not; read when the first context is made.
     setenv("LP_NUM_THREADS", "0", 1);

@@ -81,4 +81,11 @@ public:
                                                  const Progress& progress = {},
                                                  ClusteredRowKeeper* keeper = nullptr);
 
+/// Bytes that compute_clustered() needs, with 20 % on top.
+/// @param sample   of it, some rows
+/// @param sampled  number of these, above 0
+/// @param rows     that are wanted
+[[nodiscard]] std::uint64_t clustered_memory(const FormFactorMatrix& sample, std::size_t sampled,
+                                             std::size_t rows);
+
 } // namespace hemi

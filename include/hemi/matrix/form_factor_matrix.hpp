@@ -27,7 +27,7 @@ struct RowView {
     std::span<const std::uint8_t> visibility = {};
     double environment = 0.0; ///< e_i, share that meets nothing
     double blocked = 0.0;     ///< b_i, share that meets back faces
-    /// Keeps alive what was unpacked for this view; null where the spans lie in the matrix.
+    /// Keeps alive what was unpacked for this view, and its copies; null where the spans lie in the matrix.
     std::shared_ptr<const std::byte[]> unpacked = {};
 
     /// Sum of the values, in double, in column order.
@@ -57,7 +57,7 @@ struct RowBlock {
 /// In scenes of very many patches, far sources may stand together in clusters: columns from N on are the
 /// nodes of SourceClusters. Such factors are neither square nor reciprocal, but the rows balance as others
 /// do; what comes from clusters is PackedEntries. Memory: 8 bytes an entry (9 with visibility), 4 or 5 of a
-/// cluster, or none where keep_rows_in() has a file for them, plus about 25 bytes a row.
+/// cluster, or none where keep_rows_in() has a file for them, plus about 25 bytes a row, 65 with clusters.
 class FormFactorMatrix {
 public:
     /// Rows in every block but the last.
@@ -74,7 +74,8 @@ public:
     [[nodiscard]] const std::shared_ptr<const SourceClusters>& clusters() const noexcept { return clusters_; }
     /// Number of columns: N, and one for every cluster.
     [[nodiscard]] std::uint32_t columns() const noexcept { return columns_; }
-    /// Row i, valid until its block is replaced; empty if it is not known. What is packed in it is unpacked.
+    /// Row i, valid until its block is replaced; empty if it is not known. Where there are clusters it is
+    /// unpacked: hold the view rather than ask again, and no span of it without it.
     [[nodiscard]] RowView row(std::uint32_t i) const;
     /// e_i of row i, for which nothing is unpacked; 0 if it is not known.
     [[nodiscard]] double environment(std::uint32_t i) const;
@@ -100,6 +101,11 @@ public:
     ///   not ascend, columns out of range or not ascending, values that are not finite or negative, 2 or more
     ///   for a cluster, a visibility of another length than the values.
     void set_block(RowBlock block);
+    /// The same, of a matrix with clusters, of which the entries are packed.
+    /// @param block     without these entries
+    /// @param clusters  theirs, one for each row
+    /// @throws InvalidArgument as above, and if there are not as many as rows
+    void set_block(RowBlock block, std::vector<PackedEntries> clusters);
     /// All blocks, with the entries of clusters, to be changed and set again; until then every row is
     /// unknown.
     [[nodiscard]] std::vector<RowBlock> take_blocks();
@@ -107,6 +113,8 @@ public:
     [[nodiscard]] std::uint64_t entries(std::size_t b) const noexcept;
 
 private:
+    void put(std::vector<PackedEntries> clusters, std::uint32_t first_row);
+
     std::uint32_t size_;
     std::uint32_t columns_;
     std::shared_ptr<const SourceClusters> clusters_;

@@ -10,9 +10,9 @@
 
 namespace hemi {
 
-/// Factors of a row with ascending columns, packed: their columns by differences, most of which take a byte,
-/// the factors in 24 bits (within 2e-6 of themselves; below 1e-19 they are 0), and codes of visibility. What
-/// was packed once is packed to the same again.
+/// Factors of a row with ascending columns, packed: the columns by differences, most of which take a byte,
+/// the factors in 24 bits, and codes of visibility. What was packed once is packed to the same again.
+/// Factors up to 1 are kept within 2e-6 of themselves, and are 0 below 2^-63, 1.1e-19.
 class PackedEntries {
 public:
     /// Factors from here on cannot be packed.
@@ -40,12 +40,9 @@ public:
     /// Calls `visit(column, value, visibility)` for every entry; the code is 0 where there is none.
     template <class Visit>
     void visit(const Visit& visit) const {
-        const std::uint8_t* step = steps();
-        std::uint32_t column = 0;
-        for (std::uint32_t k = 0; k < size_; ++k) {
-            column += next_step(step);
+        visit_columns([&](std::uint32_t k, std::uint32_t column) {
             visit(column, value(k), has_visibility_ ? codes()[k] : std::uint8_t{0});
-        }
+        });
     }
     /// Sets every factor to `change(value, visibility)`, from 0 to below too_large.
     template <class Change>
@@ -63,12 +60,30 @@ private:
     static constexpr std::uint32_t smallest = (127U - 63U) << 23U; // 2^-63, as a float's bits
     static constexpr std::size_t bytes_a_value = 3;
 
-    static std::uint32_t next_step(const std::uint8_t*& at) {
-        std::uint32_t step = *at & 127U;
+    /// A number in as many bytes as it takes, 7 bits in each, the lowest first.
+    static std::uint32_t next_number(const std::uint8_t*& at) {
+        std::uint32_t number = *at & 127U;
         for (std::uint32_t shift = 7; (*at++ & 128U) != 0; shift += 7) {
-            step |= (*at & 127U) << shift;
+            number |= (*at & 127U) << shift;
         }
-        return step;
+        return number;
+    }
+    /// Calls `visit(k, column)` for every entry. Steps from column to column lie as their lower 8 bits, all;
+    /// then, of each that has more bits, how many entries after the last such one it stands, and these bits.
+    template <class Visit>
+    void visit_columns(const Visit& visit) const {
+        const std::uint8_t* const step = steps();
+        const std::uint8_t* large = step + size_;
+        const std::uint8_t* const end = bytes_.data() + bytes_.size();
+        std::uint32_t column = 0;
+        for (std::uint32_t k = 0; k < size_;) {
+            const std::uint32_t stop = large != end ? k + next_number(large) : size_;
+            for (; k < stop; ++k) {
+                column += step[k];
+                visit(k, column);
+            }
+            column += large != end ? next_number(large) << 8U : 0U;
+        }
     }
     static float value_of(std::uint32_t code) {
         return code == 0 ? 0.0F : std::bit_cast<float>(smallest + ((code - 1U) << dropped_bits));
@@ -87,8 +102,7 @@ private:
 
     std::uint32_t size_ = 0;
     bool has_visibility_ = false;
-    RowArray<std::uint8_t>
-        bytes_; ///< values, codes of visibility, steps from column to column, 7 bits a byte
+    RowArray<std::uint8_t> bytes_; ///< values, codes of visibility, steps
 };
 
 } // namespace hemi

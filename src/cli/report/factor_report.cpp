@@ -186,7 +186,7 @@ void report_leaks(const EnclosureFinding& finding, const FormFactorMatrix& facto
                     max_row_error);
     for (std::size_t k = 0; k < shown.size(); ++k) {
         message += fmt::format("{}{} {}{}", k == 0 ? "" : "; ", names.describe(shown[k]),
-                               number_text(factors.row(shown[k]).environment), towards_text(directions[k]));
+                               number_text(factors.environment(shown[k])), towards_text(directions[k]));
     }
     terminal.error(message);
 }

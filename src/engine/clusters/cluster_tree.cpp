@@ -263,15 +263,22 @@ ClusterStrata strata_of(std::span<const SourceClusters::Node> nodes, std::uint32
     return strata;
 }
 
-void add_spreads(std::span<const SourceClusters::Node> nodes, std::vector<ClusterMoments>& moments) {
+void add_spreads(std::span<const SourceClusters::Node> nodes, std::span<const ClusterShape> shapes,
+                 std::vector<ClusterMoments>& moments) {
     for (std::uint32_t k = 0; k < nodes.size(); ++k) {
         double of_middles = 0.0;
+        double farthest = 0.0;
         const ClusterStrata strata = strata_of(nodes, k);
         for (const std::uint32_t node : std::span(strata.nodes).first(strata.count)) {
             const Vec3 offset = moments[node].centre - moments[k].centre;
             of_middles += moments[node].area * glm::dot(offset, offset);
+            farthest = std::max(farthest, glm::length(offset));
         }
-        moments[k].spread = of_middles > 0.0 ? std::sqrt(moments[k].second / of_middles) : 1.0;
+        // Beside a large patch a small one would have to go far for both to have the moment: none leaves the
+        // sphere.
+        const double spread = of_middles > 0.0 ? std::sqrt(moments[k].second / of_middles) : 1.0;
+        moments[k].spread =
+            farthest > 0.0 ? std::min(spread, std::max(1.0, shapes[k].radius / farthest)) : 1.0;
     }
 }
 
@@ -293,7 +300,7 @@ ClusterTree::ClusterTree(const PatchMesh& mesh, std::span<const std::uint8_t> ap
         }
     }
     moments_ = moments_of(mesh, built);
-    add_spreads(built.nodes, moments_);
+    add_spreads(built.nodes, shapes_, moments_);
     clusters_ =
         std::make_shared<SourceClusters>(std::move(built.order), std::move(built.nodes), mesh.areas());
 }

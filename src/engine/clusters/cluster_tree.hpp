@@ -31,7 +31,7 @@ struct ClusterMoments {
     Vec3 normals{0.0};   ///< sum of the patches' normals times their areas
     double second = 0.0; ///< area times distance from the centre squared, summed
     /// By how much points of strata are farther from the centre than the strata's centres, so that they have
-    /// the second moment; see ClusterTree::strata().
+    /// the second moment, as far as none leaves the sphere then; see ClusterTree::strata().
     double spread = 1.0;
 };
 

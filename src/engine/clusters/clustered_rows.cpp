@@ -5,6 +5,7 @@
 #include "engine/clusters/cluster_tree.hpp"
 #include "engine/clusters/row_maker.hpp"
 #include "engine/environment_verdict.hpp"
+#include "engine/row_sample.hpp"
 #include "hemi/core/buried.hpp"
 #include "hemi/core/error.hpp"
 #include "hemi/core/ranks.hpp"
@@ -489,8 +490,9 @@ bool settle_environment(std::vector<ClusteredRow>& rows, const Evidence& evidenc
 /// Factor by which the near factors of a row are changed where nothing else balances it: no far ones are
 /// there, or not enough. The row's pairs are then reciprocal only as far as visibility is known.
 double last_change(const ClusteredRow& row, double near_sum) {
-    constexpr double rounding = 1e-6;
-    const double sum = near_sum + row.far.sum();
+    const double far_sum = row.far.sum();
+    const double rounding = 1e-6 + 2e-6 * far_sum; // of floats, and of what is packed
+    const double sum = near_sum + far_sum;
     const double missing = 1.0 - row.environment - row.blocked - sum;
     if (!(near_sum > 0.0) || std::abs(missing) < rounding || row.blocked > buried_above) {
         return 1.0;
@@ -498,34 +500,26 @@ double last_change(const ClusteredRow& row, double near_sum) {
     return std::max(0.0, 1.0 + missing / near_sum);
 }
 
-/// Near pairs with the far entries of the same rows behind them. Takes these out of the rows.
-RowBlock whole_block(const RowBlock& pairs, std::vector<ClusteredRow>& rows) {
-    RowBlock block;
-    block.first_row = pairs.first_row;
-    block.known = pairs.known;
-    block.begin.assign(1, 0);
-    std::size_t entries = pairs.columns.size();
+/// Near pairs of rows as they are in the end.
+void finish_near(RowBlock& pairs, const std::vector<ClusteredRow>& rows) {
     for (std::uint32_t local = 0; local < pairs.rows(); ++local) {
-        entries += rows[pairs.first_row + local].far.size();
+        const ClusteredRow& row = rows[pairs.first_row + local];
+        const double change = last_change(row, pairs.row(local).sum());
+        for (std::uint64_t k = pairs.begin[local]; k < pairs.begin[local + 1]; ++k) {
+            pairs.values[k] = static_cast<float>(change * static_cast<double>(pairs.values[k]));
+        }
+        pairs.environment[local] = row.environment;
+        pairs.blocked[local] = row.blocked;
     }
-    reserve(block, entries);
+}
+
+/// Takes the entries of clusters out of the rows of a block.
+std::vector<PackedEntries> take_far(const RowBlock& pairs, std::vector<ClusteredRow>& rows) {
+    std::vector<PackedEntries> far;
     for (std::uint32_t local = 0; local < pairs.rows(); ++local) {
-        const ClusteredRow row = std::exchange(rows[pairs.first_row + local], {});
-        double sum = 0.0;
-        for (std::uint64_t k = pairs.begin[local]; k < pairs.begin[local + 1]; ++k) {
-            sum += static_cast<double>(pairs.values[k]);
-        }
-        const double change = last_change(row, sum);
-        for (std::uint64_t k = pairs.begin[local]; k < pairs.begin[local + 1]; ++k) {
-            const double value = change * static_cast<double>(pairs.values[k]);
-            append(block, {pairs.columns[k], static_cast<float>(value), pairs.visibility[k]});
-        }
-        append(block, row.far);
-        block.begin.push_back(block.columns.size());
-        block.environment.push_back(row.environment);
-        block.blocked.push_back(row.blocked);
+        far.push_back(std::exchange(rows[pairs.first_row + local], {}).far);
     }
-    return block;
+    return far;
 }
 
 /// Areas as far as they exchange light with others: what reaches backs counts for nobody. All of a patch
@@ -587,18 +581,22 @@ FormFactorMatrix compute_clustered(VisibilityProvider& visibility, const PatchMe
     FormFactorMatrix matrix(
         mesh.size(), std::make_shared<SourceClusters>(tree.clusters()->with_weights(seen_areas(rows, mesh))));
     std::vector<RowBlock> pairs = near.take_blocks();
-    // Single rows become blocks; so that both are not there at once, memory is given back several times.
-    const std::size_t at_once = pairs.size() / 16 + 1;
-    for (std::size_t first = 0; first < pairs.size(); first += at_once) {
-        parallel_for(std::min(at_once, pairs.size() - first), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t b = first + begin; b < first + end; ++b) {
-                const RowBlock of_block = std::exchange(pairs[b], {}); // whose memory others soon need
-                matrix.set_block(whole_block(of_block, rows));
-            }
-        });
-        give_freed_memory_back();
-    }
+    parallel_for(pairs.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            finish_near(pairs[b], rows);
+            std::vector<PackedEntries> far = take_far(pairs[b], rows);
+            matrix.set_block(std::move(pairs[b]), std::move(far));
+        }
+    });
+    give_freed_memory_back();
     return matrix;
+}
+
+std::uint64_t clustered_memory(const FormFactorMatrix& sample, std::size_t sampled, std::size_t rows) {
+    const auto empty = static_cast<double>(FormFactorMatrix(sample.size(), sample.clusters()).memory_bytes());
+    const double entries = rows_are_in_file() ? 0.0 : static_cast<double>(sample.memory_bytes()) - empty;
+    return static_cast<std::uint64_t>(
+        memory_margin * (empty + entries * static_cast<double>(rows) / static_cast<double>(sampled)));
 }
 
 } // namespace hemi
