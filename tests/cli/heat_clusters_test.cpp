@@ -56,7 +56,7 @@ void check_near(const Json& clusters, const Json& pairs, double tolerance) {
 } // namespace
 
 TEST_CASE("hemi heat: far patches in clusters exchange what pairs do, and heat balances",
-          "[cli][heat][clusters]") {
+          "[cli][heat][clusters][slow]") {
     const Directory directory;
     Json scene = far_box();
     Words clustered = in_clusters;

@@ -249,7 +249,7 @@ TEST_CASE("hemi heat: a furnace with a load on its hearth balances", "[cli][heat
 }
 
 TEST_CASE("hemi heat: a street in the sun balances, and its sunny side is the warmer one",
-          "[cli][heat][scenes][sun]") {
+          "[cli][heat][scenes][sun][slow]") {
     const Outcome run =
         run_hemi(on_cpu({"heat", HEMI_SOURCE_DIR "/scenes/street-heat.json", "--json", "--preset", "fast"}));
     INFO(run.err);

@@ -154,7 +154,7 @@ TEST_CASE("baseline methods: all methods see a sphere of facets from inside alik
     }
 }
 
-TEST_CASE("baseline methods: a cylinder of facets comes near the round one", "[engine]") {
+TEST_CASE("baseline methods: a cylinder of facets comes near the round one", "[engine][slow]") {
     // Howell, C-41: equal coaxial discs, radius = height.
     const double ends = 0.381966011250105;
     const PatchMesh mesh(cylinder(32));

@@ -170,7 +170,7 @@ TEST_CASE("clusters look one way, and their spheres hold their patches") {
     }
 }
 
-TEST_CASE("lamps stand in clusters of their own") {
+TEST_CASE("lamps stand in clusters of their own", "[slow]") {
     const PatchMesh mesh(room_with_floating_block(16));
     std::vector<std::uint8_t> lamps(mesh.size(), 0);
     std::vector<double> light(mesh.size(), 0.1);
@@ -201,7 +201,7 @@ TEST_CASE("lamps stand in clusters of their own") {
     CHECK_THROWS_AS(clustered(mesh, settings), InvalidArgument);
 }
 
-TEST_CASE("clusters change the gathered light by less than they may, and need fewer entries") {
+TEST_CASE("clusters change the gathered light by less than they may, and need fewer entries", "[slow]") {
     const PatchMesh mesh(room_with_floating_block(16));
     const std::vector<double> light = smooth_light(mesh);
     const std::vector<double> truth =
@@ -326,7 +326,7 @@ TEST_CASE("a furnace is as hot everywhere by rows of clusters") {
     CHECK(solution.error->rms < 0.01);
 }
 
-TEST_CASE("the printed error of radiosity counts what clusters do") {
+TEST_CASE("the printed error of radiosity counts what clusters do", "[slow]") {
     Scene scene = room_with_blocks(16);
     scene.materials[0].reflectance = {0.5};
     scene.materials.push_back({"lamp", {0.0}, {1.0}});

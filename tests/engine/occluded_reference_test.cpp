@@ -234,7 +234,7 @@ TEST_CASE("OccludedReference: of a patch half under a block the other half sees 
     }
 }
 
-TEST_CASE("OccludedReference: rows close under a sheet sum to one", "[engine]") {
+TEST_CASE("OccludedReference: rows close under a sheet sum to one", "[engine][slow]") {
     for (const double gap : {0.05, 0.2, 0.5}) {
         const PatchMesh mesh(room_with_sheet(gap));
         const OccludedReference reference(mesh, {"sheet"}, 32);

@@ -309,7 +309,7 @@ TEST_CASE("patch size: triangles err as the quadrilaterals that they halve, or l
     CHECK(halves.vertices.rms < 1.1 * whole.vertices.rms);
 }
 
-TEST_CASE("patch size: none in a furnace, whatever the shape of the patches", "[pipeline][gl]") {
+TEST_CASE("patch size: none in a furnace, whatever the shape of the patches", "[pipeline][gl][slow]") {
     Diagnostics diagnostics;
     for (const char* const name : {"furnace.json", "sphere"}) {
         Scene scene = std::string(name) == "sphere"

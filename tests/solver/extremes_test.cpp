@@ -106,7 +106,7 @@ std::string refusal(const OwnedProblem& problem, const SolverSettings& settings)
 } // namespace
 
 TEST_CASE("conjugate gradients: a furnace of float factors is right up to reflectance 1 - 1e-6",
-          "[solver][accuracy]") {
+          "[solver][accuracy][slow]") {
     for (const double rho : {0.5, 0.9, 0.99, 0.9999, 1.0 - 1e-6}) {
         const OwnedProblem problem = furnace(150, rho);
         const Solution solution = solve_radiosity(problem.view(), gradients(1e-9));
