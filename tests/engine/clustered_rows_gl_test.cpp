@@ -170,6 +170,22 @@ TEST_CASE("clusters look one way, and their spheres hold their patches") {
     }
 }
 
+TEST_CASE("points that stand for a cluster stay in its sphere, also for a sliver beside a large patch") {
+    Scene scene = empty_scene();
+    add_polygon(scene, "large", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    add_polygon(scene, "sliver", {{1, 0, 0}, {1.0001, 0, 0}, {1.0001, 1, 0}, {1, 1, 0}});
+    const PatchMesh mesh(scene);
+    const ClusterTree tree(mesh);
+    const ClusterMoments& whole = tree.moments(0);
+    const ClusterStrata strata = tree.strata(0);
+    REQUIRE(strata.count == 2);
+    CHECK(whole.spread > 1.0);
+    for (std::uint32_t s = 0; s < strata.count; ++s) {
+        const double offset = glm::length(tree.moments(strata.nodes[s]).centre - whole.centre);
+        CHECK(whole.spread * offset <= 1.000001 * tree.shape(0).radius); // 41 without
+    }
+}
+
 TEST_CASE("lamps stand in clusters of their own", "[slow]") {
     const PatchMesh mesh(room_with_floating_block(16));
     std::vector<std::uint8_t> lamps(mesh.size(), 0);

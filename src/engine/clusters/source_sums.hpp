@@ -64,8 +64,9 @@ struct Source {
 /// a far cluster stand together in up to four strata, the nodes two below it. What an area of a stratum gives
 /// the receiver is that of a point with the mean of the normals: points as far from the middle of the cluster
 /// as it takes to have the second moment of its area, so that the sum over the strata is right to the third
-/// order of their size over their distance. Patches that no texel covers are as visible as the others of
-/// their cluster. One a thread. Memory: about 250 bytes a source of a row.
+/// order of their size over their distance; none leaves the sphere of the cluster. Patches that no texel
+/// covers are as visible as the others of their cluster. One a thread. Memory: about 250 bytes a source of a
+/// row.
 class SourceSums {
 public:
     /// All must outlive this.
