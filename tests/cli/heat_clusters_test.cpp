@@ -94,7 +94,7 @@ TEST_CASE("hemi heat: far patches in clusters exchange what pairs do, and heat b
 }
 
 TEST_CASE("hemi heat: what clusters carry past a shield is in the error that is told",
-          "[cli][heat][clusters]") {
+          "[cli][heat][clusters][slow]") {
     const Directory directory;
     Json scene = far_box();
     add_shield(scene);
@@ -144,7 +144,8 @@ TEST_CASE("hemi points: where all is of one temperature, it is the radiant one b
     }
 }
 
-TEST_CASE("hemi points: the radiant temperature by clusters is that by pairs", "[cli][heat][clusters]") {
+TEST_CASE("hemi points: the radiant temperature by clusters is that by pairs",
+          "[cli][heat][clusters][slow]") {
     const Directory directory;
     const std::string scene = directory.write("box.json", far_box());
     Words words{"points", scene, "--grid", "bottom", "0.25", "0.6", "--spheres"};
@@ -203,7 +204,7 @@ TEST_CASE(
 }
 
 TEST_CASE("hemi exchange: conductances by clusters are symmetric, balance, and are near those of pairs",
-          "[cli][heat][clusters]") {
+          "[cli][heat][clusters][slow]") {
     const Directory directory;
     const std::string scene = directory.write("box.json", far_box());
     const Outcome run = run_with({"exchange", scene}, in_clusters);

@@ -181,12 +181,16 @@ TEST_CASE("Joint visibility: rows of several eye points may come first, and tell
 
 TEST_CASE("Joint visibility: the same of any number of threads and any instruction set", "[engine]") {
     const PatchMesh mesh(blocks_on_ground(5, 4));
+    std::vector<std::uint32_t> patches; // some of every surface
+    for (std::uint32_t patch = 0; patch < mesh.size(); patch += 3) {
+        patches.push_back(patch);
+    }
     std::vector<std::vector<std::uint32_t>> told;
     for (const auto& [threads, simd] : {std::pair(1u, ""), std::pair(2u, ""), std::pair(1u, "scalar")}) {
         ::setenv("HEMI_SIMD", simd, 1);
         const auto engine = make_visibility_engine(mesh, settings_of(true), {cpu_device, threads, {}});
         std::vector<std::uint32_t>& all = told.emplace_back();
-        engine->rows(all_patches(mesh.size()), [&all](std::uint32_t /*patch*/, const VisibilityRow& row) {
+        engine->rows(patches, [&all](std::uint32_t /*patch*/, const VisibilityRow& row) {
             for (const JointVisibility& joint : row.joint) {
                 all.push_back(joint.set);
                 all.push_back(std::bit_cast<std::uint32_t>(joint.share));

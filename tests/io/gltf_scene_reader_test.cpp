@@ -493,7 +493,7 @@ TEST_CASE("glTF reader: what is wrong is named with its place, its value and wha
     }
 }
 
-TEST_CASE("glTF reader: positions that are no numbers, and a mesh placed too often", "[io]") {
+TEST_CASE("glTF reader: positions that are no numbers, and a mesh placed too often", "[io][slow]") {
     const Folder folder;
     std::string bytes = square_bytes;
     bytes.replace(0, 4, bytes_of<float>({std::numeric_limits<float>::quiet_NaN()}));

@@ -30,6 +30,28 @@ SetPlaces::SetPlaces(const PatchSets& sets, const ClusterTree& tree, const Patch
     }
 }
 
+void SourceSums::SlotsOfPositions::clear() {
+    blocks_.clear();
+    mixed_.clear();
+    end_ = 0;
+}
+
+void SourceSums::SlotsOfPositions::add(std::uint32_t slot, std::uint32_t end) {
+    if (end_ % block != 0) { // the last block has slots of its own
+        const std::uint32_t here = std::min(end, (end_ / block + 1) * block);
+        mixed_.insert(mixed_.end(), here - end_, slot);
+        end_ = here;
+    }
+    const std::uint32_t whole = (end - end_) / block;
+    blocks_.insert(blocks_.end(), whole, slot);
+    end_ += whole * block;
+    if (end_ < end) {
+        blocks_.push_back(static_cast<std::uint32_t>(mixed_.size()) | is_mixed);
+        mixed_.insert(mixed_.end(), end - end_, slot);
+        end_ = end;
+    }
+}
+
 void SourceSums::start(const RowReceiver& receiver, std::span<const ClusterTree::Part> parts,
                        bool hidden_near) {
     receiver_ = receiver;
@@ -40,28 +62,29 @@ void SourceSums::start(const RowReceiver& receiver, std::span<const ClusterTree:
     near_.clear();
     far_.clear();
     parts_.assign(parts.begin(), parts.end());
-    begins_.clear();
-    sums_.assign(parts_.size(), {});
-    strata_.clear();
-    buckets_.clear();
+    slots_of_.clear();
+    slots_.clear();
+    slot_at_.clear();
     const std::span<const SourceClusters::Node> nodes = tree_.clusters()->nodes();
-    for (std::size_t part = 0; part < parts_.size(); ++part) {
-        begins_.push_back(nodes[parts_[part].node].begin);
-        sums_[part].first_stratum = static_cast<std::uint32_t>(strata_.size());
-        while (std::size_t{positions_a_bucket} * buckets_.size() < nodes[parts_[part].node].end) {
-            buckets_.push_back(static_cast<std::uint32_t>(part));
-        }
+    for (std::uint32_t part = 0; part < parts_.size(); ++part) {
+        ClusterStrata strata{{parts_[part].node}, 1};
         if (parts_[part].far && !parts_[part].away) {
-            const ClusterStrata strata = tree_.strata(parts_[part].node);
-            sums_[part].strata = strata.count;
-            for (const std::uint32_t node : std::span(strata.nodes).first(strata.count)) {
-                strata_.push_back({.node = node, .begin = nodes[node].begin});
-            }
+            strata = tree_.strata(parts_[part].node);
+        }
+        // What a point sees and is not away may face it.
+        slots_of_.push_back({.first = static_cast<std::uint32_t>(slots_.size()),
+                             .count = strata.count,
+                             .asked = !receiver.patch,
+                             .may_face = !receiver.patch});
+        for (const std::uint32_t node : std::span(strata.nodes).first(strata.count)) {
+            slot_at_.add(static_cast<std::uint32_t>(slots_.size()), nodes[node].end);
+            slots_.push_back({.part = part, .node = node});
         }
     }
 }
 
 void SourceSums::finish() {
+    const std::span<const SourceClusters::Node> nodes = tree_.clusters()->nodes();
     const double mean = known_ == 0 ? 1.0 : shares_ / static_cast<double>(known_);
     for (std::uint32_t part = 0; part < parts_.size(); ++part) {
         if (parts_[part].away) {
@@ -69,8 +92,8 @@ void SourceSums::finish() {
         }
         if (parts_[part].far) {
             add_far(part, mean);
-        } else if (sums_[part].known == 0) {
-            const std::uint32_t patch = tree_.clusters()->order()[begins_[part]];
+        } else if (slots_[slots_of_[part].first].known == 0) {
+            const std::uint32_t patch = tree_.clusters()->order()[nodes[parts_[part].node].begin];
             if (patch != receiver_.patch && may_face_part(part)) {
                 add_near(patch, {mean, 0.0, false});
             }
@@ -81,39 +104,20 @@ void SourceSums::finish() {
     std::sort(far_.begin(), far_.end(), by_column);
 }
 
-/// The part that holds a position in the tree.
-std::uint32_t SourceSums::part_at(std::uint32_t position) const {
-    const std::size_t bucket = position / positions_a_bucket;
-    const auto first = begins_.begin() + buckets_[bucket];
-    const auto last =
-        bucket + 1 < buckets_.size() ? begins_.begin() + buckets_[bucket + 1] + 1 : begins_.end();
-    return static_cast<std::uint32_t>(std::upper_bound(first, last, position) - begins_.begin()) - 1;
-}
-
-/// The stratum of a far part that holds a position.
-std::uint32_t SourceSums::stratum_at(std::uint32_t part, std::uint32_t position) const {
-    const Sum& sum = sums_[part];
-    std::uint32_t stratum = sum.first_stratum + sum.strata - 1;
-    while (strata_[stratum].begin > position) {
-        --stratum;
-    }
-    return stratum;
-}
-
 void SourceSums::add_patch(std::uint32_t patch, SeenShare share) {
-    const std::uint32_t position = tree_.position(patch);
-    const std::uint32_t part = part_at(position);
-    if (parts_[part].away) {
+    const std::uint32_t k = slot_at_[tree_.position(patch)];
+    Slot& slot = slots_[k];
+    const ClusterTree::Part& part = parts_[slot.part];
+    if (part.away) {
         return;
     }
-    Sum& sum = sums_[part];
-    ++sum.known;
-    sum.shares += share.value;
+    ++slot.known;
+    slot.shares += share.value;
     shares_ += share.value;
     ++known_;
     hides_ = hides_ || !(share.value > 0.0);
-    if (parts_[part].far) {
-        add_to_strata(part, position, position, mesh_.areas()[patch], share);
+    if (part.far) {
+        add_to_strata(k, k, mesh_.areas()[patch], share);
     } else {
         add_near(patch, share);
     }
@@ -123,7 +127,8 @@ void SourceSums::add_patch(std::uint32_t patch, SeenShare share) {
 void SourceSums::add_set(const SetPlaces& places, std::uint32_t set, SeenShare share) {
     const std::span<const std::uint32_t> positions = places.of(set);
     for (std::size_t begin = 0; begin < positions.size();) {
-        const std::uint32_t part = part_at(positions[begin]);
+        const std::uint32_t first = slot_at_[positions[begin]];
+        const std::uint32_t part = slots_[first].part;
         const std::uint32_t part_end = tree_.clusters()->nodes()[parts_[part].node].end;
         const std::size_t end =
             positions.back() < part_end
@@ -136,17 +141,16 @@ void SourceSums::add_set(const SetPlaces& places, std::uint32_t set, SeenShare s
             begin = end;
             continue;
         }
-        Sum& sum = sums_[part];
         const auto count = static_cast<double>(end - begin);
-        sum.known += static_cast<std::uint32_t>(end - begin);
-        sum.shares += count * share.value;
+        slots_[first].known += static_cast<std::uint32_t>(end - begin);
+        slots_[first].shares += count * share.value;
         if (may_face_part(part)) { // of what is hidden, backs are told, too
             shares_ += count * share.value;
             known_ += end - begin;
             hides_ = hides_ || !(share.value > 0.0);
         }
         if (parts_[part].far) {
-            add_to_strata(part, positions[begin], positions[end - 1], places.area(set, begin, end), share);
+            add_to_strata(first, slot_at_[positions[end - 1]], places.area(set, begin, end), share);
         } else {
             add_near(tree_.clusters()->order()[positions[begin]], share);
         }
@@ -155,20 +159,17 @@ void SourceSums::add_set(const SetPlaces& places, std::uint32_t set, SeenShare s
 }
 
 /// Patches of a far part, spread evenly over the strata from that of the first to that of the last one.
-void SourceSums::add_to_strata(std::uint32_t part, std::uint32_t low, std::uint32_t high, double area,
-                               SeenShare share) {
-    const std::uint32_t first = stratum_at(part, low);
-    const std::uint32_t last = low == high ? first : stratum_at(part, high);
+void SourceSums::add_to_strata(std::uint32_t first, std::uint32_t last, double area, SeenShare share) {
     area /= last - first + 1;
     for (std::uint32_t k = first; k <= last; ++k) {
-        Stratum& stratum = strata_[k];
-        stratum.known += area;
+        Slot& slot = slots_[k];
+        slot.area += area;
         if (share.value > 0.0) {
-            stratum.seen += area;
-            stratum.lit += area * share.value;
+            slot.seen += area;
+            slot.lit += area * share.value;
+            slot.clear = slot.clear && share.clear;
         }
     }
-    sums_[part].clear = sums_[part].clear && (share.clear || !(share.value > 0.0));
 }
 
 void SourceSums::add_near(std::uint32_t patch, SeenShare share) {
@@ -203,9 +204,8 @@ double SourceSums::factor_of_point(const Vec3& at, const Vec3& normal) const {
 }
 
 /// Unoccluded factor from the receiver to a stratum over the area of the stratum.
-double SourceSums::factor_of_area(std::uint32_t part, const Stratum& stratum) const {
-    const ClusterMoments& own = tree_.moments(stratum.node);
-    const SourceClusters::Node& node = tree_.clusters()->nodes()[stratum.node];
+double SourceSums::factor_of_area(std::uint32_t part, std::uint32_t node) const {
+    const ClusterMoments& own = tree_.moments(node);
     if (tree_.clusters()->nodes()[parts_[part].node].child != 0) {
         const ClusterMoments& whole = tree_.moments(parts_[part].node);
         const double projected = glm::length(own.normals);
@@ -216,7 +216,7 @@ double SourceSums::factor_of_area(std::uint32_t part, const Stratum& stratum) co
         }
     }
     // A single patch, or one of several that together look away.
-    const std::uint32_t first = tree_.clusters()->order()[node.begin];
+    const std::uint32_t first = tree_.clusters()->order()[tree_.clusters()->nodes()[node].begin];
     return factor_to(first) / mesh_.areas()[first];
 }
 
@@ -224,42 +224,48 @@ double SourceSums::factor_of_area(std::uint32_t part, const Stratum& stratum) co
 void SourceSums::add_far(std::uint32_t part, double mean) {
     const std::uint32_t k = parts_[part].node;
     const SourceClusters::Node& node = tree_.clusters()->nodes()[k];
-    const Sum& sum = sums_[part];
+    const auto strata = std::span(slots_).subspan(slots_of_[part].first, slots_of_[part].count);
+    std::uint32_t known = 0;
+    double shares = 0.0;
+    bool clear = true;
+    for (const Slot& stratum : strata) {
+        known += stratum.known;
+        shares += stratum.shares;
+        clear = clear && stratum.clear;
+    }
     const std::uint32_t count = node.end - node.begin;
-    const double share = sum.known == 0      ? (may_face_part(part) ? mean : 0.0)
-                         : sum.known < count ? sum.shares / sum.known
-                                             : 0.0;
-    if (!(sum.shares > 0.0) && !(share > 0.0)) {
+    const double share = known == 0      ? (may_face_part(part) ? mean : 0.0)
+                         : known < count ? shares / known
+                                         : 0.0;
+    if (!(shares > 0.0) && !(share > 0.0)) {
         return; // all of it is hidden, or looks away
     }
     double factor = 0.0;
     double unoccluded = 0.0;
-    for (std::uint32_t s = 0; s < sum.strata; ++s) {
-        const Stratum& stratum = strata_[sum.first_stratum + s];
-        const double left = std::max(0.0, tree_.moments(stratum.node).area - stratum.known);
-        const double lit = stratum.lit + (sum.known < count ? left * share : 0.0);
+    for (const Slot& stratum : strata) {
+        const double left = std::max(0.0, tree_.moments(stratum.node).area - stratum.area);
+        const double lit = stratum.lit + (known < count ? left * share : 0.0);
         if (!(lit > 0.0)) {
             continue;
         }
-        const double of_area = factor_of_area(part, stratum);
+        const double of_area = factor_of_area(part, stratum.node);
         factor += of_area * lit;
         unoccluded += of_area * (stratum.seen + (share > 0.0 ? left : 0.0));
     }
     if (factor > 0.0) {
-        const bool clear = sum.clear && sum.known == count;
-        far_.push_back({mesh_.size() + k, unoccluded, factor / unoccluded, 0.0, clear});
+        far_.push_back({mesh_.size() + k, unoccluded, factor / unoccluded, 0.0, clear && known == count});
     }
 }
 
 /// Whether some patch of a part may have its front towards this one's.
 bool SourceSums::may_face_part(std::uint32_t part) {
-    Sum& sum = sums_[part];
-    if (!sum.asked) {
-        sum.asked = true;
-        sum.may_face =
+    Slots& slots = slots_of_[part];
+    if (!slots.asked) {
+        slots.asked = true;
+        slots.may_face =
             may_face(tree_.shape(parts_[part].node), receiver_.at, receiver_.normal, receiver_.radius);
     }
-    return sum.may_face;
+    return slots.may_face;
 }
 
 } // namespace hemi

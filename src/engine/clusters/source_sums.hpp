@@ -74,7 +74,7 @@ public:
         : mesh_(mesh), tree_(tree), exchange_(exchange) {}
 
     /// Starts a row.
-    /// @param parts        what the receiver sees, which make up the whole tree
+    /// @param parts        what the receiver sees, which make up the whole tree: see ClusterTree::seen_from()
     /// @param hidden_near  whether near patches of which nothing is seen are sources, too
     void start(const RowReceiver& receiver, std::span<const ClusterTree::Part> parts, bool hidden_near);
     /// What is known of a patch.
@@ -92,37 +92,52 @@ public:
     [[nodiscard]] bool hides() const { return hides_; }
 
 private:
-    /// Of one part of what a row sees.
-    struct Sum {
-        std::uint32_t first_stratum = 0;
-        std::uint32_t strata = 0;
-        std::uint32_t known = 0; ///< patches that the row tells of
-        double shares = 0.0;     ///< of these, together
-        bool clear = true;       ///< whether nothing of these is hidden
-        bool asked = false;      ///< whether may_face is known
-        bool may_face = false;   ///< whether some of the part may face the receiver
-    };
-    /// Of a node of the tree within a far part; areas in scene units squared.
-    struct Stratum {
+    /// Of a near patch, or of a node of the tree within a far part: a stratum. Areas in scene units squared.
+    struct Slot {
+        std::uint32_t part = 0;
         std::uint32_t node = 0;
-        std::uint32_t begin = 0; ///< position of its first patch
-        double known = 0.0;      ///< area that the row tells of
+        std::uint32_t known = 0; ///< patches that the row tells of
+        bool clear = true;       ///< whether nothing of these is hidden
+        double shares = 0.0;     ///< of these, together
+        double area = 0.0;       ///< of these
         double seen = 0.0;       ///< area of what is not hidden as a whole
         double lit = 0.0;        ///< area times visibility
     };
+    /// Of one part of what a row sees.
+    struct Slots {
+        std::uint32_t first = 0;
+        std::uint32_t count = 0;
+        bool asked = false;    ///< whether may_face is known
+        bool may_face = false; ///< whether some of the part may face the receiver
+    };
+    /// Where the patches of a row are summed up: their slots, by positions in the tree. Those of so many in a
+    /// row are told by one number where they have the same.
+    class SlotsOfPositions {
+    public:
+        void clear();
+        /// Positions from the last ones' end to `end` have this slot.
+        void add(std::uint32_t slot, std::uint32_t end);
+        [[nodiscard]] std::uint32_t operator[](std::uint32_t position) const {
+            const std::uint32_t entry = blocks_[position / block];
+            return (entry & is_mixed) == 0 ? entry : mixed_[(entry ^ is_mixed) + position % block];
+        }
 
-    static constexpr std::uint32_t positions_a_bucket = 64;
+    private:
+        static constexpr std::uint32_t block = 16;
+        static constexpr std::uint32_t is_mixed = 0x80000000u;
 
-    [[nodiscard]] std::uint32_t part_at(std::uint32_t position) const;
-    [[nodiscard]] std::uint32_t stratum_at(std::uint32_t part, std::uint32_t position) const;
-    void add_to_strata(std::uint32_t part, std::uint32_t low, std::uint32_t high, double area,
-                       SeenShare share);
+        std::vector<std::uint32_t> blocks_; ///< slot, or where in mixed_ its positions begin
+        std::vector<std::uint32_t> mixed_;
+        std::uint32_t end_ = 0;
+    };
+
+    void add_to_strata(std::uint32_t first, std::uint32_t last, double area, SeenShare share);
     void add_near(std::uint32_t patch, SeenShare share);
     void add_far(std::uint32_t part, double mean);
     [[nodiscard]] bool may_face_part(std::uint32_t part);
     [[nodiscard]] double factor_to(std::uint32_t patch) const;
     [[nodiscard]] double factor_of_point(const Vec3& at, const Vec3& normal) const;
-    [[nodiscard]] double factor_of_area(std::uint32_t part, const Stratum& stratum) const;
+    [[nodiscard]] double factor_of_area(std::uint32_t part, std::uint32_t node) const;
 
     const PatchMesh& mesh_;
     const ClusterTree& tree_;
@@ -132,10 +147,9 @@ private:
     double shares_ = 0.0;                  ///< of all patches that the row tells of
     std::uint64_t known_ = 0;              ///< number of these
     std::vector<ClusterTree::Part> parts_; ///< what it sees
-    std::vector<std::uint32_t> begins_;    ///< of the parts: positions of their first patches
-    std::vector<std::uint32_t> buckets_;   ///< the part that the first of so many positions is in
-    std::vector<Sum> sums_;                ///< by part
-    std::vector<Stratum> strata_;          ///< part by part
+    std::vector<Slots> slots_of_;          ///< by part
+    std::vector<Slot> slots_;              ///< part by part
+    SlotsOfPositions slot_at_;
     bool hides_ = false;
     std::vector<Source> near_;
     std::vector<Source> far_;

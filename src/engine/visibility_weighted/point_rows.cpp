@@ -245,7 +245,7 @@ private:
         const RowReceiver receiver{.at = point.position,
                                    .normal = spheres_ ? std::nullopt : std::optional(point.normal)};
         tree_->seen_from(receiver.at, receiver.normal, opening_, bench.parts);
-        divide_bright(receiver.at, bench);
+        divide_bright(receiver, bench);
         SourceSums& sums = *bench.sums;
         sums.start(receiver, bench.divided, rays_.has_value());
         for (std::size_t k = 0; k < sampled.columns.size(); ++k) {
@@ -271,7 +271,8 @@ private:
     }
 
     /// Takes out of clusters far away what may give much of the light.
-    void divide_bright(const Vec3& at, Bench& bench) const {
+    void divide_bright(const RowReceiver& receiver, Bench& bench) const {
+        const Vec3& at = receiver.at;
         // Factors in front of a plane, or a quarter of them on a sphere: the same for all.
         const auto per_area = [&](std::uint32_t node, double gap) {
             const double distance = std::max(gap, tree_->shape(node).radius);
@@ -298,6 +299,10 @@ private:
             while (!open.empty()) {
                 const std::uint32_t node = open.back();
                 open.pop_back();
+                if (node != part.node && !may_face(tree_->shape(node), at, receiver.normal, 0.0)) {
+                    bench.divided.push_back({node, true, true});
+                    continue;
+                }
                 const bool bright = light_[node].most * per_area(node, gap(node)) > bright_share * all;
                 const std::uint32_t child = tree_->clusters()->nodes()[node].child;
                 if (bright && child != 0) {

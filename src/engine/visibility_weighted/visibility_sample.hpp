@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -20,7 +19,7 @@ public:
     /// @param share   visible share, in [0, 1]
     /// @param texels  1 to 254, or visibility_clear, as in VisibilityRow
     VisibilitySample(float share, std::uint8_t texels) {
-        const std::uint32_t parts = static_cast<std::uint32_t>(std::lround(share_scale * share));
+        const std::uint32_t parts = static_cast<std::uint32_t>(share_scale * share + 0.5F);
         const std::uint32_t strength =
             texels == visibility_clear
                 ? clear
