@@ -72,7 +72,7 @@ public:
     struct Part {
         std::uint32_t node; ///< a leaf where it is near
         bool far;
-        bool away = false; ///< nothing of it can face the receiver; such parts are far
+        bool away = false; ///< nothing of it can face the receiver, a point; such parts are far
     };
     /// How a patch sees all patches, itself among them: nodes in the order of their patches, which make up
     /// the whole tree.

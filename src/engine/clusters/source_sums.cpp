@@ -30,25 +30,28 @@ SetPlaces::SetPlaces(const PatchSets& sets, const ClusterTree& tree, const Patch
     }
 }
 
-void SourceSums::SlotsOfPositions::clear() {
-    blocks_.clear();
-    mixed_.clear();
+void SourceSums::SlotsOfPositions::clear(std::uint32_t positions) {
+    blocks_.resize((positions + block - 1) / block);
+    mixed_count_ = 0;
     end_ = 0;
 }
 
 void SourceSums::SlotsOfPositions::add(std::uint32_t slot, std::uint32_t end) {
-    if (end_ % block != 0) { // the last block has slots of its own
-        const std::uint32_t here = std::min(end, (end_ / block + 1) * block);
-        mixed_.insert(mixed_.end(), here - end_, slot);
-        end_ = here;
-    }
-    const std::uint32_t whole = (end - end_) / block;
-    blocks_.insert(blocks_.end(), whole, slot);
-    end_ += whole * block;
-    if (end_ < end) {
-        blocks_.push_back(static_cast<std::uint32_t>(mixed_.size()) | is_mixed);
-        mixed_.insert(mixed_.end(), end - end_, slot);
-        end_ = end;
+    while (end_ < end) {
+        const std::uint32_t within = end_ % block;
+        if (within == 0 && end - end_ >= block) {
+            blocks_[end_ / block] = slot;
+            end_ += block;
+            continue;
+        }
+        if (within == 0) {
+            blocks_[end_ / block] = mixed_count_ | is_mixed;
+            mixed_.resize(std::max<std::size_t>(mixed_.size(), mixed_count_ + block));
+        }
+        const std::uint32_t count = std::min(end - end_, block - within);
+        std::fill_n(&mixed_[mixed_count_], count, slot);
+        mixed_count_ += count;
+        end_ += count;
     }
 }
 
@@ -62,20 +65,16 @@ void SourceSums::start(const RowReceiver& receiver, std::span<const ClusterTree:
     near_.clear();
     far_.clear();
     parts_.assign(parts.begin(), parts.end());
-    slots_of_.clear();
+    part_slots_.clear();
     slots_.clear();
-    slot_at_.clear();
+    slot_at_.clear(mesh_.size());
     const std::span<const SourceClusters::Node> nodes = tree_.clusters()->nodes();
     for (std::uint32_t part = 0; part < parts_.size(); ++part) {
         ClusterStrata strata{{parts_[part].node}, 1};
         if (parts_[part].far && !parts_[part].away) {
             strata = tree_.strata(parts_[part].node);
         }
-        // What a point sees and is not away may face it.
-        slots_of_.push_back({.first = static_cast<std::uint32_t>(slots_.size()),
-                             .count = strata.count,
-                             .asked = !receiver.patch,
-                             .may_face = !receiver.patch});
+        part_slots_.push_back({.first = static_cast<std::uint32_t>(slots_.size()), .count = strata.count});
         for (const std::uint32_t node : std::span(strata.nodes).first(strata.count)) {
             slot_at_.add(static_cast<std::uint32_t>(slots_.size()), nodes[node].end);
             slots_.push_back({.part = part, .node = node});
@@ -92,7 +91,7 @@ void SourceSums::finish() {
         }
         if (parts_[part].far) {
             add_far(part, mean);
-        } else if (slots_[slots_of_[part].first].known == 0) {
+        } else if (slots_[part_slots_[part].first].known == 0) {
             const std::uint32_t patch = tree_.clusters()->order()[nodes[parts_[part].node].begin];
             if (patch != receiver_.patch && may_face_part(part)) {
                 add_near(patch, {mean, 0.0, false});
@@ -224,7 +223,8 @@ double SourceSums::factor_of_area(std::uint32_t part, std::uint32_t node) const 
 void SourceSums::add_far(std::uint32_t part, double mean) {
     const std::uint32_t k = parts_[part].node;
     const SourceClusters::Node& node = tree_.clusters()->nodes()[k];
-    const auto strata = std::span(slots_).subspan(slots_of_[part].first, slots_of_[part].count);
+    const auto strata =
+        std::span<const Slot>(slots_).subspan(part_slots_[part].first, part_slots_[part].count);
     std::uint32_t known = 0;
     double shares = 0.0;
     bool clear = true;
@@ -257,9 +257,12 @@ void SourceSums::add_far(std::uint32_t part, double mean) {
     }
 }
 
-/// Whether some patch of a part may have its front towards this one's.
+/// Whether some patch of a part may have its front towards the receiver.
 bool SourceSums::may_face_part(std::uint32_t part) {
-    Slots& slots = slots_of_[part];
+    if (!receiver_.patch) {
+        return true; // of a point, all else is away
+    }
+    PartSlots& slots = part_slots_[part];
     if (!slots.asked) {
         slots.asked = true;
         slots.may_face =

@@ -65,8 +65,8 @@ struct Source {
 /// the receiver is that of a point with the mean of the normals: points as far from the middle of the cluster
 /// as it takes to have the second moment of its area, so that the sum over the strata is right to the third
 /// order of their size over their distance; none leaves the sphere of the cluster. Patches that no texel
-/// covers are as visible as the others of their cluster. One a thread. Memory: about 250 bytes a source of a
-/// row.
+/// covers are as visible as the others of their cluster. One a thread. Memory: about 500 bytes a source of a
+/// row, and a quarter of a byte a patch.
 class SourceSums {
 public:
     /// All must outlive this.
@@ -74,7 +74,9 @@ public:
         : mesh_(mesh), tree_(tree), exchange_(exchange) {}
 
     /// Starts a row.
-    /// @param parts        what the receiver sees, which make up the whole tree: see ClusterTree::seen_from()
+    /// @param parts        what the receiver sees, as by ClusterTree::seen_from(): the whole tree, in the
+    /// order
+    ///                     of its patches; of a point, what cannot face it is away
     /// @param hidden_near  whether near patches of which nothing is seen are sources, too
     void start(const RowReceiver& receiver, std::span<const ClusterTree::Part> parts, bool hidden_near);
     /// What is known of a patch.
@@ -92,31 +94,35 @@ public:
     [[nodiscard]] bool hides() const { return hides_; }
 
 private:
-    /// Of a near patch, or of a node of the tree within a far part: a stratum. Areas in scene units squared.
+    /// Of a near patch, of a part that is away, or of a node of the tree within a far part: a stratum. Areas
+    /// in scene units squared.
     struct Slot {
         std::uint32_t part = 0;
         std::uint32_t node = 0;
-        std::uint32_t known = 0; ///< patches that the row tells of
-        bool clear = true;       ///< whether nothing of these is hidden
-        double shares = 0.0;     ///< of these, together
-        double area = 0.0;       ///< of these
-        double seen = 0.0;       ///< area of what is not hidden as a whole
-        double lit = 0.0;        ///< area times visibility
+        /// Patches that the row tells of; those of a set are counted where it begins in the part.
+        std::uint32_t known = 0;
+        bool clear = true;   ///< whether nothing of what is told is hidden
+        double shares = 0.0; ///< of the known patches, together
+        double area = 0.0;   ///< that the row tells of
+        double seen = 0.0;   ///< area of what is not hidden as a whole
+        double lit = 0.0;    ///< area times visibility
     };
     /// Of one part of what a row sees.
-    struct Slots {
+    struct PartSlots {
         std::uint32_t first = 0;
         std::uint32_t count = 0;
         bool asked = false;    ///< whether may_face is known
         bool may_face = false; ///< whether some of the part may face the receiver
     };
-    /// Where the patches of a row are summed up: their slots, by positions in the tree. Those of so many in a
-    /// row are told by one number where they have the same.
+    /// Where the patches of a row are summed up: their slots, by positions in the tree. Blocks of positions
+    /// are told by one number where all have the same.
     class SlotsOfPositions {
     public:
-        void clear();
+        /// Begins anew at position 0, of so many.
+        void clear(std::uint32_t positions);
         /// Positions from the last ones' end to `end` have this slot.
         void add(std::uint32_t slot, std::uint32_t end);
+        /// The slot of a position.
         [[nodiscard]] std::uint32_t operator[](std::uint32_t position) const {
             const std::uint32_t entry = blocks_[position / block];
             return (entry & is_mixed) == 0 ? entry : mixed_[(entry ^ is_mixed) + position % block];
@@ -126,9 +132,11 @@ private:
         static constexpr std::uint32_t block = 16;
         static constexpr std::uint32_t is_mixed = 0x80000000u;
 
-        std::vector<std::uint32_t> blocks_; ///< slot, or where in mixed_ its positions begin
-        std::vector<std::uint32_t> mixed_;
-        std::uint32_t end_ = 0;
+        /// Of each block its slot; or, with is_mixed, where in mixed_ those of its positions begin.
+        std::vector<std::uint32_t> blocks_;
+        std::vector<std::uint32_t> mixed_; ///< slots of single positions; grows only
+        std::uint32_t mixed_count_ = 0;    ///< of those that this row has
+        std::uint32_t end_ = 0;            ///< of the positions so far
     };
 
     void add_to_strata(std::uint32_t first, std::uint32_t last, double area, SeenShare share);
@@ -147,9 +155,9 @@ private:
     double shares_ = 0.0;                  ///< of all patches that the row tells of
     std::uint64_t known_ = 0;              ///< number of these
     std::vector<ClusterTree::Part> parts_; ///< what it sees
-    std::vector<Slots> slots_of_;          ///< by part
+    std::vector<PartSlots> part_slots_;    ///< by part
     std::vector<Slot> slots_;              ///< part by part
-    SlotsOfPositions slot_at_;
+    SlotsOfPositions slot_at_;             ///< index into slots_
     bool hides_ = false;
     std::vector<Source> near_;
     std::vector<Source> far_;

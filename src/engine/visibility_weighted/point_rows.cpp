@@ -270,7 +270,8 @@ private:
         return entries;
     }
 
-    /// Takes out of clusters far away what may give much of the light.
+    /// Takes out of clusters far away what may give much of the light; what of these cannot face the point is
+    /// away.
     void divide_bright(const RowReceiver& receiver, Bench& bench) const {
         const Vec3& at = receiver.at;
         // Factors in front of a plane, or a quarter of them on a sphere: the same for all.
