@@ -55,6 +55,12 @@ FactorCost measure(const Estimate& estimate, std::uint32_t patches, const Factor
     return cost;
 }
 
+/// Seconds of one of many, from what a few and more of them took: what is made once does not count, unless
+/// the machine's other work hides the difference.
+double seconds_of_one(double few, double for_few, double more, double for_more) {
+    return more > few && for_more > for_few ? (for_more - for_few) / (more - few) : for_more / more;
+}
+
 /// What single stages take for some rows, the least of several times: others may have been at work as well.
 struct StageTimes {
     double pairs = std::numeric_limits<double>::infinity();
@@ -104,12 +110,9 @@ void add_stages(FactorCost& cost, VisibilityProvider& provider, const PatchMesh&
         const auto count = static_cast<double>(rows);
         return count * (images.mesh().size() - 0.5 * count);
     };
-    const double done = pairs(more.size());
-    const double before = all ? 0.0 : pairs(few.size());
     const auto whole = [&](double StageTimes::*of) {
-        // Where the machine's other work hides the difference, with what is made once.
-        const double difference = last.*of - (all ? 0.0 : first.*of);
-        return pairs(mesh.size()) * (difference > 0.0 ? difference / (done - before) : last.*of / done);
+        return pairs(mesh.size()) *
+               seconds_of_one(pairs(few.size()), first.*of, pairs(more.size()), last.*of);
     };
     cost.stages.push_back({Phase::pairs, whole(&StageTimes::pairs)});
     cost.stages.push_back({Phase::form_factors, whole(&StageTimes::factors)});
@@ -140,9 +143,7 @@ void measure_clusters(FactorCost& cost, const PatchMesh& mesh, const FactorSetti
     cost.clusters = true;
     cost.entries_per_row = static_cast<double>(sample.entries()) / cost.sampled_rows;
     cost.memory = clustered_memory(sample, cost.sampled_rows, mesh.size());
-    cost.seconds = few < cost.sampled_rows
-                       ? std::max(0.0, last - first) / (cost.sampled_rows - few) * mesh.size()
-                       : last / cost.sampled_rows * mesh.size();
+    cost.seconds = mesh.size() * seconds_of_one(few, first, cost.sampled_rows, last);
     cost.stages = {{Phase::visibility, cost.seconds}};
 }
 
