@@ -74,9 +74,8 @@ public:
         : mesh_(mesh), tree_(tree), exchange_(exchange) {}
 
     /// Starts a row.
-    /// @param parts        what the receiver sees, as by ClusterTree::seen_from(): the whole tree, in the
-    /// order
-    ///                     of its patches; of a point, what cannot face it is away
+    /// @param parts        as ClusterTree::seen_from() gives them: the whole tree, in the order of its
+    ///                     patches; of a point, what cannot face it is away
     /// @param hidden_near  whether near patches of which nothing is seen are sources, too
     void start(const RowReceiver& receiver, std::span<const ClusterTree::Part> parts, bool hidden_near);
     /// What is known of a patch.
