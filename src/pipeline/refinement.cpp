@@ -12,6 +12,8 @@
 #include "hemi/scene/imprint.hpp"
 #include "matrix/split_rows.hpp"
 #include "pipeline/image_count.hpp"
+#include "pipeline/known_corners.hpp"
+#include "pipeline/patch_splits.hpp"
 #include "pipeline/vertex_bends.hpp"
 #include "pipeline/visible_radiosity.hpp"
 
@@ -20,7 +22,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <utility>
 
@@ -35,17 +36,21 @@ constexpr double first_patches = 400.0;
 constexpr double least_left_by_parts = 1.0 / 16.0;
 constexpr double most_left_by_parts = 0.5;
 constexpr double usually_left_by_parts = 0.25;
-/// A step splits at least and at most such shares of the patches: fewer are not worth a step's solution and
+/// A step adds at least and at most such shares of the patches: fewer are not worth a step's solution and
 /// estimate, more would follow an estimate from a mesh that is too coarse to see where the error is. It aims
 /// a little below the goal, since estimates scatter.
 struct Pace {
     double least;
     double most;
     double aim;
+    double share; ///< of the error's square, whose patches are enough for a step
 };
-constexpr Pace by_samples{1.0 / 16.0, 1.0 / 3.0, 0.9};
+constexpr Pace by_samples{3.0 / 16.0, 1.0, 0.9, 1.0};
 /// Where all gathered vertices show where the error is: they cost less and scatter less.
-constexpr Pace by_bends{0.03, 0.15, 0.97};
+constexpr Pace by_bends{0.03, 0.45, 0.97, 0.7};
+/// When the mesh has so many times more patches than at the last gather of all vertices, those that were not
+/// gathered since show too old a light.
+constexpr double gather_again = 1.5;
 /// Below so many times the goal, a sample says what bends mean for the error.
 constexpr double near_goal = 1.5;
 /// Times the usual sample of patches for estimates near the goal: refinement stops where they say so, and
@@ -65,6 +70,11 @@ constexpr double entry_bytes = 2 * 9.0;
 constexpr const char* factors_are_left = "smaller patches no longer make the error smaller: what is left "
                                          "comes from the form factors, which a better "
                                          "preset would improve";
+
+/// Patches that a mesh has more after a split.
+std::uint32_t new_patches(const PatchSplit& split) {
+    return split.along_u && split.along_v ? 3 : 1;
+}
 
 /// Contributions of the patches to the square of the error that the goal is for: area times squared error,
 /// relative to what is reflected, of the channel where it is largest.
@@ -150,61 +160,6 @@ Errors errors_of(const Solution& solution, ErrorOf error_of) {
     return errors;
 }
 
-/// The patches of a surface by where they lie on its grid, to find those beside a patch.
-class Neighbours {
-public:
-    explicit Neighbours(const PatchMesh& mesh) : mesh_(mesh) {
-        for (std::uint32_t s = 0; s < mesh.surfaces().size(); ++s) {
-            const auto parts = mesh.parts(s);
-            for (std::uint32_t k = 0; k < parts.size(); ++k) {
-                by_cell_[{s, parts[k].level_u, parts[k].level_v, parts[k].cell}] = k;
-            }
-        }
-    }
-
-    /// Larger patches of a quadrilateral surface along the edges of a patch, to which this is a second step
-    /// in size if it is split.
-    [[nodiscard]] std::vector<std::uint32_t> larger(std::uint32_t patch) const {
-        const std::uint32_t s = mesh_.surface_of()[patch];
-        const auto parts = mesh_.parts(s);
-        std::vector<std::uint32_t> found;
-        if (parts.empty() || mesh_.surfaces()[s].vertex_count == 3) {
-            return found;
-        }
-        const std::uint32_t local = (patch - mesh_.first_patch(s)) % mesh_.patches_per_side(s);
-        const GridPart& part = parts[local];
-        const Grid grid = mesh_.grid(s);
-        const std::int64_t width = std::int64_t{grid.u} << part.level_u;
-        const std::int64_t height = std::int64_t{grid.v} << part.level_v;
-        const std::int64_t u = part.cell % width;
-        const std::int64_t v = part.cell / width;
-        for (const auto& [du, dv] :
-             {std::array{-1, 0}, std::array{1, 0}, std::array{0, -1}, std::array{0, 1}}) {
-            const std::int64_t at_u = u + du;
-            const std::int64_t at_v = v + dv;
-            if (at_u < 0 || at_v < 0 || at_u >= width || at_v >= height) {
-                continue;
-            }
-            for (std::uint32_t up_u = 0; up_u <= part.level_u; ++up_u) {
-                for (std::uint32_t up_v = up_u == 0 ? 1 : 0; up_v <= part.level_v; ++up_v) {
-                    const std::uint32_t level_u = part.level_u - up_u;
-                    const auto cell = static_cast<std::uint32_t>(
-                        (at_v >> up_v) * (std::int64_t{grid.u} << level_u) + (at_u >> up_u));
-                    const auto entry = by_cell_.find({s, level_u, part.level_v - up_v, cell});
-                    if (entry != by_cell_.end()) {
-                        found.push_back(mesh_.first_patch(s) + entry->second);
-                    }
-                }
-            }
-        }
-        return found;
-    }
-
-private:
-    const PatchMesh& mesh_;
-    std::map<std::array<std::uint32_t, 4>, std::uint32_t> by_cell_;
-};
-
 class Refiner {
 public:
     Refiner(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,
@@ -237,7 +192,7 @@ public:
                     return std::move(result_);
                 }
             }
-            const std::vector<std::uint32_t> chosen = choose(errors);
+            const std::vector<PatchSplit> chosen = choose(errors);
             if (chosen.empty()) {
                 result_.stopped = fmt::format("no patch is left that is larger than {:.2g}",
                                               least_size * result_.mesh.bounds().diagonal());
@@ -339,10 +294,12 @@ private:
     }
 
     void solve() {
+        const Solution before = std::move(result_.solution);
         result_.factors = result_.raw;
         prepare_form_factors(result_.factors, settings_.repair, observer_);
         result_.solution =
             solve_radiosity(scene_, result_.mesh, result_.factors, solver_, observer_, with_irradiance_);
+        known_ = known_corners(before, result_.solution, parents_);
     }
 
     /// @param last  with all vertices, if they are gathered, and the form factors' error
@@ -364,7 +321,13 @@ private:
     Errors estimate_by_bends(bool last) {
         Solution& solution = result_.solution;
         if (!last) {
-            gather_at_vertices(scene_, result_.mesh, settings_, Gather::on, solution, observer_);
+            if (result_.mesh.size() > gather_again * patches_gathered_) {
+                known_ = {};
+            }
+            all_gathered_ = known_.values.empty();
+            patches_gathered_ = all_gathered_ ? result_.mesh.size() : patches_gathered_;
+            gather_at_vertices(scene_, result_.mesh, settings_, Gather::on, solution, observer_,
+                               std::exchange(known_, {}));
         }
         const std::vector<double> visible = visible_radiosity(
             result_.mesh, SmoothSurfaces(result_.mesh), patches_near_surfaces(result_.mesh),
@@ -440,16 +403,30 @@ private:
         std::vector<float> vertices = std::move(result_.solution.vertex_radiosity);
         result_.solution =
             solve_radiosity(scene_, result_.mesh, result_.factors, solver_, observer_, with_irradiance_);
-        if (vertices.empty()) {
+        if (vertices.empty() || !all_gathered_) {
             gather_at_vertices(scene_, result_.mesh, settings_, goal_.gather, result_.solution, observer_);
         } else { // the light is the same
             result_.solution.vertex_radiosity = std::move(vertices);
         }
+        all_gathered_ = true;
+        patches_gathered_ = result_.mesh.size();
         return estimate(true);
     }
 
+    [[nodiscard]] PatchSplit how_to_split(const PatchSplits& ways, std::uint32_t patch) const {
+        const Solution& solution = result_.solution;
+        if (bends_.empty()) {
+            return result_.mesh.split_by_shape(patch);
+        }
+        const auto own = std::span(bends_).subspan(std::size_t{patch} * solution.channels, solution.channels);
+        const auto most = std::max_element(own.begin(), own.end(),
+                                           [](double a, double b) { return std::abs(a) < std::abs(b); });
+        return ways.across_bend(patch, solution.vertex_radiosity, solution.channels,
+                                static_cast<std::uint32_t>(most - own.begin()), *most);
+    }
+
     /// Patches that are to be split, ascending.
-    [[nodiscard]] std::vector<std::uint32_t> choose(const Errors& errors) {
+    [[nodiscard]] std::vector<PatchSplit> choose(const Errors& errors) {
         const PatchMesh& mesh = result_.mesh;
         std::vector<double> parts = contributions(mesh, result_.solution, goal_.error_of, bends_);
         const double left_by_parts = left_by(parts);
@@ -461,8 +438,15 @@ private:
                 order.push_back(i);
             }
         }
+        const PatchSplits ways(mesh);
+        std::vector<PatchSplit> splits(mesh.size());
+        std::vector<double> gains(mesh.size(), 0.0); // of a new patch
+        for (const std::uint32_t i : order) {
+            splits[i] = how_to_split(ways, i);
+            gains[i] = parts[i] / new_patches(splits[i]);
+        }
         std::stable_sort(order.begin(), order.end(),
-                         [&parts](std::uint32_t a, std::uint32_t b) { return parts[a] > parts[b]; });
+                         [&gains](std::uint32_t a, std::uint32_t b) { return gains[a] > gains[b]; });
         // What the error's other parts leave for the patches' size, of the square of what it is now.
         // Estimates scatter, and a finer mesh is no worse than a coarser one: the least so far says how far
         // it is.
@@ -477,29 +461,27 @@ private:
             return static_cast<std::size_t>(std::ceil(of * mesh.size()));
         };
         std::size_t most = share(pace().most);
-        if (goal_.patches > 0) { // a split in four adds three
-            most = std::min<std::size_t>(most, (std::max(goal_.patches, mesh.size()) - mesh.size()) / 3 + 1);
+        if (goal_.patches > 0) {
+            most = std::min<std::size_t>(most, std::max(goal_.patches, mesh.size()) - mesh.size());
         }
         double left = total;
-        std::vector<bool> chosen(mesh.size(), false);
-        std::size_t count = 0;
+        double not_chosen = total;
+        std::size_t added = 0;
+        std::vector<PatchSplit> chosen;
         for (const std::uint32_t i : order) {
-            if (count >= most || (count >= share(pace().least) && goal_.error && left <= wanted * total)) {
+            const bool enough =
+                not_chosen <= (1.0 - pace().share) * total || (goal_.error && left <= wanted * total);
+            if (added >= most || (added >= share(pace().least) && enough)) {
                 break;
             }
+            not_chosen -= parts[i];
             left -= (1.0 - left_by_parts) * parts[i];
-            chosen[i] = true;
-            ++count;
+            chosen.push_back(splits[i]);
+            added += new_patches(splits[i]);
         }
-        grade(chosen);
-        std::vector<std::uint32_t> result;
-        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-            if (chosen[i]) {
-                result.push_back(i);
-            }
-        }
+        ways.grade(chosen);
         contributions_ = std::move(parts);
-        return result;
+        return chosen;
     }
 
     /// What the parts of the patches that the last step split have of those patches' contributions.
@@ -521,30 +503,9 @@ private:
                             : usually_left_by_parts;
     }
 
-    /// Adds patches beside which others would become more than one step smaller.
-    void grade(std::vector<bool>& chosen) const {
-        const Neighbours neighbours(result_.mesh);
-        std::vector<std::uint32_t> queue;
-        for (std::uint32_t i = 0; i < chosen.size(); ++i) {
-            if (chosen[i]) {
-                queue.push_back(i);
-            }
-        }
-        while (!queue.empty()) {
-            const std::uint32_t i = queue.back();
-            queue.pop_back();
-            for (const std::uint32_t larger : neighbours.larger(i)) {
-                if (!chosen[larger]) {
-                    chosen[larger] = true;
-                    queue.push_back(larger);
-                }
-            }
-        }
-    }
-
     /// Splits patches and finds the rows of their parts. Where memory is short, nothing changes but
     /// Refinement::stopped.
-    Refinement::Step split(const std::vector<std::uint32_t>& chosen) {
+    Refinement::Step split(const std::vector<PatchSplit>& chosen) {
         try {
             return try_split(chosen);
         } catch (const OutOfMemory& error) {
@@ -554,7 +515,7 @@ private:
         }
         return {};
     }
-    Refinement::Step try_split(const std::vector<std::uint32_t>& chosen) {
+    Refinement::Step try_split(const std::vector<PatchSplit>& chosen) {
         SplitMesh finer = result_.mesh.split(chosen);
         std::vector<std::uint32_t> parts(result_.mesh.size(), 0);
         for (const std::uint32_t parent : finer.parents) {
@@ -604,6 +565,9 @@ private:
     RefinementRows rows_;
     Stopwatch watch_;
     Refinement result_;
+    KnownCorners known_;                           ///< from the step before
+    bool all_gathered_ = true;                     ///< whether all vertices are of this step's light
+    double patches_gathered_ = 0.0;                ///< when all were last
     std::vector<double> bends_;                    ///< of the mesh, see vertex_bends(); empty: not known
     double square_of_bend_ = square_error_of_bend; ///< square of the error over that of the bends
     bool sampled_ = false;                         ///< whether that is from a sample

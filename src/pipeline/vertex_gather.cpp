@@ -30,6 +30,8 @@ namespace hemi {
 namespace {
 
 constexpr std::uint32_t no_point = 0xFFFFFFFFu;
+/// Of a corner whose value needs no point.
+constexpr std::uint32_t known_point = 0xFFFFFFFEu;
 /// A vertex on the rim of a surface is seen from so far within, as a share of the way to the middle of the
 /// patches that meet there. On the rim itself, walls that stand on it have no definite factor. Chosen, not
 /// fitted: far above rounding, and the field changes little over so short a way.
@@ -84,9 +86,10 @@ bool corners_differ(const PatchMesh& mesh, const Solution& solution) {
 
 struct VertexGather::State {
     State(const PatchMesh& the_mesh, std::span<const double> the_blocked,
-          std::span<const std::uint32_t> patches)
+          std::span<const std::uint32_t> patches, KnownCorners the_known)
         : mesh(the_mesh), surfaces(the_mesh), blocked(the_blocked.begin(), the_blocked.end()),
-          near(patches_near_surfaces(the_mesh)), point_of(std::size_t{the_mesh.size()} * 4, no_point) {
+          near(patches_near_surfaces(the_mesh)), point_of(std::size_t{the_mesh.size()} * 4, no_point),
+          known(std::move(the_known)) {
         std::map<std::vector<std::uint32_t>, std::uint32_t> found; // patches that meet, of one vertex
         std::vector<std::vector<std::uint32_t>> corners_at(surfaces.vertex_count());
         for (const std::uint32_t patch : patches) {
@@ -99,6 +102,7 @@ struct VertexGather::State {
         }
         add_ends_of_edges(corners_at);
         drop_hanging(corners_at);
+        keep_known(corners_at);
         for (std::uint32_t vertex = 0; vertex < corners_at.size(); ++vertex) {
             found.clear();
             for (const std::uint32_t corner : corners_at[vertex]) {
@@ -160,6 +164,27 @@ struct VertexGather::State {
         }
     }
 
+    /// Takes out the corners whose values are known already.
+    void keep_known(std::vector<std::vector<std::uint32_t>>& corners_at) {
+        if (known.values.empty()) {
+            return;
+        }
+        std::vector<bool> is_unknown(corners_at.size(), false);
+        for (const std::uint32_t patch : known.unknown) {
+            for (const std::uint32_t vertex : surfaces.corners(patch)) {
+                is_unknown[vertex] = true;
+            }
+        }
+        for (std::uint32_t vertex = 0; vertex < corners_at.size(); ++vertex) {
+            if (!is_unknown[vertex]) {
+                for (const std::uint32_t corner : corners_at[vertex]) {
+                    point_of[corner] = known_point;
+                }
+                corners_at[vertex].clear();
+            }
+        }
+    }
+
     /// Uncovered patches that meet at a vertex and continue one of them.
     [[nodiscard]] std::vector<std::uint32_t> patches_around(std::uint32_t patch, std::uint32_t vertex) const {
         std::vector<std::uint32_t> meeting;
@@ -207,7 +232,8 @@ struct VertexGather::State {
         const std::size_t count = std::size_t{mesh.size()} * values.channels;
         if (radiosity.size() != count || values.reflectance.size() != count ||
             values.exitance.size() != count ||
-            (!values.environment.empty() && values.environment.size() != values.channels)) {
+            (!values.environment.empty() && values.environment.size() != values.channels) ||
+            (!known.values.empty() && known.values.size() != 4 * count)) {
             throw InvalidArgument(fmt::format("gather: {} values for {} patches of {} channels",
                                               radiosity.size(), mesh.size(), values.channels));
         }
@@ -237,6 +263,12 @@ struct VertexGather::State {
             if (point == no_point) {
                 continue;
             }
+            if (point == known_point) {
+                given.kinds[corner] = GivenCorners::Kind::given;
+                std::copy_n(known.values.begin() + static_cast<std::ptrdiff_t>(corner * channels), channels,
+                            given.values.begin() + static_cast<std::ptrdiff_t>(corner * channels));
+                continue;
+            }
             given.kinds[corner] =
                 buried[point] != 0 ? GivenCorners::Kind::unknown : GivenCorners::Kind::given;
             std::copy_n(at_points.begin() + static_cast<std::ptrdiff_t>(std::size_t{point} * channels),
@@ -255,11 +287,12 @@ struct VertexGather::State {
     std::optional<ClusterTree> tree;  ///< of large scenes: what is far stands in clusters
     std::shared_ptr<const SourceClusters> clusters;
     KeptRows kept;
+    KnownCorners known;
 };
 
 VertexGather::VertexGather(const PatchMesh& mesh, std::span<const double> blocked,
-                           std::span<const std::uint32_t> patches)
-    : state_(std::make_unique<State>(mesh, blocked, patches)) {}
+                           std::span<const std::uint32_t> patches, KnownCorners known)
+    : state_(std::make_unique<State>(mesh, blocked, patches, std::move(known))) {}
 VertexGather::~VertexGather() = default;
 VertexGather::VertexGather(VertexGather&&) noexcept = default;
 VertexGather& VertexGather::operator=(VertexGather&&) noexcept = default;
@@ -373,14 +406,14 @@ bool should_gather(Gather wanted, const FactorSettings& settings, const PatchMes
 }
 
 void gather_at_vertices(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,
-                        Gather wanted, Solution& solution, Observer& observer) {
-    gather_at_vertices(mesh, patch_values(scene, mesh), scene.enclosure, settings, wanted, solution,
-                       observer);
+                        Gather wanted, Solution& solution, Observer& observer, KnownCorners known) {
+    gather_at_vertices(mesh, patch_values(scene, mesh), scene.enclosure, settings, wanted, solution, observer,
+                       std::move(known));
 }
 
 void gather_at_vertices(const PatchMesh& mesh, const PatchValues& values, Enclosure enclosure,
-                        const FactorSettings& settings, Gather wanted, Solution& solution,
-                        Observer& observer) {
+                        const FactorSettings& settings, Gather wanted, Solution& solution, Observer& observer,
+                        KnownCorners known) {
     solution.vertex_radiosity.clear();
     if (!should_gather(wanted, settings, mesh, solution)) {
         return;
@@ -394,7 +427,7 @@ void gather_at_vertices(const PatchMesh& mesh, const PatchValues& values, Enclos
             reflecting.push_back(i);
         }
     }
-    VertexGather gather(mesh, solution.back_face_share, reflecting);
+    VertexGather gather(mesh, solution.back_face_share, reflecting, std::move(known));
     solution.vertex_radiosity = gather.compute(values, solution.radiosity, settings, enclosure, 0, observer);
     observer.detail(fmt::format("gathered at {} vertices in {}", count_text(gather.points().size()),
                                 seconds_text(watch.seconds())));

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace hemi {
@@ -391,11 +392,28 @@ PatchCorners PatchMesh::local_corners(std::uint32_t s, std::uint32_t local) cons
                             : part_corners(s, parts(s)[local]);
 }
 
+PatchSplit PatchMesh::split_by_shape(std::uint32_t patch) const {
+    const PatchCorners own = corners(patch); // of a back patch in reverse: the same lengths
+    const auto [u, v] = lengths(own);
+    return {patch, own.count == 3 || u > 0.51 * v, own.count == 3 || v > 0.51 * u};
+}
+
 SplitMesh PatchMesh::split(std::span<const std::uint32_t> patches, Cut how) const {
-    std::vector<std::vector<std::uint32_t>> wanted(surfaces_.size());
+    std::vector<PatchSplit> splits;
     for (const std::uint32_t patch : patches) {
-        const std::uint32_t s = surface_of_[patch];
-        wanted[s].push_back((patch - first_patch_[s]) % patches_per_side(s));
+        splits.push_back(how == Cut::in_four ? PatchSplit{patch} : split_by_shape(patch));
+    }
+    return split(splits);
+}
+
+SplitMesh PatchMesh::split(std::span<const PatchSplit> splits) const {
+    std::vector<std::map<std::uint32_t, PatchSplit>> wanted(surfaces_.size());
+    for (const PatchSplit& split : splits) {
+        const std::uint32_t s = surface_of_[split.patch];
+        const std::uint32_t local = (split.patch - first_patch_[s]) % patches_per_side(s);
+        PatchSplit& both_sides = wanted[s].try_emplace(local, PatchSplit{local, false, false}).first->second;
+        both_sides.along_u = both_sides.along_u || split.along_u;
+        both_sides.along_v = both_sides.along_v || split.along_v;
     }
     std::vector<std::uint32_t> parents;
     PatchMesh mesh;
@@ -407,20 +425,19 @@ SplitMesh PatchMesh::split(std::span<const std::uint32_t> patches, Cut how) cons
     mesh.parts_.resize(surfaces_.size());
     std::uint64_t cells = 0; // as the constructor counts them
     for (std::uint32_t s = 0; s < surfaces_.size(); ++s) {
-        std::sort(wanted[s].begin(), wanted[s].end());
         const bool triangle = surfaces_[s].vertex_count == 3;
         const std::vector<GridPart> old =
             parts(s).empty() ? whole_cells(grids_[s]) : std::vector(parts(s).begin(), parts(s).end());
         std::vector<std::pair<GridPart, std::uint32_t>> parts; // and whose they are
         for (std::uint32_t local = 0; local < old.size(); ++local) {
-            if (!std::binary_search(wanted[s].begin(), wanted[s].end(), local)) {
+            const auto split = wanted[s].find(local);
+            if (split == wanted[s].end()) {
                 parts.emplace_back(old[local], local);
                 continue;
             }
-            const bool four = triangle || how == Cut::in_four;
-            const auto [u, v] = lengths(part_corners(s, old[local]));
             for (const GridPart& part :
-                 cut_part(triangle, grids_[s], old[local], four || u > 0.51 * v, four || v > 0.51 * u)) {
+                 cut_part(triangle, grids_[s], old[local], triangle || split->second.along_u,
+                          triangle || split->second.along_v)) {
                 parts.emplace_back(part, local);
             }
         }

@@ -1,5 +1,8 @@
 #include "hemi/pipeline/vertex_gather.hpp"
 
+#include "display/smooth_surfaces.hpp"
+#include "pipeline/known_corners.hpp"
+
 #include "support/device.hpp"
 #include "support/lamp_and_sheet.hpp"
 #include "support/scenes.hpp"
@@ -181,6 +184,91 @@ TEST_CASE("gather: of some patches it is what it is of all, also beside patches 
             CHECK(own[k] == Approx(all[k]).epsilon(0.02).margin(2e-4)); // the same vertices by other rays
         }
     }
+}
+
+TEST_CASE("gather: what is known already stays, and only the rest is seen", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4, 1);
+    const PatchMesh coarse(scene);
+    const auto [mesh, parents] = coarse.split(std::vector<std::uint32_t>{0, 5, 9, 10});
+    const Solution solution = solved(scene, mesh);
+    const PatchValues values = patch_values(scene, mesh);
+    std::vector<std::uint32_t> unknown;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        if (std::count(parents.begin(), parents.end(), parents[i]) > 1) {
+            unknown.push_back(i);
+        }
+    }
+    REQUIRE(unknown.size() == 16);
+    const auto compute = [&](VertexGather& gather) {
+        return gather.compute(values, solution.radiosity, settings_of(Preset::standard), scene.enclosure, 0);
+    };
+    VertexGather whole(mesh, solution.back_face_share, all_patches(mesh.size()));
+    const std::vector<float> all = compute(whole);
+    KnownCorners known{std::vector<float>(all.size(), 7.0F), unknown};
+    VertexGather rest(mesh, solution.back_face_share, all_patches(mesh.size()), known);
+    CHECK(rest.points().size() < whole.points().size());
+    const std::vector<float> mixed = compute(rest);
+    const SmoothSurfaces surfaces(mesh);
+    std::vector<bool> seen(surfaces.vertex_count(), false);
+    for (const std::uint32_t i : unknown) {
+        for (const std::uint32_t vertex : surfaces.corners(i)) {
+            seen[vertex] = true;
+        }
+    }
+    std::vector<bool> hangs(surfaces.vertex_count(), false);
+    for (const SmoothSurfaces::Hanging& hanging : surfaces.hanging()) {
+        hangs[hanging.vertex] = true;
+    }
+    std::size_t kept = 0;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const auto ring = surfaces.corners(i);
+        for (std::uint32_t k = 0; k < ring.size(); ++k) {
+            const float value = mixed[std::size_t{i} * 4 + k];
+            INFO("patch " << i << ", corner " << k);
+            if (hangs[ring[k]]) {
+                continue; // shows what the longer edge does
+            }
+            if (seen[ring[k]]) {
+                CHECK(value == Approx(all[std::size_t{i} * 4 + k]).epsilon(0.02).margin(2e-4));
+            } else {
+                CHECK(value == 7.0F);
+                ++kept;
+            }
+        }
+    }
+    CHECK(kept > 0);
+    known.values.pop_back();
+    VertexGather wrong(mesh, solution.back_face_share, all_patches(mesh.size()), known);
+    CHECK_THROWS_AS(compute(wrong), InvalidArgument);
+}
+
+TEST_CASE("gather: corners of patches that were not cut keep what they showed, as bright as their patch",
+          "[pipeline]") {
+    Solution before;
+    before.channels = 2;
+    before.exitance = {1, 0, 0, 0, 0, 0};
+    before.radiosity = {3, 4, 5, 6, 0, 8};
+    for (int k = 0; k < 24; ++k) {
+        before.vertex_radiosity.push_back(static_cast<float>(k));
+    }
+    Solution now;
+    now.channels = 2;
+    now.exitance = {1, 0, 0, 0, 0, 0, 0, 0};
+    now.radiosity = {2, 4, 5, 6, 5, 6, 3, 4};
+    const KnownCorners known = known_corners(before, now, std::vector<std::uint32_t>{0, 1, 1, 2});
+    CHECK(known.unknown == std::vector<std::uint32_t>{1, 2});
+    REQUIRE(known.values.size() == 32);
+    for (std::size_t k = 0; k < 4; ++k) {
+        const auto shown = [&](std::size_t patch, std::size_t channel) {
+            return before.vertex_radiosity[(patch * 4 + k) * 2 + channel];
+        };
+        CHECK(known.values[k * 2] == Approx(1.0 + (shown(0, 0) - 1.0F) / 2.0F)); // reflects half as much
+        CHECK(known.values[k * 2 + 1] == shown(0, 1));
+        CHECK(known.values[(12 + k) * 2] == shown(2, 0)); // dark before: nothing to go by
+        CHECK(known.values[(12 + k) * 2 + 1] == Approx(shown(2, 1) / 2.0F));
+    }
+    before.vertex_radiosity.clear();
+    CHECK(known_corners(before, now, std::vector<std::uint32_t>{0, 1, 1, 2}).values.empty());
 }
 
 TEST_CASE("gather: automatic leaves plain and fast pictures alone", "[pipeline]") {

@@ -575,6 +575,34 @@ TEST_CASE("PatchMesh::split: long patches are cut across, triangles always in fo
     CHECK(parts_of(one_polygon(triangle), Cut::by_shape) == 4);
 }
 
+TEST_CASE("PatchMesh::split: along u, along v or both, and what either side asks for", "[scene]") {
+    Scene scene = one_polygon(rectangle(3, 2), Grid{3, 2});
+    scene.surfaces[0].two_sided = true;
+    const PatchMesh mesh(scene);
+    const auto [fine, parents] = mesh.split(
+        std::vector<PatchSplit>{{1, true, false}, {2, false, true}, {10, true, false}, {9, false, true}});
+    const auto parts_of = [&](std::uint32_t patch) {
+        std::vector<Vec3> sizes;
+        for (std::uint32_t k = 0; k < fine.size(); ++k) {
+            if (parents[k] == patch) {
+                const PatchCorners own = fine.corners(k);
+                sizes.push_back(glm::abs(own.points[2] - own.points[0]));
+            }
+        }
+        return sizes;
+    };
+    for (const std::uint32_t side : {0U, 6U}) {
+        CHECK(parts_of(side) == std::vector<Vec3>{Vec3(1, 1, 0)});
+        CHECK(parts_of(side + 1) == std::vector<Vec3>(2, Vec3(0.5, 1, 0)));
+        CHECK(parts_of(side + 2) == std::vector<Vec3>(2, Vec3(1, 0.5, 0)));
+        CHECK(parts_of(side + 3) == std::vector<Vec3>(2, Vec3(1, 0.5, 0)));
+        CHECK(parts_of(side + 4) == std::vector<Vec3>(2, Vec3(0.5, 1, 0)));
+        CHECK(parts_of(side + 5) == std::vector<Vec3>{Vec3(1, 1, 0)});
+    }
+    // Both sides together.
+    CHECK(mesh.split(std::vector<PatchSplit>{{1, true, false}, {7, false, true}}).mesh.size() == 2 * (5 + 4));
+}
+
 TEST_CASE("PatchMesh: parts are stored and read back, and refused where they do not fill", "[scene]") {
     for (Scene scene : various_scenes()) {
         const PatchMesh coarse(scene);

@@ -15,6 +15,12 @@
 
 namespace hemi {
 
+/// Radiosity at corners that needs no gather, since it hardly changed when other patches were cut.
+struct KnownCorners {
+    std::vector<float> values;          ///< as VertexGather::compute() gives them; empty: none is known
+    std::vector<std::uint32_t> unknown; ///< patches whose corners are not known; vertices there are gathered
+};
+
 /// Radiosity at the corners of patches by a last gather: B(v) = E + rho sum_j F(v, j) B_j with a row of
 /// factors of the corner's own, where a mean over the patches that meet there would smear what lies between
 /// them, such as the edge of a shadow.
@@ -32,8 +38,9 @@ public:
     /// @param mesh     N patches; must outlive this
     /// @param blocked  b_i of every patch: those that are covered do not count
     /// @param patches  whose corners are wanted, ascending; the corners of others keep their patches' means
+    /// @param known    of them, what is not to be gathered
     VertexGather(const PatchMesh& mesh, std::span<const double> blocked,
-                 std::span<const std::uint32_t> patches);
+                 std::span<const std::uint32_t> patches, KnownCorners known = {});
     ~VertexGather();
     VertexGather(VertexGather&&) noexcept;            ///< moves all
     VertexGather& operator=(VertexGather&&) noexcept; ///< moves all
@@ -100,14 +107,16 @@ struct Names<Gather> {
 /// @param wanted    by the user
 /// @param solution  of the mesh
 /// @param observer  gets progress and may cancel
+/// @param known     corners that are not gathered
 /// @throws as VertexGather::compute()
 void gather_at_vertices(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,
-                        Gather wanted, Solution& solution, Observer& observer = no_observer());
+                        Gather wanted, Solution& solution, Observer& observer = no_observer(),
+                        KnownCorners known = {});
 /// The same for any values of the patches. Where they differ among the patches that meet at a vertex, those
 /// of the largest count there.
 /// @throws InvalidArgument too, for values that do not fit
 void gather_at_vertices(const PatchMesh& mesh, const PatchValues& values, Enclosure enclosure,
                         const FactorSettings& settings, Gather wanted, Solution& solution,
-                        Observer& observer = no_observer());
+                        Observer& observer = no_observer(), KnownCorners known = {});
 
 } // namespace hemi

@@ -35,6 +35,14 @@ enum class Cut {
     by_shape, ///< in two across the longer way where a quadrilateral is twice as long as wide or more
 };
 
+/// A patch that is to be cut in half along u, along v of its surface, or both; one of a triangle in four in
+/// any case.
+struct PatchSplit {
+    std::uint32_t patch = 0; ///< its index
+    bool along_u = true;     ///< whether its parts have half its width along u
+    bool along_v = true;     ///< the same along v
+};
+
 struct SplitMesh;
 struct WholeFaces;
 
@@ -119,10 +127,16 @@ public:
 
     /// The same surfaces with some patches cut. What is cut on one side of a two-sided surface is on the
     /// other.
+    /// @param splits  in any order
+    /// @throws InvalidArgument if an edge would be cut more than 65,535 ways, or for 2^31 patches or more
+    [[nodiscard]] SplitMesh split(std::span<const PatchSplit> splits) const;
+    /// The same with all of them cut in one way.
     /// @param patches  indices, in any order
     /// @param how      in four, or as their shape asks for
-    /// @throws InvalidArgument if an edge would be cut more than 65,535 ways, or for 2^31 patches or more
+    /// @throws InvalidArgument as above
     [[nodiscard]] SplitMesh split(std::span<const std::uint32_t> patches, Cut how = Cut::by_shape) const;
+    /// How Cut::by_shape cuts a patch.
+    [[nodiscard]] PatchSplit split_by_shape(std::uint32_t patch) const;
 
     /// The mesh with one patch a side for every face whose pieces (Surface::continues) are one patch each.
     [[nodiscard]] WholeFaces whole_faces() const;
