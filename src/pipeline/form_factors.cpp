@@ -191,7 +191,7 @@ FormFactors compute_raw_form_factors(const Scene& scene, const PatchMesh& mesh,
 }
 
 void add_reference_rows(FormFactors& factors, const PatchMesh& mesh, const FactorSettings& settings,
-                        Observer& observer) {
+                        Observer& observer, std::uint32_t most) {
     std::vector<std::uint32_t> known;
     for (std::uint32_t i = 0; i < factors.matrix.size(); ++i) {
         if (factors.matrix.known(i)) {
@@ -202,7 +202,7 @@ void add_reference_rows(FormFactors& factors, const PatchMesh& mesh, const Facto
         return;
     }
     const Stopwatch watch;
-    const auto [hemicube, patches] = plan_reference(known, settings, mesh.size());
+    const auto [hemicube, patches] = plan_reference(known, settings, mesh.size(), most);
     if (!observer.progress(Phase::error_estimate, 0, patches.size())) {
         throw Cancelled();
     }

@@ -8,9 +8,9 @@ namespace hemi {
 
 namespace {
 
-/// What bends less than this share of the other way is not cut: half the width leaves a quarter of a bend, so
-/// that both are as far apart before as after, the other way about.
-constexpr double least_share = 0.5;
+/// What bends less than this share of the other way is not cut: half the width leaves a quarter of a bend,
+/// and two cuts one after the other take more rows than one in four.
+constexpr double least_share = 0.25;
 /// No patch becomes more slender than this by a cut across its short way: its row would need more sample
 /// points than its parts' would.
 constexpr double most_slender = 16.0;

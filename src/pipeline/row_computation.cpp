@@ -127,12 +127,12 @@ VisibilityWeightedEstimate estimate_pairs(VisibilityProvider& visibility, const 
 }
 
 ReferencePlan plan_reference(std::span<const std::uint32_t> known, const FactorSettings& settings,
-                             std::uint32_t size) {
+                             std::uint32_t size, std::uint32_t most) {
     FactorSettings hemicubes = settings;
     hemicubes.method = Method::hemicube;
     const HemicubeSettings hemicube = plan_rows(hemicubes, size).hemicube;
     return {reference_settings(hemicube),
-            reference_patches(known, reference_count(hemicube, known.size(), reference_share))};
+            reference_patches(known, reference_count(hemicube, known.size(), reference_share, most))};
 }
 
 } // namespace hemi

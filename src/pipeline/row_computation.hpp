@@ -74,8 +74,10 @@ struct ReferencePlan {
 };
 /// @param known  patches that it may be of, ascending
 /// @param size   of the scene, in patches
+/// @param most   rows, if their time allows as many
 [[nodiscard]] ReferencePlan plan_reference(std::span<const std::uint32_t> known,
-                                           const FactorSettings& settings, std::uint32_t size);
+                                           const FactorSettings& settings, std::uint32_t size,
+                                           std::uint32_t most = usual_reference_rows);
 
 /// The provider's part of computed rows: observed, kept, timed. Ranks observe and keep what they compute.
 /// @tparam Row  RowView or VisibilityRow

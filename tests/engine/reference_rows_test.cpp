@@ -21,4 +21,6 @@ TEST_CASE("reference_patches: spread over all patches, each once", "[engine]") {
     const HemicubeSettings hemicubes;
     CHECK(reference_count(hemicubes, 5, 0.1) == 5);
     CHECK(reference_count(hemicubes, 100'000, 0.1) == 32);
+    CHECK(reference_count(hemicubes, 100'000, 0.1, 128) == 128);
+    CHECK(reference_count(hemicubes, 500, 0.1, 128) == reference_count(hemicubes, 500, 0.1));
 }

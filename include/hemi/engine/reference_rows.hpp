@@ -20,8 +20,13 @@ namespace hemi {
 /// point a patch gets wrong.
 [[nodiscard]] HemicubeSettings reference_settings(const HemicubeSettings& settings);
 
-/// How many rows of reference cost about `share` of all `rows` of `settings`, within 12 to 32 (or `rows`).
-[[nodiscard]] std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows, double share);
+/// Rows of reference that say enough for most scenes.
+inline constexpr std::uint32_t usual_reference_rows = 32;
+
+/// How many rows of reference cost about `share` of all `rows` of `settings`, within 12 to `most` (or
+/// `rows`).
+[[nodiscard]] std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows, double share,
+                                            std::uint32_t most = usual_reference_rows);
 
 /// Rows that others are judged by: exact exchange areas times visibility, seen from i alone. The other rows
 /// stay unknown.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hemi/engine/reference_rows.hpp"
 #include "hemi/matrix/form_factors.hpp"
 #include "hemi/pipeline/checkpoint.hpp"
 #include "hemi/pipeline/observer.hpp"
@@ -51,8 +52,10 @@ namespace hemi {
 /// @param mesh      their patches
 /// @param settings  that the rows were computed by
 /// @param observer  gets progress and may cancel
+/// @param most      rows, if so little work allows as many: more of them say more surely how large the error
+/// is
 void add_reference_rows(FormFactors& factors, const PatchMesh& mesh, const FactorSettings& settings,
-                        Observer& observer = no_observer());
+                        Observer& observer = no_observer(), std::uint32_t most = usual_reference_rows);
 
 /// Makes raw form factors ready to be used, in this order: patches that lie face to face against a surface of
 /// a closed scene count as buried (mark_touching_faces_buried), reciprocity and closure are enforced

@@ -10,9 +10,8 @@ namespace hemi {
 
 namespace {
 
-// Fewer rows say too little of the variance of all, see error_estimate.cpp; more are not worth their time.
+// Fewer rows say too little of the variance of all, see error_estimate.cpp.
 constexpr std::uint32_t min_rows = 12;
-constexpr std::uint32_t max_rows = 32;
 // The most that a patch can have, and the next lower square, whose points are none of those.
 constexpr std::uint32_t max_eye_points = 64;
 constexpr std::uint32_t other_eye_points = 49;
@@ -44,7 +43,8 @@ HemicubeSettings reference_settings(const HemicubeSettings& settings) {
     return better;
 }
 
-std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows, double share) {
+std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows, double share,
+                              std::uint32_t most) {
     const auto cost = [](const HemicubeSettings& of) {
         const double texels = 3.0 * of.resolution * of.resolution;
         return of.eye_points * (texels + texels_of_overhead);
@@ -52,7 +52,7 @@ std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows
     const double affordable =
         share * static_cast<double>(rows) * cost(settings) / cost(reference_settings(settings));
     const auto count = static_cast<std::size_t>(
-        std::clamp(affordable, static_cast<double>(min_rows), static_cast<double>(max_rows)));
+        std::clamp(affordable, static_cast<double>(min_rows), static_cast<double>(most)));
     return static_cast<std::uint32_t>(std::min(count, rows));
 }
 
