@@ -27,7 +27,7 @@ constexpr double min_visibility_code = 0.5;
 
 /// Trust in the sample: variances of single rows are raised by 1 + 8/n, n being the number of sampled rows.
 /// The relative standard deviation of a variance found from n normal values is sqrt(2/n): the factor allows
-/// for one of them at 32 rows, the most that are sampled, and 1.6 at 12, the fewest, since errors are not
+/// for one of them at 32 rows, the most of a usual sample, and 1.6 at 12, the fewest, since errors are not
 /// normal. tests/pipeline/error_estimate_gl_test.cpp checks what comes of it against known factors.
 constexpr double sample_allowance = 8.0;
 

@@ -14,6 +14,9 @@ constexpr double least_share = 0.25;
 /// No patch becomes more slender than this by a cut across its short way: its row would need more sample
 /// points than its parts' would.
 constexpr double most_slender = 16.0;
+/// Values of patches that meet at a vertex differ by no more than this share where nothing stands between
+/// them: some may show the light of a mesh before.
+constexpr double same_light = 0.1;
 
 /// Corners of the front's quadrilateral, along u and v.
 constexpr std::array<std::array<std::int64_t, 2>, 4> corner_steps{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
@@ -40,8 +43,10 @@ PatchSplits::PatchSplits(const PatchMesh& mesh) : mesh_(mesh), finest_(mesh.surf
         const Place at = place(i);
         for (std::size_t k = 0; k < 4; ++k) {
             const auto& [du, dv] = corner_steps[back ? 3 - k : k];
-            corner_at_[{s, back ? 1 : 0, at.first[0] + du * at.width[0], at.first[1] + dv * at.width[1]}] =
-                std::size_t{i} * 4 + k;
+            const std::size_t corner = std::size_t{i} * 4 + k;
+            const std::array<std::int64_t, 4> vertex{s, back ? 1 : 0, at.first[0] + du * at.width[0],
+                                                     at.first[1] + dv * at.width[1]};
+            corners_at_.try_emplace(vertex, std::array{corner, corner}).first->second[1] = corner;
         }
     }
 }
@@ -60,7 +65,7 @@ PatchSplits::Place PatchSplits::place(std::uint32_t patch) const {
 
 /// Magnitude of the coefficient of x² along u (way 0) or v (1), where x goes from -1/2 to 1/2 within the
 /// patch, from the values one patch's width beside it. The two sides are taken apart: beside the edge of a
-/// shadow they bend against each other.
+/// shadow they bend against each other. A side on which something stands says nothing.
 std::optional<double> PatchSplits::bend_along(std::uint32_t patch, std::size_t way,
                                               std::span<const float> corners, std::uint32_t channels,
                                               std::uint32_t channel) const {
@@ -68,32 +73,41 @@ std::optional<double> PatchSplits::bend_along(std::uint32_t patch, std::size_t w
     const std::int64_t side = mesh_.is_back(patch) ? 1 : 0;
     const Place own = place(patch);
     const std::size_t across = 1 - way;
-    // Means over both ends of a line across the way, `steps` widths from the patch's first.
-    const auto line = [&](std::int64_t steps) -> std::optional<double> {
-        double sum = 0.0;
+    struct Line {
+        double mean = 0.0;
+        bool even = true; ///< whether the patches on both of its sides show the same
+    };
+    // Over both ends of a line across the way, `steps` widths from the patch's first.
+    const auto line = [&](std::int64_t steps) -> std::optional<Line> {
+        Line result;
         for (const std::int64_t end : {0, 1}) {
             std::array<std::int64_t, 2> at = own.first;
             at[way] += steps * own.width[way];
             at[across] += end * own.width[across];
-            const auto found = corner_at_.find({s, side, at[0], at[1]});
-            if (found == corner_at_.end()) {
+            const auto found = corners_at_.find({s, side, at[0], at[1]});
+            if (found == corners_at_.end()) {
                 return std::nullopt;
             }
-            sum += 0.5 * static_cast<double>(corners[found->second * channels + channel]);
+            const auto a = static_cast<double>(corners[found->second[0] * channels + channel]);
+            const auto b = static_cast<double>(corners[found->second[1] * channels + channel]);
+            result.mean += 0.25 * (a + b);
+            result.even = result.even && std::abs(a - b) <= same_light * std::max(std::abs(a), std::abs(b));
         }
-        return sum;
+        return result;
     };
-    const double first = line(0).value();
-    const double second = line(1).value();
+    std::array<double, 2> ends{}; // what the patch itself shows at both
+    for (std::size_t k = 0; k < 4; ++k) {
+        ends[static_cast<std::size_t>(corner_steps[side == 1 ? 3 - k : k][way])] +=
+            0.5 * static_cast<double>(corners[(std::size_t{patch} * 4 + k) * channels + channel]);
+    }
     double sum = 0.0;
     int sides = 0;
-    if (const auto before = line(-1)) {
-        sum += std::abs(*before - 2.0 * first + second) / 2.0;
-        ++sides;
-    }
-    if (const auto after = line(2)) {
-        sum += std::abs(first - 2.0 * second + *after) / 2.0;
-        ++sides;
+    for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
+        const auto beside = line(end == 0 ? -1 : 2);
+        if (beside && beside->even && line(end == 0 ? 0 : 1).value().even) {
+            sum += std::abs(beside->mean - 2.0 * ends[end] + ends[1 - end]) / 2.0;
+            ++sides;
+        }
     }
     return sides > 0 ? std::optional(sum / sides) : std::nullopt;
 }
@@ -113,20 +127,21 @@ PatchSplit PatchSplits::across_bend(std::uint32_t patch, std::span<const float> 
     const auto left_of = [bend](double other) { return std::max(0.0, 6.0 * std::abs(bend) - other); };
     along_u = along_u ? along_u : left_of(*along_v);
     along_v = along_v ? along_v : left_of(*along_u);
-    return across(patch, *along_u, *along_v);
+    PatchSplit split{patch, *along_u >= least_share * *along_v, *along_v >= least_share * *along_u};
+    if (split.along_u != split.along_v && halves_are_slender(patch, split.along_u ? 0 : 1)) {
+        split.along_u = split.along_v = true;
+    }
+    return split;
 }
 
-/// @param along_u  how much the light changes along u within the patch
-/// @param along_v  the same along v
-PatchSplit PatchSplits::across(std::uint32_t patch, double along_u, double along_v) const {
-    PatchSplit split{patch, along_u >= least_share * along_v, along_v >= least_share * along_u};
+/// Whether half of a patch on a way would be too slender.
+/// @param way  0: half as wide along u; 1: along v
+bool PatchSplits::halves_are_slender(std::uint32_t patch, std::size_t way) const {
     const PatchCorners own = mesh_.corners(patch);
     const auto& p = own.points;
-    const double u = glm::distance(p[0], p[1]) + glm::distance(p[3], p[2]);
-    const double v = glm::distance(p[0], p[3]) + glm::distance(p[1], p[2]);
-    split.along_u = split.along_u || 2.0 * u > most_slender * v;
-    split.along_v = split.along_v || 2.0 * v > most_slender * u;
-    return split;
+    const std::array<double, 2> lengths{glm::distance(p[0], p[1]) + glm::distance(p[3], p[2]),
+                                        glm::distance(p[0], p[3]) + glm::distance(p[1], p[2])};
+    return lengths[1 - way] > most_slender * lengths[way] / 2.0;
 }
 
 /// Patches of the surface along the edges across a way that are wider than the patch on the other way, where
@@ -187,6 +202,9 @@ void PatchSplits::grade(std::vector<PatchSplit>& splits) const {
         if (!is_triangle(patch)) {
             for (const std::uint32_t larger : larger_beside(patch, way)) {
                 add(larger, way);
+                if (halves_are_slender(larger, way)) {
+                    add(larger, 1 - way);
+                }
             }
         }
     }

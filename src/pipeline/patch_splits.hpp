@@ -28,7 +28,7 @@ public:
     [[nodiscard]] PatchSplit across_bend(std::uint32_t patch, std::span<const float> corners,
                                          std::uint32_t channels, std::uint32_t channel, double bend) const;
 
-    /// Adds what keeps patches along a common edge at most one step apart in size.
+    /// Adds what keeps patches along a common edge at most one step apart in size, and none of them slender.
     /// @param splits  in any order, a patch once; ascending afterwards
     void grade(std::vector<PatchSplit>& splits) const;
 
@@ -40,7 +40,7 @@ private:
     };
     [[nodiscard]] const GridPart& part(std::uint32_t patch) const { return parts_[patch]; }
     [[nodiscard]] bool is_triangle(std::uint32_t patch) const;
-    [[nodiscard]] PatchSplit across(std::uint32_t patch, double along_u, double along_v) const;
+    [[nodiscard]] bool halves_are_slender(std::uint32_t patch, std::size_t way) const;
     [[nodiscard]] Place place(std::uint32_t patch) const;
     [[nodiscard]] std::optional<double> bend_along(std::uint32_t patch, std::size_t way,
                                                    std::span<const float> corners, std::uint32_t channels,
@@ -50,8 +50,9 @@ private:
     const PatchMesh& mesh_;
     std::vector<GridPart> parts_;                      ///< of all patches
     std::vector<std::array<std::uint32_t, 2>> finest_; ///< levels on every surface, along u and v
-    /// Of vertices by surface, side and place a corner there, as i·4 + k.
-    std::map<std::array<std::int64_t, 4>, std::size_t> corner_at_;
+    /// Of vertices by surface, side and place the first and the last corner there, as i·4 + k: on both sides
+    /// of what stands there.
+    std::map<std::array<std::int64_t, 4>, std::array<std::size_t, 2>> corners_at_;
     std::map<std::array<std::uint32_t, 4>, std::uint32_t> by_cell_; ///< patches on fronts
 };
 

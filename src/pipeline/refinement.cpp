@@ -74,16 +74,19 @@ constexpr const char* factors_are_left = "smaller patches no longer make the err
                                          "comes from the form factors, which a better "
                                          "preset would improve";
 
-/// Patches that a mesh has more after a split.
+/// Patches that a split adds on its side of a surface.
 std::uint32_t new_patches(const PatchSplit& split) {
     return split.along_u && split.along_v ? 3 : 1;
 }
 
-/// Contributions of the patches to the square of the error that the goal is for: area times squared error,
-/// relative to what is reflected, of the channel where it is largest.
+/// Of the patches to the square of the error that the goal is for.
+struct Contributions {
+    std::vector<double> parts;           ///< area times squared error, relative to what is reflected
+    std::vector<std::uint32_t> channels; ///< where that is largest, which these are of
+};
 /// @param bends  see vertex_bends(); empty: not known
-std::vector<double> contributions(const PatchMesh& mesh, const Solution& solution, ErrorOf error_of,
-                                  std::span<const double> bends) {
+Contributions contributions(const PatchMesh& mesh, const Solution& solution, ErrorOf error_of,
+                            std::span<const double> bends) {
     const std::uint32_t channels = solution.channels;
     std::vector<double> reflected(channels, 0.0);
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
@@ -96,7 +99,7 @@ std::vector<double> contributions(const PatchMesh& mesh, const Solution& solutio
     if (error_of != ErrorOf::vertices) {
         corners = corner_values(mesh, channels, solution.radiosity, solution.back_face_share);
     }
-    std::vector<double> result(mesh.size(), 0.0);
+    Contributions result{std::vector<double>(mesh.size(), 0.0), std::vector<std::uint32_t>(mesh.size(), 0)};
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         if (solution.back_face_share[i] > buried_above) {
             continue;
@@ -115,8 +118,10 @@ std::vector<double> contributions(const PatchMesh& mesh, const Solution& solutio
                     square += std::pow(corner - solution.radiosity[at], 2.0) / count;
                 }
             }
-            if (reflected[c] > 0.0) {
-                result[i] = std::max(result[i], mesh.areas()[i] * square / reflected[c]);
+            const double part = reflected[c] > 0.0 ? mesh.areas()[i] * square / reflected[c] : 0.0;
+            if (part > result.parts[i]) {
+                result.parts[i] = part;
+                result.channels[i] = c;
             }
         }
     }
@@ -327,7 +332,8 @@ private:
         if (!all_gathered_) {
             const bool near = goal_.error && !result_.steps.empty() &&
                               result_.steps.back().error < far_from_goal * *goal_.error;
-            all_gathered_ = near || known_.values.empty() ||
+            // A run that goes on from stored rows knows no older light: its patches must be the same.
+            all_gathered_ = near || known_.values.empty() || rows_.checkpoint != nullptr ||
                             result_.mesh.size() > gather_again * static_cast<double>(patches_gathered_);
             gather_at_vertices(scene_, result_.mesh, settings_, Gather::on, solution, observer_,
                                all_gathered_ ? KnownCorners{} : std::move(known_));
@@ -341,7 +347,7 @@ private:
                                            solution.radiosity, solution.exitance, solution.back_face_share));
     }
 
-    /// From how the radiosity of gathered vertices bends, all of them.
+    /// From how the radiosity bends between gathered vertices.
     Errors estimate_by_bends(bool last) {
         const Solution& solution = result_.solution;
         find_bends();
@@ -429,22 +435,18 @@ private:
         return estimate(true);
     }
 
-    [[nodiscard]] PatchSplit how_to_split(const PatchSplits& ways, std::uint32_t patch) const {
+    [[nodiscard]] PatchSplit how_to_split(const PatchSplits& ways, std::uint32_t patch,
+                                          std::uint32_t channel) const {
         const Solution& solution = result_.solution;
-        if (bends_.empty()) {
-            return result_.mesh.split_by_shape(patch);
-        }
-        const auto own = std::span(bends_).subspan(std::size_t{patch} * solution.channels, solution.channels);
-        const auto most = std::max_element(own.begin(), own.end(),
-                                           [](double a, double b) { return std::abs(a) < std::abs(b); });
-        return ways.across_bend(patch, solution.vertex_radiosity, solution.channels,
-                                static_cast<std::uint32_t>(most - own.begin()), *most);
+        return bends_.empty() ? result_.mesh.split_by_shape(patch)
+                              : ways.across_bend(patch, solution.vertex_radiosity, solution.channels, channel,
+                                                 bends_[std::size_t{patch} * solution.channels + channel]);
     }
 
     /// Patches that are to be split, ascending.
     [[nodiscard]] std::vector<PatchSplit> choose(const Errors& errors) {
         const PatchMesh& mesh = result_.mesh;
-        std::vector<double> parts = contributions(mesh, result_.solution, goal_.error_of, bends_);
+        auto [parts, channels] = contributions(mesh, result_.solution, goal_.error_of, bends_);
         const double left_by_parts = left_by(parts);
         const double total = std::accumulate(parts.begin(), parts.end(), 0.0);
         std::vector<std::uint32_t> order;
@@ -458,7 +460,7 @@ private:
         std::vector<PatchSplit> splits(mesh.size());
         std::vector<double> gains(mesh.size(), 0.0); // of a new patch
         for (const std::uint32_t i : order) {
-            splits[i] = how_to_split(ways, i);
+            splits[i] = how_to_split(ways, i, channels[i]);
             gains[i] = parts[i] / new_patches(splits[i]);
         }
         std::stable_sort(order.begin(), order.end(),

@@ -58,7 +58,7 @@ std::string cut_of(const PatchMesh& mesh, std::uint32_t patch,
 
 TEST_CASE("patch splits: across the way in which the light bends", "[pipeline]") {
     const PatchMesh square(floor(4, 4, {4, 4}, true));
-    for (const std::uint32_t patch : {0U, 3U, 5U, 15U, 16U, 22U}) { // corners, the middle, the back
+    for (const std::uint32_t patch : {0U, 3U, 5U, 15U, 16U, 22U, 30U}) { // corners, the middle, the back
         INFO("patch " << patch);
         CHECK(cut_of(square, patch, [](double x, double) { return x * x; }) == "u");
         CHECK(cut_of(square, patch, [](double, double y) { return 9.0 - y * y; }) == "v");
@@ -91,6 +91,24 @@ TEST_CASE("patch splits: strips are cut lengthwise where the light changes acros
     CHECK(cut_of(slender, 1, across) == "uv");
 }
 
+TEST_CASE("patch splits: what lies behind a partition says nothing", "[pipeline]") {
+    const PatchMesh mesh(floor(4, 4, {4, 4}, true));
+    // Bright on the one side of x = 2, dark on the other, as gathered corners have it there.
+    std::vector<float> corners;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        for (const Vec3& point : mesh.corners(i).polygon()) {
+            const double light = mesh.centres()[i].x < 2.0 ? 9.0 : 1.0;
+            corners.push_back(static_cast<float>(light + 0.1 * point.y * point.y));
+        }
+    }
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const PatchSplit split = PatchSplits(mesh).across_bend(i, corners, 1, 0, 0.1 / 6.0);
+        INFO("patch " << i);
+        CHECK_FALSE(split.along_u);
+        CHECK(split.along_v);
+    }
+}
+
 TEST_CASE("patch splits: of triangles in four", "[pipeline]") {
     Scene scene = empty_scene();
     add_polygon(scene, "floor", {Vec3(0, 0, 0), Vec3(2, 0, 0), Vec3(0, 1, 0)}, {2, 2});
@@ -100,6 +118,45 @@ TEST_CASE("patch splits: of triangles in four", "[pipeline]") {
     PatchSplits(mesh).grade(splits);
     CHECK(splits.size() == 1);
     CHECK(mesh.split(splits).mesh.size() == mesh.size() + 3);
+    CHECK(mesh.split(std::vector<PatchSplit>{{1, true, false}}).mesh.size() == mesh.size() + 3);
+}
+
+TEST_CASE("patch splits: beside what is cut again and again, others are cut along, and not to needles",
+          "[pipeline]") {
+    PatchMesh mesh(floor(2, 1, {2, 1}));
+    for (int round = 0; round < 6; ++round) {
+        std::vector<PatchSplit> splits;
+        for (std::uint32_t i = 0; i < mesh.size(); ++i) { // at the lower edge on the left, across it
+            if (mesh.centres()[i].x < 1.0 && mesh.corners(i).points[0].y == 0.0) {
+                splits.push_back({i, false, true});
+            }
+        }
+        const std::size_t wanted = splits.size();
+        PatchSplits(mesh).grade(splits);
+        CHECK(std::is_sorted(splits.begin(), splits.end(),
+                             [](const PatchSplit& a, const PatchSplit& b) { return a.patch < b.patch; }));
+        if (round == 0) {
+            CHECK(splits.size() == wanted);
+        }
+        if (round == 1) { // its neighbour is two steps behind: along the common edge alone
+            REQUIRE(splits.size() == wanted + 1);
+            const auto other = std::find_if(splits.begin(), splits.end(), [&mesh](const PatchSplit& split) {
+                return mesh.centres()[split.patch].x > 1.0;
+            });
+            REQUIRE(other != splits.end());
+            CHECK_FALSE(other->along_u);
+            CHECK(other->along_v);
+        }
+        mesh = mesh.split(splits).mesh;
+    }
+    double slender = 0.0;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        if (mesh.centres()[i].x > 1.0) { // on the left only what was asked for
+            const Vec3 size = mesh.corners(i).points[2] - mesh.corners(i).points[0];
+            slender = std::max(slender, size.x / size.y);
+        }
+    }
+    CHECK(slender == Approx(16.0));
 }
 
 TEST_CASE("patch splits: edges that meet differ by a factor of two at most", "[pipeline]") {

@@ -1,5 +1,6 @@
 #include "hemi/pipeline/refinement.hpp"
 
+#include "io/io_fixtures.hpp"
 #include "matrix/split_rows.hpp"
 #include "support/device.hpp"
 #include "support/lamp_and_sheet.hpp"
@@ -245,6 +246,38 @@ TEST_CASE("refinement: sizes of patches side by side differ by a factor of two a
     CHECK(largest == Approx(2.0));
 }
 
+TEST_CASE("refinement: where patches meet, an edge is at most twice as long as the other", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4, 1);
+    RefinementGoal goal;
+    goal.patches = 400;
+    goal.gather = Gather::on;
+    const Refinement found = solve_refined(scene, PatchMesh(scene), settings_of(), {}, goal);
+    const PatchMesh& mesh = found.mesh;
+    double longest = 0.0;
+    bool strips = false;
+    const auto lower = [&mesh](std::uint32_t i) { return mesh.corners(i).points[0]; };
+    const auto upper = [&mesh](std::uint32_t i) { return mesh.corners(i).points[2]; };
+    for (std::uint32_t i = 0; i < mesh.patches_per_side(0); ++i) {
+        const Vec3 size = upper(i) - lower(i);
+        strips = strips || std::max(size.x, size.y) > 1.5 * std::min(size.x, size.y);
+        for (std::uint32_t j = 0; j < mesh.patches_per_side(0); ++j) {
+            for (const int way : {0, 1}) {
+                const bool beside =
+                    upper(i)[1 - way] == lower(j)[1 - way] || lower(i)[1 - way] == upper(j)[1 - way];
+                if (beside && lower(i)[way] < upper(j)[way] - 1e-9 && lower(j)[way] < upper(i)[way] - 1e-9) {
+                    longest = std::max(longest, size[way] / (upper(j) - lower(j))[way]);
+                }
+            }
+        }
+    }
+    CHECK(strips);
+    CHECK(longest == Approx(2.0));
+    // The vertices are those of the last light, whenever they were gathered on the way.
+    Solution again = found.solution;
+    gather_at_vertices(scene, mesh, settings_of(), Gather::on, again);
+    CHECK(again.vertex_radiosity == found.solution.vertex_radiosity);
+}
+
 TEST_CASE("refinement: goes on from stored rows to the bits of an undisturbed one", "[pipeline]") {
     const Scene scene = lamp_and_sheet(3, 1);
     const PatchMesh coarse(scene);
@@ -270,6 +303,24 @@ TEST_CASE("refinement: goes on from stored rows to the bits of an undisturbed on
         CHECK(again.solution.radiosity == whole.solution.radiosity);
         CHECK(again.raw.reference.entries() == whole.raw.reference.entries());
     }
+    // Gathered vertices on the way are the same, too, where rows are kept.
+    const io_test::Folder folder;
+    FactorSettings gathering = settings_of();
+    std::vector<FormFactors> of_steps;
+    RowCheckpoint first_kept(folder / "first.hff", false);
+    RowCheckpoint second_kept(folder / "second.hff", false);
+    rows.store = [&of_steps](const PatchMesh&, FormFactors& raw) { of_steps.push_back(raw); };
+    rows.checkpoint = &first_kept;
+    const Refinement gathered =
+        solve_refined(scene, coarse, gathering, {}, goal, false, no_observer(), std::move(rows));
+    REQUIRE(of_steps.size() > 3);
+    RefinementRows from;
+    from.begin = of_steps[1];
+    from.checkpoint = &second_kept;
+    const Refinement resumed =
+        solve_refined(scene, coarse, gathering, {}, goal, false, no_observer(), std::move(from));
+    CHECK(resumed.mesh.geometry_hash() == gathered.mesh.geometry_hash());
+    CHECK(resumed.solution.vertex_radiosity == gathered.solution.vertex_radiosity);
     // They are whole: a later solution of that mesh needs nothing else.
     CHECK(coarse.cut(kept.back().cuts).geometry_hash() == whole.mesh.geometry_hash());
     RefinementRows wrong;

@@ -254,7 +254,7 @@ TEST_CASE("gather: corners of patches that were not cut keep what they showed, a
     Solution now;
     now.channels = 2;
     now.exitance = {1, 0, 0, 0, 0, 0, 0, 0};
-    now.radiosity = {2, 4, 5, 6, 5, 6, 3, 4};
+    now.radiosity = {2, 4, 5, 6, 5, 6, 0, 4};
     const KnownCorners known = known_corners(before, now, std::vector<std::uint32_t>{0, 1, 1, 2});
     CHECK(known.unknown == std::vector<std::uint32_t>{1, 2});
     REQUIRE(known.values.size() == 32);
@@ -264,9 +264,12 @@ TEST_CASE("gather: corners of patches that were not cut keep what they showed, a
         };
         CHECK(known.values[k * 2] == Approx(1.0 + (shown(0, 0) - 1.0F) / 2.0F)); // reflects half as much
         CHECK(known.values[k * 2 + 1] == shown(0, 1));
-        CHECK(known.values[(12 + k) * 2] == shown(2, 0)); // dark before: nothing to go by
+        CHECK(known.values[(12 + k) * 2] == shown(2, 0)); // dark, as it was
         CHECK(known.values[(12 + k) * 2 + 1] == Approx(shown(2, 1) / 2.0F));
     }
+    now.radiosity[7] = 17.0; // more than twice as much: another light
+    CHECK(known_corners(before, now, std::vector<std::uint32_t>{0, 1, 1, 2}).unknown ==
+          std::vector<std::uint32_t>{1, 2, 3});
     before.vertex_radiosity.clear();
     CHECK(known_corners(before, now, std::vector<std::uint32_t>{0, 1, 1, 2}).values.empty());
 }

@@ -23,8 +23,8 @@ namespace hemi {
 /// Rows of reference that say enough for most scenes.
 inline constexpr std::uint32_t usual_reference_rows = 32;
 
-/// How many rows of reference cost about `share` of all `rows` of `settings`, within 12 to `most` (or
-/// `rows`).
+/// How many rows of reference cost about `share` of all `rows` of `settings`, within 12 to `most`, which is
+/// no less (or `rows`).
 [[nodiscard]] std::uint32_t reference_count(const HemicubeSettings& settings, std::size_t rows, double share,
                                             std::uint32_t most = usual_reference_rows);
 

@@ -98,7 +98,7 @@ struct CoarseMesh {
 /// Solves a scene on patches that become smaller where that tells: begins with a coarse mesh, estimates the
 /// error, cuts the patches that add most to it (PatchMesh::split), and computes rows of the new patches
 /// alone, from which the columns of the others follow by reciprocity; until the estimate meets the goal.
-/// Patches of one surface whose sizes differ by more than a factor of two do not touch along an edge.
+/// Where patches of one quadrilateral meet, an edge is at most twice as long as the other.
 /// @param scene            materials, environment, enclosure
 /// @param coarse           to begin with, see coarse_mesh()
 /// @param settings         of the form factors; errors of form factors are estimated for the last mesh

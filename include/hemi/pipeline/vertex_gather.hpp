@@ -18,7 +18,7 @@ namespace hemi {
 /// Radiosity at corners that needs no gather, since it hardly changed when other patches were cut.
 struct KnownCorners {
     std::vector<float> values;          ///< as VertexGather::compute() gives them; empty: none is known
-    std::vector<std::uint32_t> unknown; ///< patches whose corners are not known; vertices there are gathered
+    std::vector<std::uint32_t> unknown; ///< patches whose corners are not known: vertices there are gathered
 };
 
 /// Radiosity at the corners of patches by a last gather: B(v) = E + rho sum_j F(v, j) B_j with a row of
