@@ -96,7 +96,8 @@ TEST_CASE("patch splits: what lies behind a partition says nothing", "[pipeline]
     // Bright on the one side of x = 2, dark on the other, as gathered corners have it there.
     std::vector<float> corners;
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-        for (const Vec3& point : mesh.corners(i).polygon()) {
+        const PatchCorners own = mesh.corners(i);
+        for (const Vec3& point : own.polygon()) {
             const double light = mesh.centres()[i].x < 2.0 ? 9.0 : 1.0;
             corners.push_back(static_cast<float>(light + 0.1 * point.y * point.y));
         }
