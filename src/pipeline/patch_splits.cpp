@@ -11,8 +11,8 @@ namespace {
 /// What bends less than this share of the other way is not cut: half the width leaves a quarter of a bend,
 /// and two cuts one after the other take more rows than one in four.
 constexpr double least_share = 0.25;
-/// No patch becomes more slender than this by a cut across its short way: its row would need more sample
-/// points than its parts' would.
+/// No patch becomes more slender than this by a cut that makes its short way shorter: the row of a needle
+/// needs many sample points.
 constexpr double most_slender = 16.0;
 /// Values of patches that meet at a vertex differ by no more than this share where nothing stands between
 /// them: some may show the light of a mesh before.

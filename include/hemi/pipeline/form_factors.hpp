@@ -52,8 +52,7 @@ namespace hemi {
 /// @param mesh      their patches
 /// @param settings  that the rows were computed by
 /// @param observer  gets progress and may cancel
-/// @param most      rows, if so little work allows as many: more of them say more surely how large the error
-/// is
+/// @param most      rows, 12 or more, if so little work allows as many: more of them say it more surely
 void add_reference_rows(FormFactors& factors, const PatchMesh& mesh, const FactorSettings& settings,
                         Observer& observer = no_observer(), std::uint32_t most = usual_reference_rows);
 

@@ -58,9 +58,8 @@ public:
     /// call.
     virtual void row(std::uint32_t patch, const VisibilityRow& row);
     /// A mesh on the way of a refinement is solved, and its error estimated; valid during the call.
-    /// @param so_far  with the form factors and the solution of the mesh; where vertices are gathered, some
-    /// may
-    ///   show the light of the mesh before
+    /// @param so_far  with the form factors and the solution of the mesh; of gathered vertices some may show
+    ///   the light of the mesh before
     virtual void refined(const Refinement& so_far);
     /// Something that a person should know and that does not stop the work.
     /// @param message  one sentence
