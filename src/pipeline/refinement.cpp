@@ -47,12 +47,13 @@ struct Pace {
 };
 constexpr Pace by_samples{3.0 / 16.0, 1.0, 0.9, 1.0};
 /// Where all gathered vertices show where the error is: they cost less and scatter less.
-constexpr Pace by_bends{0.1, 0.45, 0.97, 0.85};
+constexpr Pace by_bends{0.1, 0.55, 0.97, 0.8};
+/// Square of the error over that of the bends until a sample says it, at the end: there samples of rooms have
+/// said 1.6 to 2.5, more than the square_error_of_bend of smooth light.
+constexpr double usual_square_of_bend = 2.0;
 /// Vertices that are not new are gathered when the mesh has so many times more patches than when they last
-/// were, and near the goal: they show too old a light.
+/// were, and before it is the last one: they show too old a light.
 constexpr double gather_again = 1.5;
-/// Below so many times the goal, a sample says what bends mean for the error.
-constexpr double near_goal = 1.5;
 /// Times the usual sample of patches for estimates near the goal: refinement stops where they say so, and
 /// would stop too early by a lucky one.
 constexpr double effort_near_goal = 2.0;
@@ -76,8 +77,31 @@ constexpr const char* factors_are_left = "smaller patches no longer make the err
 
 /// Patches that a split adds on its side of a surface.
 std::uint32_t new_patches(const PatchSplit& split) {
-    return split.along_u && split.along_v ? 3 : 1;
+    return (split.along_u ? 2 : 1) * (split.along_v ? 2 : 1) - 1;
 }
+
+/// Counts what splits add to a mesh: of a two-sided surface both sides are cut, as either asks for.
+class AddedPatches {
+public:
+    explicit AddedPatches(const PatchMesh& mesh)
+        : mesh_(mesh), fronts_(mesh.size(), PatchSplit{0, false, false}) {}
+
+    void add(const PatchSplit& split) {
+        const std::uint32_t s = mesh_.surface_of()[split.patch];
+        const std::uint32_t side = mesh_.is_back(split.patch) ? mesh_.patches_per_side(s) : 0;
+        PatchSplit& both = fronts_[split.patch - side];
+        const std::uint32_t before = new_patches(both);
+        both.along_u = both.along_u || split.along_u;
+        both.along_v = both.along_v || split.along_v;
+        count_ += (new_patches(both) - before) * (mesh_.surfaces()[s].two_sided ? 2 : 1);
+    }
+    [[nodiscard]] std::size_t count() const { return count_; }
+
+private:
+    const PatchMesh& mesh_;
+    std::vector<PatchSplit> fronts_; ///< of every patch's front, what is asked for so far
+    std::size_t count_ = 0;
+};
 
 /// Of the patches to the square of the error that the goal is for.
 struct Contributions {
@@ -188,8 +212,7 @@ public:
             observer_.detail(fmt::format("refinement: {}, error {:.2g} %",
                                          plural(step.patches, "patch", "patches"), 100.0 * step.error));
             observer_.refined(result_);
-            const bool enough = is_enough(bends_.empty() ? errors.all : errors.all / pace().aim);
-            if (enough || !may_go_on()) {
+            if (is_enough(errors) || !may_go_on()) {
                 errors = finish();
                 result_.steps.back().error = errors.all;
                 if (goal_.error && errors.all <= *goal_.error) {
@@ -221,9 +244,9 @@ private:
 
     [[nodiscard]] const Pace& pace() const { return bends_.empty() ? by_samples : by_bends; }
 
-    [[nodiscard]] bool is_enough(double error) const {
+    [[nodiscard]] bool is_enough(const Errors& errors) const {
         if (goal_.error) {
-            return error <= *goal_.error;
+            return errors.all <= (bends_.empty() ? 1.0 : pace().aim) * *goal_.error;
         }
         return result_.mesh.size() >= goal_.patches;
     }
@@ -330,10 +353,8 @@ private:
     void find_bends() {
         Solution& solution = result_.solution;
         if (!all_gathered_) {
-            const bool near = goal_.error && !result_.steps.empty() &&
-                              result_.steps.back().error < far_from_goal * *goal_.error;
             // A run that goes on from stored rows knows no older light: its patches must be the same.
-            all_gathered_ = near || known_.values.empty() || rows_.checkpoint != nullptr ||
+            all_gathered_ = known_.values.empty() || rows_.checkpoint != nullptr ||
                             result_.mesh.size() > gather_again * static_cast<double>(patches_gathered_);
             gather_at_vertices(scene_, result_.mesh, settings_, Gather::on, solution, observer_,
                                all_gathered_ ? KnownCorners{} : std::move(known_));
@@ -347,31 +368,28 @@ private:
                                            solution.radiosity, solution.exitance, solution.back_face_share));
     }
 
-    /// From how the radiosity bends between gathered vertices.
+    /// From how the radiosity bends between gathered vertices; for the last mesh, by a sample.
     Errors estimate_by_bends(bool last) {
-        const Solution& solution = result_.solution;
         find_bends();
         double bend = rms_of_bends();
-        double error = std::sqrt(square_of_bend_) * bend;
-        if (last || bend == 0.0 || (!sampled_ && goal_.error && error < near_goal * *goal_.error)) {
-            if (!all_gathered_) {
-                find_bends(); // all: none is known any more
-                bend = rms_of_bends();
-            }
-            if (!estimate_by_sample(Gather::off, effort_near_goal)) {
-                return {not_known, not_known};
-            }
-            error = result_.solution.patch_size_error->vertices.rms;
-            square_of_bend_ = bend > 0.0 ? std::pow(error / bend, 2.0) : square_of_bend_;
-            sampled_ = true;
+        const auto by_bend = [&] {
+            const double error = std::sqrt(square_of_bend_) * bend;
+            return Errors{error, std::hypot(error, others_)};
+        };
+        if (!all_gathered_ && is_enough(by_bend())) {
+            find_bends(); // all: none is known any more
+            bend = rms_of_bends();
         }
-        if (last) {
-            const Errors errors = errors_of(solution, goal_.error_of);
-            others_ =
-                std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
-            return errors;
+        if (!last) {
+            return by_bend();
         }
-        return {error, std::hypot(error, others_)};
+        if (!estimate_by_sample(Gather::off, effort_near_goal)) {
+            return {not_known, not_known};
+        }
+        const Errors errors = errors_of(result_.solution, goal_.error_of);
+        square_of_bend_ = bend > 0.0 ? std::pow(errors.patch_size / bend, 2.0) : square_of_bend_;
+        others_ = std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
+        return errors;
     }
 
     /// Of all patches that reflect, relative to what is reflected, in the worst channel.
@@ -484,18 +502,18 @@ private:
         }
         double left = total;
         double not_chosen = total;
-        std::size_t added = 0;
+        AddedPatches added(mesh);
         std::vector<PatchSplit> chosen;
         for (const std::uint32_t i : order) {
             const bool enough =
                 not_chosen <= (1.0 - pace().share) * total || (goal_.error && left <= wanted * total);
-            if (added >= most || (added >= share(pace().least) && enough)) {
+            if (added.count() >= most || (added.count() >= share(pace().least) && enough)) {
                 break;
             }
             not_chosen -= parts[i];
             left -= (1.0 - left_by_parts) * parts[i];
             chosen.push_back(splits[i]);
-            added += new_patches(splits[i]);
+            added.add(splits[i]);
         }
         ways.grade(chosen);
         contributions_ = std::move(parts);
@@ -587,8 +605,7 @@ private:
     bool all_gathered_ = false;                    ///< whether all vertices are of this step's light
     std::uint32_t patches_gathered_ = 0;           ///< when all were last
     std::vector<double> bends_;                    ///< of the mesh, see vertex_bends(); empty: not known
-    double square_of_bend_ = square_error_of_bend; ///< square of the error over that of the bends
-    bool sampled_ = false;                         ///< whether that is from a sample
+    double square_of_bend_ = usual_square_of_bend; ///< square of the error over that of the bends
     double others_ = 0.0; ///< what the error had of other parts when it was known last
     double least_error_ = std::numeric_limits<double>::infinity(); ///< of the patches' size, so far
     std::vector<double> contributions_;  ///< of the patches that the last step began with

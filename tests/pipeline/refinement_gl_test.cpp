@@ -175,6 +175,14 @@ TEST_CASE("refinement: nothing is cut where nothing is wrong, and as much as was
     const Refinement number = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
     CHECK(number.mesh.size() >= 120);
     CHECK(number.mesh.size() < 200);
+    Scene two_sided = scene; // each split of the floor adds as much on its back
+    two_sided.surfaces[0].two_sided = true;
+    goal.patches = 200;
+    const Refinement both =
+        solve_refined(two_sided, PatchMesh(two_sided), settings_of(Preset::fast), {}, goal);
+    CHECK(both.mesh.size() >= 200);
+    CHECK(both.mesh.size() < 220);
+    goal.patches = 120;
     goal.error = 1e-9;
     const Refinement stopped = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
     CHECK_FALSE(stopped.stopped.empty());
