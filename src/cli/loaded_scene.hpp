@@ -5,7 +5,7 @@
 #include "cli/terminal.hpp"
 #include "hemi/io/result_file.hpp"
 #include "hemi/matrix/form_factor_matrix.hpp"
-#include "hemi/pipeline/refinement.hpp"
+#include "hemi/pipeline/coarse_mesh.hpp"
 #include "hemi/scene/imprint.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 

@@ -1,6 +1,7 @@
 #include "pipeline/answers.hpp"
 
 #include "hemi/core/text.hpp"
+#include "hemi/pipeline/coarse_mesh.hpp"
 #include "hemi/pipeline/cost.hpp"
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/radiosity.hpp"

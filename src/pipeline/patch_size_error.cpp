@@ -14,6 +14,7 @@
 #include "pipeline/error_sample.hpp"
 #include "pipeline/group_factor_errors.hpp"
 #include "pipeline/group_importance.hpp"
+#include "pipeline/image_count.hpp"
 #include "pipeline/patch_error_model.hpp"
 #include "pipeline/quarter_rows.hpp"
 #include "pipeline/vertex_bends.hpp"
@@ -46,6 +47,10 @@ constexpr double least_doubt = 0.03;
 constexpr double widest_sharp_sun = 1.0;
 // Variance of a linear field over that of its means over four equal parts.
 constexpr double linear_over_quarters = 4.0 / 3.0;
+
+double sample_size(std::size_t patches, double effort) {
+    return effort * std::clamp(sampled_share * static_cast<double>(patches), min_sampled, max_sampled);
+}
 
 class PatchSizeEstimator {
 public:
@@ -82,7 +87,8 @@ public:
         const std::vector<DrawnPatch> sample = draw(effort);
         const bool clusters = factors_.matrix.clusters() != nullptr;
         cut_ = cut_sample(mesh_, sample, !clusters);
-        const std::uint64_t bytes = quarter_row_bytes(*cut_, clusters);
+        const std::uint64_t bytes =
+            quarter_row_bytes(cut_->rows.size(), cut_->mesh.size() * image_count(mesh_), clusters);
         if (bytes > memory_limit(settings)) {
             observer.warning(fmt::format("what the patches' size does is not estimated: that needs about {}",
                                          memory_text(bytes)),
@@ -200,9 +206,7 @@ private:
             }
             mix_importance(importance, at_bends);
         }
-        const double count = effort * std::clamp(sampled_share * static_cast<double>(patches_.size()),
-                                                 min_sampled, max_sampled);
-        return draw_sample(patches_, importance, count);
+        return draw_sample(patches_, importance, sample_size(patches_.size(), effort));
     }
 
     /// What makes the error of a patch large, squared and absolute: how fast the radiosity changes there, how
@@ -617,6 +621,11 @@ private:
 };
 
 } // namespace
+
+std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, double effort) {
+    const auto rows = static_cast<std::uint64_t>(4.0 * sample_size(mesh.size(), effort));
+    return quarter_row_bytes(rows, std::uint64_t{4} * mesh.size() * image_count(mesh), false);
+}
 
 std::optional<PatchSizeError> estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh,
                                                         const FormFactors& factors, const Solution& solution,

@@ -4,7 +4,6 @@
 #include "hemi/engine/clustered_rows.hpp"
 #include "hemi/engine/visibility_weighted.hpp"
 #include "hemi/pipeline/form_factors.hpp"
-#include "pipeline/image_count.hpp"
 #include "pipeline/row_computation.hpp"
 
 #include <algorithm>
@@ -71,14 +70,13 @@ CutSample cut_sample(const PatchMesh& mesh, std::span<const DrawnPatch> sample, 
     return cut;
 }
 
-std::uint64_t quarter_row_bytes(const CutSample& cut, bool clusters) {
+std::uint64_t quarter_row_bytes(std::uint64_t rows, std::uint64_t columns, bool clusters) {
     constexpr std::uint64_t pair = 4 + 9;
     constexpr std::uint64_t patch = 500; // with what the engine knows of it
     constexpr std::uint64_t tree = 300;  // and what rows of clusters need
     constexpr std::uint64_t entries = 4096;
-    const std::uint64_t columns = cut.mesh.size() * image_count(cut.mesh);
-    return clusters ? cut.rows.size() * entries * pair + columns * (patch + tree)
-                    : cut.rows.size() * columns * pair + columns * patch;
+    return clusters ? rows * entries * pair + columns * (patch + tree)
+                    : rows * columns * pair + columns * patch;
 }
 
 FormFactorMatrix compute_quarter_rows(const CutSample& cut, RowPlan plan, const FactorSettings& settings,

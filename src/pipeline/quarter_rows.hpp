@@ -30,8 +30,10 @@ struct CutSample {
 [[nodiscard]] CutSample cut_sample(const PatchMesh& mesh, std::span<const DrawnPatch> sample, bool all);
 
 /// At most what compute_quarter_rows() and the finer mesh take.
+/// @param rows      of quarters
+/// @param columns   patches of the finer mesh, with their images
 /// @param clusters  as there
-[[nodiscard]] std::uint64_t quarter_row_bytes(const CutSample& cut, bool clusters);
+[[nodiscard]] std::uint64_t quarter_row_bytes(std::uint64_t rows, std::uint64_t columns, bool clusters);
 
 /// Rows of the quarters, as unoccluded factors times visibility.
 /// @param cut        the sample

@@ -9,7 +9,6 @@
 #include "hemi/engine/touching_faces.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/radiosity.hpp"
-#include "hemi/scene/imprint.hpp"
 #include "matrix/split_rows.hpp"
 #include "pipeline/image_count.hpp"
 #include "pipeline/known_corners.hpp"
@@ -29,8 +28,6 @@ namespace hemi {
 
 namespace {
 
-/// Patches that a refinement begins with, about: few enough to cost little, enough to see where the light is.
-constexpr double first_patches = 400.0;
 /// Of the square of a patch's error, what its parts together still have: a smooth field's 1/16, the half that
 /// is left along the edge of a shadow, and what is taken before a step has shown it.
 constexpr double least_left_by_parts = 1.0 / 16.0;
@@ -51,16 +48,16 @@ constexpr Pace by_bends{0.1, 0.55, 0.97, 0.8};
 /// Square of the error over that of the bends until a sample says it, at the end: there samples of rooms have
 /// said 1.6 to 2.5, more than the square_error_of_bend of smooth light.
 constexpr double usual_square_of_bend = 2.0;
-/// Vertices that are not new are gathered when the mesh has so many times more patches than when they last
-/// were, and before it is the last one: they show too old a light.
+/// Vertices that are not new are gathered again when the mesh has so many times more patches than when they
+/// last were, and for the last mesh: they show too old a light.
 constexpr double gather_again = 1.5;
-/// Times the usual sample of patches for estimates near the goal: refinement stops where they say so, and
-/// would stop too early by a lucky one.
+/// Times the usual sample of patches for estimates near the goal and of the last mesh: refinement stops where
+/// they say so, and would stop too early by a lucky one.
 constexpr double effort_near_goal = 2.0;
 /// For the same reason so many of the better rows that say how far the form factors are off, where they are
 /// a small part of all: in an office of 2,600 patches 32 say 1.6 to 2.3 %, 128 say 0.5 to 0.8 %, all 0.9 %.
 constexpr std::uint32_t most_reference_rows = 128;
-/// While the error is so many times the goal, the next step does not come near it, and old light will do.
+/// While the error is so many times the goal, the next step does not come near it: a usual sample will do.
 constexpr double far_from_goal = 2.0;
 /// Steps after which a smaller error is looked for in vain may be the last; their estimates must be good.
 constexpr std::size_t steps_of_small_samples = 3;
@@ -74,34 +71,6 @@ constexpr double entry_bytes = 2 * 9.0;
 constexpr const char* factors_are_left = "smaller patches no longer make the error smaller: what is left "
                                          "comes from the form factors, which a better "
                                          "preset would improve";
-
-/// Patches that a split adds on its side of a surface.
-std::uint32_t new_patches(const PatchSplit& split) {
-    return (split.along_u ? 2 : 1) * (split.along_v ? 2 : 1) - 1;
-}
-
-/// Counts what splits add to a mesh: of a two-sided surface both sides are cut, as either asks for.
-class AddedPatches {
-public:
-    explicit AddedPatches(const PatchMesh& mesh)
-        : mesh_(mesh), fronts_(mesh.size(), PatchSplit{0, false, false}) {}
-
-    void add(const PatchSplit& split) {
-        const std::uint32_t s = mesh_.surface_of()[split.patch];
-        const std::uint32_t side = mesh_.is_back(split.patch) ? mesh_.patches_per_side(s) : 0;
-        PatchSplit& both = fronts_[split.patch - side];
-        const std::uint32_t before = new_patches(both);
-        both.along_u = both.along_u || split.along_u;
-        both.along_v = both.along_v || split.along_v;
-        count_ += (new_patches(both) - before) * (mesh_.surfaces()[s].two_sided ? 2 : 1);
-    }
-    [[nodiscard]] std::size_t count() const { return count_; }
-
-private:
-    const PatchMesh& mesh_;
-    std::vector<PatchSplit> fronts_; ///< of every patch's front, what is asked for so far
-    std::size_t count_ = 0;
-};
 
 /// Of the patches to the square of the error that the goal is for.
 struct Contributions {
@@ -204,38 +173,31 @@ public:
 
     Refinement run() {
         Refinement::Step step = begin();
-        solve();
         for (;;) {
+            solve();
             Errors errors = estimate(false);
             step.error = errors.all;
             result_.steps.push_back(step);
             observer_.detail(fmt::format("refinement: {}, error {:.2g} %",
                                          plural(step.patches, "patch", "patches"), 100.0 * step.error));
             observer_.refined(result_);
-            if (is_enough(errors) || !may_go_on()) {
+            const bool may_end = is_enough(errors) || !may_go_on();
+            if (may_end) {
                 errors = finish();
-                result_.steps.back().error = errors.all;
-                if (goal_.error && errors.all <= *goal_.error) {
-                    result_.stopped.clear(); // met, whatever ended it
-                    return std::move(result_);
-                }
-                if (!goal_.error || !may_go_on() || !can_help(errors)) {
-                    return std::move(result_);
+                if (!goal_.error || is_met(errors) || !may_go_on() || !can_help(errors)) {
+                    return end(errors);
                 }
             }
             const std::vector<PatchSplit> chosen = choose(errors);
             if (chosen.empty()) {
                 result_.stopped = fmt::format("no patch is left that is larger than {:.2g}",
                                               least_size * result_.mesh.bounds().diagonal());
-                result_.steps.back().error = finish().all;
-                return std::move(result_);
+            } else {
+                step = split(chosen);
             }
-            step = split(chosen);
             if (!result_.stopped.empty()) {
-                result_.steps.back().error = finish().all;
-                return std::move(result_);
+                return end(may_end ? errors : finish());
             }
-            solve();
         }
     }
 
@@ -244,6 +206,19 @@ private:
 
     [[nodiscard]] const Pace& pace() const { return bends_.empty() ? by_samples : by_bends; }
 
+    [[nodiscard]] bool is_met(const Errors& errors) const {
+        return goal_.error && errors.all <= *goal_.error;
+    }
+
+    /// @param errors  as finish() found them
+    Refinement end(const Errors& errors) {
+        if (is_met(errors)) {
+            result_.stopped.clear(); // whatever ended it
+        }
+        return std::move(result_);
+    }
+
+    /// Whether the errors of a step are small enough to make sure of them by finish(), which takes a while.
     [[nodiscard]] bool is_enough(const Errors& errors) const {
         if (goal_.error) {
             return errors.all <= (bends_.empty() ? 1.0 : pace().aim) * *goal_.error;
@@ -308,7 +283,7 @@ private:
     /// Whether two steps, or as many small ones as make twice the patches, have not brought the error below
     /// nine tenths of what it was before.
     [[nodiscard]] bool is_stuck() const {
-        const std::vector<Refinement::Step>& steps = result_.steps;
+        const auto steps = std::span(result_.steps).subspan(first_comparable_);
         if (steps.size() < 4) {
             return false;
         }
@@ -353,7 +328,8 @@ private:
     void find_bends() {
         Solution& solution = result_.solution;
         if (!all_gathered_) {
-            // A run that goes on from stored rows knows no older light: its patches must be the same.
+            // A run that goes on from stored rows knows no older light: `--refine` is to cut the same
+            // patches.
             all_gathered_ = known_.values.empty() || rows_.checkpoint != nullptr ||
                             result_.mesh.size() > gather_again * static_cast<double>(patches_gathered_);
             gather_at_vertices(scene_, result_.mesh, settings_, Gather::on, solution, observer_,
@@ -368,7 +344,8 @@ private:
                                            solution.radiosity, solution.exitance, solution.back_face_share));
     }
 
-    /// From how the radiosity bends between gathered vertices; for the last mesh, by a sample.
+    /// From how the radiosity bends between gathered vertices. For the last mesh by a sample, and for the
+    /// first one where nothing bends, to know whether anything reflects light at all.
     Errors estimate_by_bends(bool last) {
         find_bends();
         double bend = rms_of_bends();
@@ -380,7 +357,7 @@ private:
             find_bends(); // all: none is known any more
             bend = rms_of_bends();
         }
-        if (!last) {
+        if (!last && (bend > 0.0 || !result_.steps.empty())) {
             return by_bend();
         }
         if (!estimate_by_sample(Gather::off, effort_near_goal)) {
@@ -389,6 +366,9 @@ private:
         const Errors errors = errors_of(result_.solution, goal_.error_of);
         square_of_bend_ = bend > 0.0 ? std::pow(errors.patch_size / bend, 2.0) : square_of_bend_;
         others_ = std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
+        if (last && first_comparable_ == 0) {
+            first_comparable_ = result_.steps.size() - 1;
+        }
         return errors;
     }
 
@@ -450,7 +430,9 @@ private:
         }
         all_gathered_ = true;
         patches_gathered_ = result_.mesh.size();
-        return estimate(true);
+        const Errors errors = estimate(true);
+        result_.steps.back().error = errors.all;
+        return errors;
     }
 
     [[nodiscard]] PatchSplit how_to_split(const PatchSplits& ways, std::uint32_t patch,
@@ -461,28 +443,49 @@ private:
                                                  bends_[std::size_t{patch} * solution.channels + channel]);
     }
 
+    /// A split of a patch, on both sides of its surface where it has two.
+    struct Candidate {
+        PatchSplit split;
+        double part = 0.0;       ///< of the square of the error that the goal is for
+        std::uint32_t added = 0; ///< patches
+    };
+
+    /// All that may be split, best first by what a new patch takes away.
+    /// @param parts     contributions of all patches
+    /// @param channels  where these are largest
+    [[nodiscard]] std::vector<Candidate> candidates(const PatchSplits& ways, std::span<const double> parts,
+                                                    std::span<const std::uint32_t> channels) const {
+        const PatchMesh& mesh = result_.mesh;
+        const double smallest = std::pow(least_size * mesh.bounds().diagonal(), 2.0);
+        std::vector<Candidate> result;
+        for (std::uint32_t front = 0; front < mesh.size(); ++front) {
+            if (mesh.is_back(front) || mesh.areas()[front] <= smallest) {
+                continue;
+            }
+            const std::uint32_t s = mesh.surface_of()[front];
+            const bool two_sided = mesh.surfaces()[s].two_sided;
+            const std::uint32_t back = two_sided ? front + mesh.patches_per_side(s) : front;
+            const std::uint32_t patch = parts[back] > parts[front] ? back : front; // says how to cut
+            if (!(parts[patch] > 0.0)) {
+                continue;
+            }
+            const PatchSplit split = how_to_split(ways, patch, channels[patch]);
+            const std::uint32_t added = split.along_u && split.along_v ? 3 : 1;
+            result.push_back({split, two_sided ? parts[front] + parts[back] : parts[front],
+                              two_sided ? 2 * added : added});
+        }
+        std::stable_sort(result.begin(), result.end(), [](const Candidate& a, const Candidate& b) {
+            return a.part / a.added > b.part / b.added;
+        });
+        return result;
+    }
+
     /// Patches that are to be split, ascending.
     [[nodiscard]] std::vector<PatchSplit> choose(const Errors& errors) {
         const PatchMesh& mesh = result_.mesh;
         auto [parts, channels] = contributions(mesh, result_.solution, goal_.error_of, bends_);
         const double left_by_parts = left_by(parts);
         const double total = std::accumulate(parts.begin(), parts.end(), 0.0);
-        std::vector<std::uint32_t> order;
-        const double smallest = std::pow(least_size * mesh.bounds().diagonal(), 2.0);
-        for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-            if (parts[i] > 0.0 && mesh.areas()[i] > smallest) {
-                order.push_back(i);
-            }
-        }
-        const PatchSplits ways(mesh);
-        std::vector<PatchSplit> splits(mesh.size());
-        std::vector<double> gains(mesh.size(), 0.0); // of a new patch
-        for (const std::uint32_t i : order) {
-            splits[i] = how_to_split(ways, i, channels[i]);
-            gains[i] = parts[i] / new_patches(splits[i]);
-        }
-        std::stable_sort(order.begin(), order.end(),
-                         [&gains](std::uint32_t a, std::uint32_t b) { return gains[a] > gains[b]; });
         // What the error's other parts leave for the patches' size, of the square of what it is now.
         // Estimates scatter, and a finer mesh is no worse than a coarser one: the least so far says how far
         // it is.
@@ -502,18 +505,19 @@ private:
         }
         double left = total;
         double not_chosen = total;
-        AddedPatches added(mesh);
+        std::size_t added = 0;
         std::vector<PatchSplit> chosen;
-        for (const std::uint32_t i : order) {
+        const PatchSplits ways(mesh);
+        for (const Candidate& candidate : candidates(ways, parts, channels)) {
             const bool enough =
                 not_chosen <= (1.0 - pace().share) * total || (goal_.error && left <= wanted * total);
-            if (added.count() >= most || (added.count() >= share(pace().least) && enough)) {
+            if (added >= most || (added >= share(pace().least) && enough)) {
                 break;
             }
-            not_chosen -= parts[i];
-            left -= (1.0 - left_by_parts) * parts[i];
-            chosen.push_back(splits[i]);
-            added.add(splits[i]);
+            not_chosen -= candidate.part;
+            left -= (1.0 - left_by_parts) * candidate.part;
+            chosen.push_back(candidate.split);
+            added += candidate.added;
         }
         ways.grade(chosen);
         contributions_ = std::move(parts);
@@ -565,9 +569,11 @@ private:
         }
         const double growth = static_cast<double>(finer.mesh.size()) / result_.mesh.size();
         const double of_entry = rows_are_in_file() ? 0.0 : entry_bytes;
-        const double bytes =
+        const double for_rows =
             pair_bytes * static_cast<double>(fresh.size() * image_count(finer.mesh)) * finer.mesh.size() +
             of_entry * growth * growth * static_cast<double>(result_.raw.matrix.entries());
+        const double bytes = std::max( // and the error of this mesh is to be known
+            for_rows, static_cast<double>(patch_size_error_bytes(finer.mesh, effort_near_goal)));
         if (bytes > static_cast<double>(memory_limit(settings_))) {
             result_.stopped =
                 fmt::format("{} would need about {} of memory", plural(finer.mesh.size(), "patch", "patches"),
@@ -606,72 +612,14 @@ private:
     std::uint32_t patches_gathered_ = 0;           ///< when all were last
     std::vector<double> bends_;                    ///< of the mesh, see vertex_bends(); empty: not known
     double square_of_bend_ = usual_square_of_bend; ///< square of the error over that of the bends
-    double others_ = 0.0; ///< what the error had of other parts when it was known last
+    std::size_t first_comparable_ = 0; ///< step from which errors are told by the same square, with others_
+    double others_ = 0.0;              ///< what the error had of other parts when it was known last
     double least_error_ = std::numeric_limits<double>::infinity(); ///< of the patches' size, so far
     std::vector<double> contributions_;  ///< of the patches that the last step began with
     std::vector<std::uint32_t> parents_; ///< of the patches as they are now, among those
 };
 
 } // namespace
-
-CoarseMesh coarse_mesh(const Scene& scene, bool with_imprint) {
-    double area = 0.0;
-    for (const Surface& surface : scene.surfaces) {
-        area += glm::length(area_vector(surface.polygon())) * (surface.two_sided ? 2.0 : 1.0);
-    }
-    const double size = std::sqrt(area / first_patches);
-    const auto shines = [&](const Surface& surface) {
-        const std::vector<double>& exitance = scene.materials[surface.material].exitance;
-        return std::any_of(exitance.begin(), exitance.end(), [](double value) { return value > 0.0; });
-    };
-    const auto lamps = std::count_if(scene.surfaces.begin(), scene.surfaces.end(), shines);
-    // Borders of shadows are as right as what shines has patches, since each of them gets a few shadow rays
-    // only; many lamps make up for one another.
-    constexpr double most_cells = 4.0;
-    const auto cells = static_cast<std::uint32_t>(std::clamp(
-        std::sqrt(first_patches / static_cast<double>(std::max<std::ptrdiff_t>(lamps, 1))), 1.0, most_cells));
-    Subdivision even;
-    even.patch_size = size;
-    PatchMesh as_read(scene, even);
-    Scene coarse = scene;
-    for (std::uint32_t s = 0; s < coarse.surfaces.size(); ++s) {
-        const Grid grid = as_read.grid(s);
-        const std::uint32_t least = shines(coarse.surfaces[s]) ? cells : 1;
-        coarse.surfaces[s].patches = Grid{std::max(least, grid.u), std::max(least, grid.v)};
-    }
-    as_read = PatchMesh(coarse);
-    if (auto cut = imprint(coarse, {}, with_imprint)) {
-        return {PatchMesh(cut->scene), as_read.whole_faces().mesh, std::move(cut->parts)};
-    }
-    return {as_read, as_read, {}};
-}
-
-PatchParts parts_of_faces(const PatchMesh& mesh, const CoarseMesh& begin, const PatchMesh& faces) {
-    for (std::uint32_t face = 0; face < faces.surfaces().size(); ++face) {
-        if (faces.patches_per_side(face) != 1) {
-            throw InvalidArgument(fmt::format("parts of faces: face {} has {}", face,
-                                              plural(faces.patches_per_side(face), "patch", "patches")));
-        }
-    }
-    std::vector<std::uint32_t> face_of; // of surfaces, into those of `faces`
-    for (const Surface& surface : begin.as_read.surfaces()) {
-        const auto next = face_of.empty() ? 0 : face_of.back() + 1;
-        face_of.push_back(surface.continues && next > 0 ? next - 1 : next);
-    }
-    PatchParts result;
-    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-        const std::uint32_t s = mesh.surface_of()[i];
-        const std::uint32_t first =
-            begin.mesh.first_patch(s) + (mesh.is_back(i) ? begin.mesh.patches_per_side(s) : 0);
-        const std::uint32_t patch = begin.parts.any() ? begin.parts.patch_of[first] : first;
-        result.patch_of.push_back(faces.first_patch(face_of[begin.as_read.surface_of()[patch]]) +
-                                  (begin.as_read.is_back(patch) ? 1 : 0));
-    }
-    for (std::uint32_t face = 0; face < faces.size(); ++face) {
-        result.group_of.push_back(faces.group(face));
-    }
-    return result;
-}
 
 Refinement solve_refined(const Scene& scene, const PatchMesh& coarse, const FactorSettings& settings,
                          const SolverSettings& solver, const RefinementGoal& goal, bool with_irradiance,

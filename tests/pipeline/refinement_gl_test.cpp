@@ -182,6 +182,17 @@ TEST_CASE("refinement: nothing is cut where nothing is wrong, and as much as was
         solve_refined(two_sided, PatchMesh(two_sided), settings_of(Preset::fast), {}, goal);
     CHECK(both.mesh.size() >= 200);
     CHECK(both.mesh.size() < 220);
+    Scene from_below = empty_scene(); // what is cut is the floor's back
+    from_below.materials.push_back(scene.materials[1]);
+    add_polygon(from_below, "floor", {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {4, 4});
+    from_below.surfaces.back().two_sided = true;
+    add_polygon(from_below, "lamp", {{0.3, 0.3, -1}, {0.5, 0.3, -1}, {0.5, 0.5, -1}, {0.3, 0.5, -1}});
+    from_below.surfaces.back().material = 1;
+    goal.gather = Gather::on;
+    const Refinement below = solve_refined(from_below, PatchMesh(from_below), settings_of(), {}, goal);
+    goal.gather = Gather::automatic;
+    CHECK(below.mesh.size() >= 200);
+    CHECK(below.mesh.size() < 220);
     goal.patches = 120;
     goal.error = 1e-9;
     const Refinement stopped = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
@@ -203,6 +214,11 @@ TEST_CASE("refinement: nothing is cut where nothing is wrong, and as much as was
     RefinementGoal more;
     more.patches = 100;
     CHECK_THROWS_AS(solve_refined(black, PatchMesh(black), settings_of(), {}, more), InvalidArgument);
+    more.gather = Gather::on;
+    CHECK_THROWS_AS(solve_refined(black, PatchMesh(black), settings_of(), {}, more), InvalidArgument);
+    Scene dark = scene;
+    dark.materials[1].exitance = {0.0};
+    CHECK_THROWS_AS(solve_refined(dark, PatchMesh(dark), settings_of(), {}, more), InvalidArgument);
     Scene many = scene;
     for (int k = 0; k < 70; ++k) {
         const double x = -0.9 + 0.02 * k;
@@ -231,6 +247,72 @@ TEST_CASE("refinement: an error below what the form factors allow is given up", 
     const Refinement stuck = solve_refined(scene, PatchMesh(scene), settings_of(Preset::fast), {}, goal);
     CHECK(stuck.stopped.find("no longer") != std::string::npos);
     CHECK(stuck.mesh.size() < 20000);
+}
+
+TEST_CASE("refinement: where better rows say that the error is not met, it goes on until they say it is",
+          "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4, 4);
+    FactorSettings rough = settings_of(); // so that form factors are a large part of the error
+    rough.engine.device = cpu_device;
+    rough.resolution = 24;
+    rough.shadow_rays = 0;
+    RefinementGoal goal;
+    goal.gather = Gather::on;
+    std::size_t went_on = 0;
+    for (const double error : {0.13, 0.12, 0.11, 0.1, 0.09}) {
+        goal.error = error;
+        std::vector<std::uint32_t> judged;
+        RefinementRows rows;
+        rows.store = [&](const PatchMesh& mesh, const FormFactors& raw) {
+            if (raw.reference.entries() > 0) {
+                judged.push_back(mesh.size());
+            }
+        };
+        const Refinement found =
+            solve_refined(scene, PatchMesh(scene), rough, {}, goal, false, no_observer(), std::move(rows));
+        INFO("error " << error);
+        CHECK(found.stopped.empty());
+        CHECK(found.steps.back().error <= error);
+        REQUIRE_FALSE(judged.empty());
+        CHECK(judged.back() == found.mesh.size());
+        for (const Refinement::Step& step : found.steps) {
+            const bool is_judged = std::count(judged.begin(), judged.end(), step.patches) > 0;
+            CHECK((!is_judged || step.patches == found.mesh.size() || step.error > error));
+        }
+        went_on += judged.size() - 1;
+    }
+    CHECK(went_on > 0);
+}
+
+TEST_CASE("refinement: that memory ends it does not count where the error is met", "[pipeline]") {
+    Scene scene = lamp_and_sheet(4, 4);
+    scene.surfaces.pop_back(); // without the sheet: bends in smooth light err on the safe side
+    RefinementGoal goal;
+    goal.gather = Gather::on;
+    goal.error = 8.3e-4;
+    std::vector<std::uint64_t> bytes;
+    std::vector<std::uint32_t> patches;
+    RefinementRows rows;
+    rows.store = [&](const PatchMesh& mesh, const FormFactors&) {
+        if (patches.empty() || patches.back() != mesh.size()) {
+            patches.push_back(mesh.size());
+            bytes.push_back(patch_size_error_bytes(mesh, 2.0));
+        }
+    };
+    (void)solve_refined(scene, PatchMesh(scene), settings_of(), {}, goal, false, no_observer(),
+                        std::move(rows));
+    REQUIRE(patches.size() > 2);
+    FactorSettings little = settings_of(); // for all meshes but the last
+    little.max_memory = (bytes.back() + bytes[bytes.size() - 2]) / 2;
+    const Refinement found = solve_refined(scene, PatchMesh(scene), little, {}, goal);
+    CHECK(found.mesh.size() == patches[patches.size() - 2]);
+    CHECK(found.steps.back().error <= *goal.error);
+    CHECK(found.stopped.empty());
+
+    goal.error = 1e-5;
+    const Refinement missed = solve_refined(scene, PatchMesh(scene), little, {}, goal);
+    CHECK(missed.stopped.find("memory") != std::string::npos);
+    CHECK(missed.steps.back().error > *goal.error); // and is known
 }
 
 TEST_CASE("refinement: sizes of patches side by side differ by a factor of two at most", "[pipeline]") {

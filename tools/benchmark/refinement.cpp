@@ -4,6 +4,7 @@
 #include "hemi/core/error.hpp"
 #include "hemi/core/stopwatch.hpp"
 #include "hemi/io/scene_reader.hpp"
+#include "hemi/pipeline/coarse_mesh.hpp"
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 #include "hemi/pipeline/refinement.hpp"
