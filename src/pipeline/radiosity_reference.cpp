@@ -206,6 +206,9 @@ RadiosityReference find_radiosity_reference(const Scene& scene, const PatchMesh&
     if (reflecting_patches(scene, mesh).empty()) {
         throw InvalidArgument("nothing in the scene reflects, so that no radiosity is to be found");
     }
+    if (scene.sun || scene.sky) {
+        throw InvalidArgument("what sun and sky light is not found at the points of a reference");
+    }
     const Stopwatch watch;
     FactorSettings other = settings;
     other.method = Method::hemicube;

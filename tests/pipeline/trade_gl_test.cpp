@@ -233,6 +233,9 @@ TEST_CASE("reference: nothing errs in a furnace, and nothing is found where noth
         point.position += Vec3(100.0, 0.0, 0.0);
     }
     CHECK_FALSE(judge_radiosity(mesh, coarse.solution, elsewhere));
+    scene.sun = Sun{};
+    CHECK_THROWS_AS(find_radiosity_reference(scene, mesh, mesh, settings_of(), 200), InvalidArgument);
+    scene.sun.reset();
     scene.materials[0].reflectance = {0.0};
     CHECK_THROWS_AS(find_radiosity_reference(scene, mesh, mesh, settings_of(), 200), InvalidArgument);
 }

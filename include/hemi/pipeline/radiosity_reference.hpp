@@ -42,7 +42,8 @@ struct RadiosityReference {
 /// @param settings  device, workers, memory
 /// @param count     about so many points
 /// @param observer  gets progress and may cancel
-/// @throws InvalidArgument if nothing reflects; as compute_form_factors() and solve_radiosity()
+/// @throws InvalidArgument if nothing reflects, or for a sun or a sky, whose light the points would lack; as
+/// compute_form_factors() and solve_radiosity()
 /// Source: I. H. Sloan, "Improvement by iteration for compact operator equations", Mathematics of Computation
 /// 30, 1976.
 [[nodiscard]] RadiosityReference find_radiosity_reference(const Scene& scene, const PatchMesh& mesh,
