@@ -50,7 +50,7 @@ constexpr Pace by_bends{0.1, 0.55, 0.97, 0.8};
 constexpr double usual_square_of_bend = 2.0;
 /// Vertices that are not new are gathered again when the mesh has so many times more patches than when they
 /// last were, and for the last mesh: they show too old a light.
-constexpr double gather_again = 1.5;
+constexpr double gather_again = 3.0;
 /// Times the usual sample of patches for estimates near the goal and of the last mesh: refinement stops where
 /// they say so, and would stop too early by a lucky one.
 constexpr double effort_near_goal = 2.0;
