@@ -623,7 +623,8 @@ private:
 } // namespace
 
 std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, double effort) {
-    const auto rows = static_cast<std::uint64_t>(4.0 * sample_size(mesh.size(), effort));
+    const double sampled = std::ceil(std::min<double>(sample_size(mesh.size(), effort), mesh.size()));
+    const auto rows = static_cast<std::uint64_t>(4.0 * sampled);
     return quarter_row_bytes(rows, std::uint64_t{4} * mesh.size() * image_count(mesh), false);
 }
 

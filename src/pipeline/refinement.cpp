@@ -43,7 +43,7 @@ struct Pace {
     double share; ///< of the error's square, whose patches are enough for a step
 };
 constexpr Pace by_samples{3.0 / 16.0, 1.0, 0.9, 1.0};
-/// Where all gathered vertices show where the error is: they cost less and scatter less.
+/// Where gathered vertices show where the error is: they cost less and scatter less.
 constexpr Pace by_bends{0.1, 0.55, 0.97, 0.8};
 /// Square of the error over that of the bends until a sample says it, at the end: there samples of rooms have
 /// said 1.6 to 2.5, more than the square_error_of_bend of smooth light.
@@ -283,7 +283,7 @@ private:
     /// Whether two steps, or as many small ones as make twice the patches, have not brought the error below
     /// nine tenths of what it was before.
     [[nodiscard]] bool is_stuck() const {
-        const auto steps = std::span(result_.steps).subspan(first_comparable_);
+        const auto steps = std::span(result_.steps).subspan(first_judged_.value_or(0));
         if (steps.size() < 4) {
             return false;
         }
@@ -366,8 +366,11 @@ private:
         const Errors errors = errors_of(result_.solution, goal_.error_of);
         square_of_bend_ = bend > 0.0 ? std::pow(errors.patch_size / bend, 2.0) : square_of_bend_;
         others_ = std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
-        if (last && first_comparable_ == 0) {
-            first_comparable_ = result_.steps.size() - 1;
+        if (last && !first_judged_) {
+            first_judged_ = result_.steps.size() - 1;
+        }
+        if (bend == 0.0) {
+            bends_.clear(); // which do not say what to cut
         }
         return errors;
     }
@@ -612,8 +615,8 @@ private:
     std::uint32_t patches_gathered_ = 0;           ///< when all were last
     std::vector<double> bends_;                    ///< of the mesh, see vertex_bends(); empty: not known
     double square_of_bend_ = usual_square_of_bend; ///< square of the error over that of the bends
-    std::size_t first_comparable_ = 0; ///< step from which errors are told by the same square, with others_
-    double others_ = 0.0;              ///< what the error had of other parts when it was known last
+    std::optional<std::size_t> first_judged_;      ///< step that a sample judged; those before know less
+    double others_ = 0.0; ///< what the error had of other parts when it was known last
     double least_error_ = std::numeric_limits<double>::infinity(); ///< of the patches' size, so far
     std::vector<double> contributions_;  ///< of the patches that the last step began with
     std::vector<std::uint32_t> parents_; ///< of the patches as they are now, among those
