@@ -622,10 +622,13 @@ private:
 
 } // namespace
 
-std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, double effort) {
+std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, double effort, std::uint32_t groups,
+                                     std::uint32_t channels) {
     const double sampled = std::ceil(std::min<double>(sample_size(mesh.size(), effort), mesh.size()));
     const auto rows = static_cast<std::uint64_t>(4.0 * sampled);
-    return quarter_row_bytes(rows, std::uint64_t{4} * mesh.size() * image_count(mesh), false);
+    const std::uint64_t bytes =
+        quarter_row_bytes(rows, std::uint64_t{4} * mesh.size() * image_count(mesh), false);
+    return groups > 0 ? bytes + GroupImportance::memory_bytes(mesh.size(), groups, channels) : bytes;
 }
 
 std::optional<PatchSizeError> estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh,

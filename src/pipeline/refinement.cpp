@@ -320,8 +320,21 @@ private:
             return estimate_by_bends(last);
         }
         return estimate_by_sample(gathers && !last ? Gather::on : Gather::off, far ? 1.0 : effort_near_goal)
-                   ? errors_of(result_.solution, goal_.error_of)
+                   ? errors_by_sample(last)
                    : Errors{not_known, not_known};
+    }
+
+    /// What the sample says; of the form factors' part, where it is not known, what was known last.
+    Errors errors_by_sample(bool last) {
+        Errors errors = errors_of(result_.solution, goal_.error_of);
+        if (last || errors.all > errors.patch_size) { // stored better rows say it from the first step on
+            others_ =
+                std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
+            first_judged_ = first_judged_.value_or(result_.steps.size() - 1);
+        } else {
+            errors.all = std::hypot(errors.patch_size, others_);
+        }
+        return errors;
     }
 
     /// Gathers vertices, all or those that are new, and finds the bends between them.
@@ -363,12 +376,8 @@ private:
         if (!estimate_by_sample(Gather::off, effort_near_goal)) {
             return {not_known, not_known};
         }
-        const Errors errors = errors_of(result_.solution, goal_.error_of);
+        const Errors errors = errors_by_sample(last);
         square_of_bend_ = bend > 0.0 ? std::pow(errors.patch_size / bend, 2.0) : square_of_bend_;
-        others_ = std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
-        if (last && !first_judged_) {
-            first_judged_ = result_.steps.size() - 1;
-        }
         if (bend == 0.0) {
             bends_.clear(); // which do not say what to cut
         }
@@ -575,8 +584,11 @@ private:
         const double for_rows =
             pair_bytes * static_cast<double>(fresh.size() * image_count(finer.mesh)) * finer.mesh.size() +
             of_entry * growth * growth * static_cast<double>(result_.raw.matrix.entries());
+        const std::size_t groups = goal_.error_of == ErrorOf::groups ? finer.mesh.groups().size() : 0;
         const double bytes = std::max( // and the error of this mesh is to be known
-            for_rows, static_cast<double>(patch_size_error_bytes(finer.mesh, effort_near_goal)));
+            for_rows, static_cast<double>(patch_size_error_bytes(finer.mesh, effort_near_goal,
+                                                                 static_cast<std::uint32_t>(groups),
+                                                                 result_.solution.channels)));
         if (bytes > static_cast<double>(memory_limit(settings_))) {
             result_.stopped =
                 fmt::format("{} would need about {} of memory", plural(finer.mesh.size(), "patch", "patches"),
@@ -615,7 +627,7 @@ private:
     std::uint32_t patches_gathered_ = 0;           ///< when all were last
     std::vector<double> bends_;                    ///< of the mesh, see vertex_bends(); empty: not known
     double square_of_bend_ = usual_square_of_bend; ///< square of the error over that of the bends
-    std::optional<std::size_t> first_judged_;      ///< step that a sample judged; those before know less
+    std::optional<std::size_t> first_judged_;      ///< step that better rows judged; those before know less
     double others_ = 0.0; ///< what the error had of other parts when it was known last
     double least_error_ = std::numeric_limits<double>::infinity(); ///< of the patches' size, so far
     std::vector<double> contributions_;  ///< of the patches that the last step began with

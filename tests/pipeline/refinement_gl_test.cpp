@@ -286,6 +286,37 @@ TEST_CASE("refinement: where better rows say that the error is not met, it goes 
     CHECK(went_on > 0);
 }
 
+TEST_CASE("refinement: without gathered vertices, steps know of the form factors once better rows were seen",
+          "[pipeline]") {
+    struct Steps : Observer {
+        void refined(const Refinement& so_far) override {
+            const double of_size = so_far.solution.patch_size_error->vertices.rms;
+            const double error = so_far.steps.back().error;
+            CHECK((judged > 0 ? error > of_size : error == of_size));
+            later += judged;
+        }
+        int judged = 0;
+        int later = 0;
+    } steps;
+    const Scene scene = lamp_and_sheet(4, 4);
+    FactorSettings rough = settings_of(); // so that form factors are a large part of the error
+    rough.engine.device = cpu_device;
+    rough.resolution = 16;
+    rough.shadow_rays = 0;
+    RefinementGoal goal;
+    goal.gather = Gather::off;
+    for (const double error : {0.19, 0.14, 0.13}) {
+        goal.error = error;
+        steps.judged = 0;
+        RefinementRows rows;
+        rows.store = [&](const PatchMesh&, const FormFactors& raw) {
+            steps.judged += raw.reference.entries() > 0 ? 1 : 0;
+        };
+        (void)solve_refined(scene, PatchMesh(scene), rough, {}, goal, false, steps, std::move(rows));
+    }
+    CHECK(steps.later > 2);
+}
+
 TEST_CASE("refinement: that memory ends it does not count where the error is met", "[pipeline]") {
     Scene scene = lamp_and_sheet(4, 4);
     scene.surfaces.pop_back(); // without the sheet: bends in smooth light err on the safe side
@@ -298,7 +329,7 @@ TEST_CASE("refinement: that memory ends it does not count where the error is met
     rows.store = [&](const PatchMesh& mesh, const FormFactors&) {
         if (patches.empty() || patches.back() != mesh.size()) {
             patches.push_back(mesh.size());
-            bytes.push_back(patch_size_error_bytes(mesh, 2.0));
+            bytes.push_back(patch_size_error_bytes(mesh, 2.0, 0, 1));
         }
     };
     (void)solve_refined(scene, PatchMesh(scene), settings_of(), {}, goal, false, no_observer(),
@@ -315,6 +346,25 @@ TEST_CASE("refinement: that memory ends it does not count where the error is met
     const Refinement missed = solve_refined(scene, PatchMesh(scene), little, {}, goal);
     CHECK(missed.stopped.find("memory") != std::string::npos);
     CHECK(missed.steps.back().error > *goal.error); // and is known
+}
+
+TEST_CASE("refinement: by groups, memory ends it before their errors are no longer known", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4, 4);
+    const PatchMesh coarse(scene);
+    const auto groups = static_cast<std::uint32_t>(coarse.groups().size());
+    RefinementGoal goal;
+    goal.error_of = ErrorOf::groups;
+    goal.error = 1e-6;
+    goal.patches = coarse.size() + 8;
+    const PatchMesh finer = solve_refined(scene, coarse, settings_of(), {}, goal).mesh;
+    FactorSettings little = settings_of(); // for the rows of the finer mesh's sample, not for its groups
+    little.max_memory =
+        (patch_size_error_bytes(finer, 2.0, 0, 1) + patch_size_error_bytes(finer, 2.0, groups, 1)) / 2;
+    REQUIRE(*little.max_memory > patch_size_error_bytes(coarse, 2.0, groups, 1));
+    const Refinement found = solve_refined(scene, coarse, little, {}, goal);
+    CHECK(found.mesh.size() == coarse.size());
+    CHECK(found.stopped.find("memory") != std::string::npos);
+    CHECK(found.steps.back().error > *goal.error);
 }
 
 TEST_CASE("refinement: sizes of patches side by side differ by a factor of two at most", "[pipeline]") {

@@ -62,10 +62,13 @@ estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const FormF
                           Observer& observer = no_observer(), Gather gather = Gather::off,
                           double effort = 1.0);
 
-/// Bytes that estimate_patch_size_error() takes at most, without those of the groups' errors.
-/// @param mesh    whose rows are without clusters
-/// @param effort  as there
-[[nodiscard]] std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, double effort);
+/// Bytes that estimate_patch_size_error() takes at most.
+/// @param mesh      whose rows are without clusters
+/// @param effort    as there
+/// @param groups    whose errors are wanted; 0: those of no group
+/// @param channels  of the solution
+[[nodiscard]] std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, double effort, std::uint32_t groups,
+                                                   std::uint32_t channels);
 
 /// The same where the solution must not be lost: what cannot be estimated is told to the observer as a
 /// warning.
