@@ -20,14 +20,26 @@ namespace {
 /// Patches that a refinement begins with, about: few enough to cost little, enough to see where the light is.
 constexpr double first_patches = 400.0;
 
+/// As many patches of size 1 as a surface is cut into, but for rounding; see grid_for_size().
+double patches_of_unit_size(const Surface& surface) {
+    const auto& p = surface.vertices;
+    const auto longest = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
+        return std::max(glm::distance(p[a], p[b]), glm::distance(p[c], p[d]));
+    };
+    const double one_side = surface.vertex_count == 3
+                                ? std::pow(std::max(longest(0, 1, 1, 2), glm::distance(p[2], p[0])), 2.0)
+                                : longest(0, 1, 2, 3) * longest(1, 2, 3, 0);
+    return (surface.two_sided ? 2.0 : 1.0) * one_side;
+}
+
 } // namespace
 
 CoarseMesh coarse_mesh(const Scene& scene, bool with_imprint) {
-    double area = 0.0;
+    double patches = 0.0;
     for (const Surface& surface : scene.surfaces) {
-        area += glm::length(area_vector(surface.polygon())) * (surface.two_sided ? 2.0 : 1.0);
+        patches += patches_of_unit_size(surface);
     }
-    const double size = std::sqrt(area / first_patches);
+    const double size = std::sqrt(patches / first_patches);
     const auto shines = [&](const Surface& surface) {
         const std::vector<double>& exitance = scene.materials[surface.material].exitance;
         return std::any_of(exitance.begin(), exitance.end(), [](double value) { return value > 0.0; });
