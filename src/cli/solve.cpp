@@ -92,11 +92,14 @@ bool is_lit_from_outside(const Scene& scene) {
                        [](double exitance) { return exitance > 0.0; });
 }
 
-/// Where light comes from and is reflected; all where something is wanted of all, or light comes from
-/// outside.
+/// Whether the light that reaches black patches is wanted: for tables, or since it comes from outside.
+bool wants_irradiance(const SolveArguments& arguments, const Scene& scene) {
+    return arguments.with_irradiance() || is_lit_from_outside(scene);
+}
+
+/// Where light comes from and is reflected; all where something is wanted of all.
 std::vector<std::uint32_t> needed_patches(const SolveArguments& arguments, const LoadedScene& loaded) {
-    if (arguments.factors || arguments.with_irradiance() || arguments.patches ||
-        is_lit_from_outside(loaded.scene)) {
+    if (arguments.factors || arguments.patches || wants_irradiance(arguments, loaded.scene)) {
         return all_patches(loaded.mesh.size());
     }
     return reflecting_patches(loaded.scene, loaded.mesh).empty()
@@ -125,7 +128,7 @@ Solved solve(const SolveArguments& arguments, const LoadedScene& loaded, Observe
     seconds["repair"] = repair_watch.seconds();
     const Stopwatch solve_watch;
     Solution solution = solve_radiosity(loaded.scene, loaded.mesh, factors, arguments.solver, observer,
-                                        arguments.with_irradiance() || is_lit_from_outside(loaded.scene));
+                                        wants_irradiance(arguments, loaded.scene));
     seconds["solve"] = solution.seconds;
     seconds["estimate"] += solve_watch.seconds() - solution.seconds;
     return {std::move(factors), std::move(solution)};
@@ -159,7 +162,7 @@ Solved solve_to_target(const SolveArguments& arguments, const LoadedScene& loade
                        const Terminal& terminal, Seconds& seconds) {
     TargetResult found = hemi::solve_to_target(
         loaded.scene, loaded.mesh, needed_patches(arguments, loaded), arguments.rows.factors,
-        arguments.solver, *arguments.rows.error_target, observer, arguments.with_irradiance());
+        arguments.solver, *arguments.rows.error_target, observer, wants_irradiance(arguments, loaded.scene));
     store_rows(arguments, found.raw, terminal);
     seconds["search"] = found.search_seconds;
     seconds["factors"] = found.factor_seconds;
@@ -192,7 +195,7 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
                 store_rows(arguments, raw, terminal);
             };
             return solve_refined(loaded.scene, start.begin.mesh, settings, arguments.solver, goal,
-                                 arguments.with_irradiance(), observer, std::move(rows));
+                                 wants_irradiance(arguments, loaded.scene), observer, std::move(rows));
         });
     loaded.adopt(std::move(found.mesh), start.begin, arguments.parts);
     found.factors.parts = loaded.parts();

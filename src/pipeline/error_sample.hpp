@@ -44,7 +44,7 @@ inline std::vector<DrawnPatch> draw_sample(const std::vector<std::uint32_t>& pat
     return sample;
 }
 
-/// SampledErrors at quarters of patches, with the areas they stand for.
+/// Errors at quarters of patches, with the areas they stand for.
 class SampledErrors {
 public:
     void add(double error, double area) { errors_.push_back({std::abs(error), area}); }

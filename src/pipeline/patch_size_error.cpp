@@ -73,7 +73,8 @@ public:
         find_units();
         near_ = patches_near_surfaces(mesh_);
         if (gathered_) {
-            find_visible();
+            visible_ = visible_radiosity(mesh_, SmoothSurfaces(mesh_), near_, channels_, solution_.radiosity,
+                                         solution_.exitance, solution_.back_face_share);
             bends_ = vertex_bends(mesh_, solution_, visible_);
         }
     }
@@ -82,9 +83,9 @@ public:
         return std::any_of(units_.begin(), units_.end(), [](double unit) { return unit > 0.0; });
     }
 
-    [[nodiscard]] std::optional<PatchSizeError> run(const FactorSettings& settings, Gather gather,
-                                                    double effort, Observer& observer) {
-        const std::vector<DrawnPatch> sample = draw(effort);
+    [[nodiscard]] std::optional<PatchSizeError> run(const FactorSettings& settings,
+                                                    const PatchSizeSample& wanted, Observer& observer) {
+        const std::vector<DrawnPatch> sample = draw(wanted.effort);
         const bool clusters = factors_.matrix.clusters() != nullptr;
         cut_ = cut_sample(mesh_, sample, !clusters);
         const std::uint64_t bytes =
@@ -96,15 +97,12 @@ public:
             return std::nullopt;
         }
 
-        if (gather == Gather::on && solution_.vertex_radiosity.empty()) {
-            gather_sample(sample, settings, observer);
-        }
         const FormFactorMatrix factors = compute_quarter_rows(*cut_, plan_rows(settings, mesh_.size()),
                                                               settings, scene_, clusters, observer);
         direct_ = direct_irradiances(scene_, cut_->mesh, factors, cut_->rows);
         if (clusters) { // rows that cannot be solved backwards
             observer.detail("errors of groups are not estimated where far patches stand in clusters");
-        } else {
+        } else if (wanted.groups) {
             find_importance(bytes, settings, observer);
         }
         find_sources(factors.clusters().get());
@@ -272,7 +270,7 @@ private:
                               bends_.empty() ? 1.0 : missed_bends(sample, channel));
     }
 
-    /// SampledErrors of all patches that count, modelled by their signs, see PatchErrorModel; then scaled to
+    /// Errors of all patches that count, modelled by their signs, see PatchErrorModel; then scaled to
     /// the whole. Patches of the sample have no less than was found there.
     /// @param squares  of the sample: area means of the squared errors of every patch, channel by channel
     [[nodiscard]] std::vector<double> model_patches(const std::vector<DrawnPatch>& sample,
@@ -296,21 +294,6 @@ private:
             }
         }
         return result;
-    }
-
-    /// What the corners of the sample would show if all were gathered.
-    void gather_sample(const std::vector<DrawnPatch>& sample, const FactorSettings& settings,
-                       Observer& observer) {
-        std::vector<std::uint32_t> patches;
-        for (const DrawnPatch& drawn : sample) {
-            patches.push_back(drawn.patch);
-        }
-        VertexGather vertices(mesh_, solution_.back_face_share, patches);
-        shown_ = CornerInterpolation(mesh_,
-                                     vertices.compute(patch_values(scene_, mesh_), solution_.radiosity,
-                                                      settings, scene_.enclosure, 0, observer),
-                                     channels_);
-        gathered_ = true;
     }
 
     /// Importance of every patch for every group, where there are not too many groups.
@@ -430,19 +413,11 @@ private:
         return {{1.0, 0.0}};
     }
 
-    void find_visible() {
-        visible_ = visible_radiosity(mesh_, SmoothSurfaces(mesh_), near_, channels_, solution_.radiosity,
-                                     solution_.exitance, solution_.back_face_share);
-    }
-
     /// How the radiosity varies within the patches that are cut, where it is known well enough: at gathered
     /// vertices. A gather takes patches for even, which is the error that it leaves.
     void find_variation(const SourceClusters* clusters) {
         if (!gathered_) {
             return;
-        }
-        if (visible_.empty()) {
-            find_visible();
         }
         const PatchMesh& fine = cut_->mesh;
         variation_.assign(std::size_t{fine.size()} * channels_, 0.0);
@@ -482,7 +457,7 @@ private:
         return light;
     }
 
-    /// SampledErrors of the mean irradiance of the groups.
+    /// Errors of the mean irradiance of the groups.
     /// @param sums  of A (G(s) - G_i) (h_i + rho_i z(s)) over the sample, see estimate_patch_size_error():
     /// channel c
     ///   of group g at [g·channels + c]
@@ -606,7 +581,7 @@ private:
     std::vector<double> reflectance_;
     CornerInterpolation means_;          // over the patches that meet at a corner
     CornerInterpolation shown_;          // what pictures show
-    bool gathered_;                      // whether these are gathered values, at least those of the sample
+    bool gathered_;                      // whether these are gathered values
     std::vector<std::uint32_t> patches_; // those that reflect and are not buried, ascending
     std::vector<double> units_;          // a channel: rms of B - E over them
     std::vector<std::uint32_t> near_;    // patches with a surface near in front of them, ascending
@@ -622,25 +597,28 @@ private:
 
 } // namespace
 
-std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, double effort, std::uint32_t groups,
+std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, const PatchSizeSample& sample,
                                      std::uint32_t channels) {
-    const double sampled = std::ceil(std::min<double>(sample_size(mesh.size(), effort), mesh.size()));
+    const double sampled = std::ceil(std::min<double>(sample_size(mesh.size(), sample.effort), mesh.size()));
     const auto rows = static_cast<std::uint64_t>(4.0 * sampled);
     const std::uint64_t bytes =
         quarter_row_bytes(rows, std::uint64_t{4} * mesh.size() * image_count(mesh), false);
-    return groups > 0 ? bytes + GroupImportance::memory_bytes(mesh.size(), groups, channels) : bytes;
+    const std::size_t groups = mesh.groups().size();
+    return sample.groups && groups <= GroupImportance::most_groups
+               ? bytes + GroupImportance::memory_bytes(mesh.size(), groups, channels)
+               : bytes;
 }
 
 std::optional<PatchSizeError> estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh,
                                                         const FormFactors& factors, const Solution& solution,
                                                         const FactorSettings& settings, Observer& observer,
-                                                        Gather gather, double effort) {
+                                                        const PatchSizeSample& sample) {
     const Stopwatch watch;
     PatchSizeEstimator estimator(scene, mesh, factors, solution);
     if (!estimator.anything_reflects()) {
         return std::nullopt;
     }
-    std::optional<PatchSizeError> error = estimator.run(settings, gather, effort, observer);
+    std::optional<PatchSizeError> error = estimator.run(settings, sample, observer);
     if (error) {
         error->seconds = watch.seconds();
         observer.detail(fmt::format("patch size: {} of {} patches cut in four in {:.2g} s", error->sampled,

@@ -10,6 +10,7 @@
 #include "hemi/pipeline/patch_size_error.hpp"
 #include "hemi/pipeline/radiosity.hpp"
 #include "matrix/split_rows.hpp"
+#include "pipeline/corner_interpolation.hpp"
 #include "pipeline/image_count.hpp"
 #include "pipeline/known_corners.hpp"
 #include "pipeline/patch_splits.hpp"
@@ -21,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <numeric>
 #include <utility>
 
@@ -64,15 +66,11 @@ constexpr std::size_t steps_of_small_samples = 3;
 /// Patches are not cut into more than this share of the scene's diagonal: two surfaces that touch have
 /// singular light there, at any size.
 constexpr double least_size = 1e-3;
-/// Bytes a pair of a new row and a patch while visibilities are combined, and an entry of two matrices.
+/// Bytes a pair of a new row and a patch while visibilities are combined, and an entry of a matrix.
 constexpr double pair_bytes = 4.0;
-constexpr double entry_bytes = 2 * 9.0;
+constexpr double entry_bytes = 9.0;
 
-constexpr const char* factors_are_left = "smaller patches no longer make the error smaller: what is left "
-                                         "comes from the form factors, which a better "
-                                         "preset would improve";
-
-/// Of the patches to the square of the error that the goal is for.
+/// Of the patches to the square of an error: of the vertices where that is the goal, else of the field.
 struct Contributions {
     std::vector<double> parts;           ///< area times squared error, relative to what is reflected
     std::vector<std::uint32_t> channels; ///< where that is largest, which these are of
@@ -88,29 +86,21 @@ Contributions contributions(const PatchMesh& mesh, const Solution& solution, Err
             reflected[c] += mesh.areas()[i] * std::pow(solution.radiosity[at] - solution.exitance[at], 2.0);
         }
     }
-    std::vector<float> corners;
-    if (error_of != ErrorOf::vertices) {
-        corners = corner_values(mesh, channels, solution.radiosity, solution.back_face_share);
+    std::optional<CornerInterpolation> corners;
+    if (bends.empty() && error_of != ErrorOf::vertices) {
+        corners.emplace(mesh, corner_values(mesh, channels, solution.radiosity, solution.back_face_share),
+                        channels);
     }
     Contributions result{std::vector<double>(mesh.size(), 0.0), std::vector<std::uint32_t>(mesh.size(), 0)};
     for (std::uint32_t i = 0; i < mesh.size(); ++i) {
         if (solution.back_face_share[i] > buried_above) {
             continue;
         }
-        const std::uint32_t count = mesh.corners(i).count;
         for (std::uint32_t c = 0; c < channels; ++c) {
             const std::size_t at = std::size_t{i} * channels + c;
-            double square = 0.0;
-            if (!bends.empty()) {
-                square = bends[at] * bends[at];
-            } else if (error_of == ErrorOf::vertices) {
-                square = std::pow(solution.patch_size_error->patches[at], 2.0);
-            } else {
-                for (std::uint32_t k = 0; k < count; ++k) {
-                    const auto corner = static_cast<double>(corners[(std::size_t{i} * 4 + k) * channels + c]);
-                    square += std::pow(corner - solution.radiosity[at], 2.0) / count;
-                }
-            }
+            const double square = !bends.empty() ? bends[at] * bends[at]
+                                  : corners      ? corners->square(i, solution, c)
+                                                 : std::pow(solution.patch_size_error->patches[at], 2.0);
             const double part = reflected[c] > 0.0 ? mesh.areas()[i] * square / reflected[c] : 0.0;
             if (part > result.parts[i]) {
                 result.parts[i] = part;
@@ -121,44 +111,30 @@ Contributions contributions(const PatchMesh& mesh, const Solution& solution, Err
     return result;
 }
 
-/// Of the patch-size part of the goal's error and of all of it.
+/// Of the patch-size part of the goal's error and of all of it; not numbers where they are not known.
 struct Errors {
-    double patch_size = 0.0;
-    double all = 0.0;
+    double patch_size = std::numeric_limits<double>::quiet_NaN();
+    double all = std::numeric_limits<double>::quiet_NaN();
 };
+/// Of groups, the one that errs most counts.
 Errors errors_of(const Solution& solution, ErrorOf error_of) {
-    const auto worst = [](double so_far, double error) { return error > so_far ? error : so_far; };
     const PatchSizeError& of_size = *solution.patch_size_error;
-    Errors errors;
-    switch (error_of) {
-    case ErrorOf::field:
-        errors.patch_size = of_size.field.rms;
-        break;
-    case ErrorOf::groups:
-        if (std::none_of(of_size.groups.begin(), of_size.groups.end(),
-                         [](const GroupError& group) { return std::isfinite(group.patch_size); })) {
-            throw InvalidArgument(
-                "errors of groups cannot be estimated: there are too many, memory is short, or "
-                "none gets light",
-                {"error-target-of"});
-        }
-        for (const GroupError& group : of_size.groups) {
-            errors.patch_size = worst(errors.patch_size, group.patch_size);
-        }
-        break;
-    default:
-        errors.patch_size = of_size.vertices.rms;
+    const std::optional<SolutionError> total = solution_error(solution);
+    if (error_of == ErrorOf::field) {
+        return {of_size.field.rms, total ? total->field.rms : of_size.field.rms};
     }
-    errors.all = errors.patch_size;
-    if (const auto total = solution_error(solution)) {
-        errors.all = error_of == ErrorOf::field      ? total->field.rms
-                     : error_of == ErrorOf::vertices ? total->vertices.rms
-                                                     : 0.0;
-        for (const double group : total->groups) {
-            errors.all = error_of == ErrorOf::groups ? worst(errors.all, group) : errors.all;
+    if (error_of == ErrorOf::vertices) {
+        return {of_size.vertices.rms, total ? total->vertices.rms : of_size.vertices.rms};
+    }
+    Errors worst;
+    for (std::size_t g = 0; g < of_size.groups.size(); ++g) {
+        const double of_group = of_size.groups[g].patch_size;
+        const double all = total ? total->groups[g] : of_group;
+        if (std::isfinite(all) && !(all <= worst.all)) {
+            worst = {of_group, all};
         }
     }
-    return errors;
+    return worst;
 }
 
 class Refiner {
@@ -250,11 +226,11 @@ private:
     /// Stores the rows of a step, which are complete.
     void keep() {
         result_.raw.cuts = result_.mesh.cuts();
-        if (rows_.checkpoint != nullptr) {
-            rows_.checkpoint->start_over();
-        }
         if (rows_.store) {
             rows_.store(result_.mesh, result_.raw);
+        }
+        if (rows_.checkpoint != nullptr) { // whose rows are not lost before they are stored
+            rows_.checkpoint->start_over();
         }
     }
 
@@ -264,7 +240,9 @@ private:
             result_.stopped = fmt::format("{} are as many as were asked for",
                                           plural(result_.mesh.size(), "patch", "patches"));
         } else if (goal_.error && is_stuck()) {
-            result_.stopped = factors_are_left;
+            result_.stopped =
+                "smaller patches no longer make the error smaller: what is left comes from the form "
+                "factors, which a better preset would improve";
         } else if (goal_.seconds > 0.0 && watch_.seconds() > goal_.seconds) {
             result_.stopped = fmt::format("the {} of the budget are over", seconds_text(goal_.seconds));
         }
@@ -273,9 +251,13 @@ private:
 
     /// Whether smaller patches alone can meet the goal; says so where they cannot.
     bool can_help(const Errors& errors) {
-        const double others = errors.all * errors.all - errors.patch_size * errors.patch_size;
-        if (others >= std::pow(pace().aim * *goal_.error, 2.0)) {
-            result_.stopped = factors_are_left;
+        const double others =
+            std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
+        if (others >= pace().aim * *goal_.error) {
+            result_.stopped =
+                fmt::format("{:.2g} % come from the form factors, which leaves too little for the "
+                            "patches' size; a better preset would improve them",
+                            100.0 * others);
         }
         return result_.stopped.empty();
     }
@@ -312,25 +294,26 @@ private:
     /// @param last  with all vertices, if they are gathered, and the form factors' error
     Errors estimate(bool last) {
         const std::vector<Refinement::Step>& steps = result_.steps;
-        const bool far = !last && steps.size() < steps_of_small_samples &&
-                         (!goal_.error || steps.empty() || steps.back().error > far_from_goal * *goal_.error);
+        // Without an error to be met no step but the last needs more; nor could one that goes on from stored
+        // rows know how many steps there were.
+        const bool far =
+            !last && (!goal_.error || (steps.size() < steps_of_small_samples &&
+                                       (steps.empty() || steps.back().error > far_from_goal * *goal_.error)));
         const bool gathers = should_gather(goal_.gather, settings_, result_.mesh, result_.solution);
         bends_.clear();
         if (gathers && goal_.error_of == ErrorOf::vertices) {
             return estimate_by_bends(last);
         }
-        return estimate_by_sample(gathers && !last ? Gather::on : Gather::off, far ? 1.0 : effort_near_goal)
-                   ? errors_by_sample(last)
-                   : Errors{not_known, not_known};
+        return estimate_by_sample(last, far ? 1.0 : effort_near_goal) ? errors_by_sample(last) : Errors{};
     }
 
     /// What the sample says; of the form factors' part, where it is not known, what was known last.
     Errors errors_by_sample(bool last) {
         Errors errors = errors_of(result_.solution, goal_.error_of);
         if (last || errors.all > errors.patch_size) { // stored better rows say it from the first step on
-            others_ =
-                std::sqrt(std::max(0.0, errors.all * errors.all - errors.patch_size * errors.patch_size));
-            first_judged_ = first_judged_.value_or(result_.steps.size() - 1);
+            const double others = errors.all * errors.all - errors.patch_size * errors.patch_size;
+            others_ = std::sqrt(std::max(0.0, others));
+            first_judged_ = first_judged_.value_or(last ? result_.steps.size() - 1 : result_.steps.size());
         } else {
             errors.all = std::hypot(errors.patch_size, others_);
         }
@@ -373,8 +356,8 @@ private:
         if (!last && (bend > 0.0 || !result_.steps.empty())) {
             return by_bend();
         }
-        if (!estimate_by_sample(Gather::off, effort_near_goal)) {
-            return {not_known, not_known};
+        if (!estimate_by_sample(last, effort_near_goal)) {
+            return {};
         }
         const Errors errors = errors_by_sample(last);
         square_of_bend_ = bend > 0.0 ? std::pow(errors.patch_size / bend, 2.0) : square_of_bend_;
@@ -405,26 +388,52 @@ private:
         return std::sqrt(worst);
     }
 
-    /// @return whether memory allows it; else it was said
-    bool estimate_by_sample(Gather gather, double effort) {
-        result_.solution.patch_size_error = estimate_patch_size_error(
-            scene_, result_.mesh, result_.factors, result_.solution, settings_, observer_, gather, effort);
-        if (!result_.solution.patch_size_error) {
-            if (!result_.steps.empty()) {
-                result_.stopped = fmt::format("memory is short to estimate the error of {}",
-                                              plural(result_.mesh.size(), "patch", "patches"));
-                return false;
-            }
-            throw InvalidArgument(
-                "patches cannot be cut where it tells: nothing in the scene reflects light, or "
-                "memory is short",
-                {"error-target"});
-        }
-        return true;
+    /// What the estimate of an error looks at.
+    [[nodiscard]] PatchSizeSample sample(bool last, double effort) const {
+        return {effort, last || goal_.error_of == ErrorOf::groups};
     }
 
-    /// Errors of the form factors and gathered vertices for the mesh as it is now.
+    /// @return whether the error of the goal is known; else it was said why not
+    bool estimate_by_sample(bool last, double effort) {
+        const PatchMesh& mesh = result_.mesh;
+        PatchSizeSample of = sample(last, effort);
+        if (patch_size_error_bytes(mesh, of, result_.solution.channels) > memory_limit(settings_)) {
+            of.effort = 1.0;
+        }
+        result_.solution.patch_size_error = estimate_patch_size_error(
+            scene_, mesh, result_.factors, result_.solution, settings_, observer_, of);
+        const bool is_estimated = result_.solution.patch_size_error.has_value();
+        std::string why;
+        if (!is_estimated) {
+            why = result_.steps.empty()
+                      ? "patches cannot be cut where it tells: nothing in the scene reflects "
+                        "light, or memory is short"
+                      : fmt::format("memory is short to estimate the error of {}",
+                                    plural(mesh.size(), "patch", "patches"));
+        } else if (std::isnan(errors_of(result_.solution, goal_.error_of).all)) {
+            why = "errors of groups cannot be estimated: there are too many, memory is short, or none gets "
+                  "light";
+        }
+        if (!why.empty() && result_.steps.empty()) { // nothing was found that could be lost
+            throw InvalidArgument(why, {is_estimated ? "error-target-of" : "error-target"});
+        }
+        result_.stopped = why.empty() ? result_.stopped : why;
+        return why.empty();
+    }
+
+    /// Errors of the form factors and gathered vertices for the mesh as it is now. Where memory is short,
+    /// nothing changes but Refinement::stopped.
     Errors finish() {
+        try {
+            return try_to_finish();
+        } catch (const OutOfMemory& error) {
+            result_.stopped = error.what();
+        } catch (const std::bad_alloc&) {
+            result_.stopped = "memory is short to find the errors of the form factors";
+        }
+        return {};
+    }
+    Errors try_to_finish() {
         if (result_.raw.reference.entries() == 0) { // else they were stored
             add_reference_rows(result_.raw, result_.mesh, settings_, observer_, most_reference_rows);
             estimate_error(result_.raw);
@@ -432,18 +441,21 @@ private:
         }
         result_.factors.reference = result_.raw.reference;
         estimate_error(result_.factors);
-        std::vector<float> vertices = std::move(result_.solution.vertex_radiosity);
-        result_.solution =
+        Solution solution =
             solve_radiosity(scene_, result_.mesh, result_.factors, solver_, observer_, with_irradiance_);
-        if (vertices.empty() || !all_gathered_) {
-            gather_at_vertices(scene_, result_.mesh, settings_, goal_.gather, result_.solution, observer_);
-        } else { // the light is the same
-            result_.solution.vertex_radiosity = std::move(vertices);
+        std::vector<float>& vertices = result_.solution.vertex_radiosity;
+        if (all_gathered_ && !vertices.empty()) { // the light is the same
+            solution.vertex_radiosity = std::move(vertices);
+        } else {
+            gather_at_vertices(scene_, result_.mesh, settings_, goal_.gather, solution, observer_);
         }
+        result_.solution = std::move(solution);
         all_gathered_ = true;
         patches_gathered_ = result_.mesh.size();
         const Errors errors = estimate(true);
-        result_.steps.back().error = errors.all;
+        if (!std::isnan(errors.all)) {
+            result_.steps.back().error = errors.all;
+        }
         return errors;
     }
 
@@ -562,6 +574,8 @@ private:
             return try_split(chosen);
         } catch (const OutOfMemory& error) {
             result_.stopped = error.what();
+        } catch (const std::bad_alloc&) {
+            result_.stopped = "memory is short for more patches";
         } catch (const InvalidArgument& error) { // a surface cannot be cut any finer
             result_.stopped = error.what();
         }
@@ -580,14 +594,16 @@ private:
             }
         }
         const double growth = static_cast<double>(finer.mesh.size()) / result_.mesh.size();
-        const double of_entry = rows_are_in_file() ? 0.0 : entry_bytes;
+        const auto before = static_cast<double>(result_.raw.matrix.entries());
+        const double after = growth * growth * before;
+        const double new_ones = after * static_cast<double>(fresh.size()) / finer.mesh.size();
+        // Raw and prepared ones: of the finer mesh, or, while it is made, of this one, beside new rows.
+        const double entries = std::max(2.0 * after, 2.0 * before + new_ones + after);
         const double for_rows =
             pair_bytes * static_cast<double>(fresh.size() * image_count(finer.mesh)) * finer.mesh.size() +
-            of_entry * growth * growth * static_cast<double>(result_.raw.matrix.entries());
-        const std::size_t groups = goal_.error_of == ErrorOf::groups ? finer.mesh.groups().size() : 0;
+            (rows_are_in_file() ? 0.0 : entry_bytes * entries);
         const double bytes = std::max( // and the error of this mesh is to be known
-            for_rows, static_cast<double>(patch_size_error_bytes(finer.mesh, effort_near_goal,
-                                                                 static_cast<std::uint32_t>(groups),
+            for_rows, static_cast<double>(patch_size_error_bytes(finer.mesh, sample(false, effort_near_goal),
                                                                  result_.solution.channels)));
         if (bytes > static_cast<double>(memory_limit(settings_))) {
             result_.stopped =
@@ -599,6 +615,9 @@ private:
         const bool both = rows.matrix.entries() > 0 && result_.raw.matrix.entries() > 0;
         if (both && rows.matrix.has_visibility() != result_.raw.matrix.has_visibility()) {
             result_.stopped = "memory is short for unoccluded factors of more patches";
+            if (rows_.checkpoint != nullptr) { // of rows that are of no use
+                rows_.checkpoint->start_over();
+            }
             return {};
         }
         rows.matrix = split_rows(result_.raw.matrix, rows.matrix, finer.parents, finer.mesh.areas());
@@ -606,6 +625,7 @@ private:
         rows.work.rows += result_.raw.work.rows;
         rows.work.hemicubes += result_.raw.work.hemicubes;
         rows.work.seconds += result_.raw.work.seconds;
+        rows.work.reference_seconds += result_.raw.work.reference_seconds;
         result_.raw = std::move(rows);
         result_.mesh = std::move(finer.mesh);
         parents_ = std::move(finer.parents);

@@ -172,3 +172,31 @@ TEST_CASE("solve --refine: rows of cut patches are stored, lit again, and cut fu
     CHECK(refused({"solve", other, "--factors", rows, "--refine", "200"}).find("another geometry") !=
           std::string::npos);
 }
+
+TEST_CASE("solve: light from outside reaches black groups, however patches and rows are chosen", "[cli]") {
+    const Directory directory;
+    Json scene = open_cube(2, "open");
+    scene["materials"]["black"] = {{"reflectance", 0}};
+    scene["surfaces"][0]["material"] = "black";
+    scene["environment"] = {{"exitance", 10}};
+    const std::string file = directory.write("open.json", scene);
+    for (const Words& more : {Words{}, Words{"--refine", "60"}, Words{"--error-target", "5%"},
+                              Words{"--error-target", "5%", "--error-target-of", "factors"}}) {
+        Words words{"solve", file, "--device", "cpu"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome run = run_hemi(words);
+        INFO(run.err << run.out);
+        CHECK(run.status == 0);
+        std::istringstream lines(run.out);
+        std::string line;
+        while (std::getline(lines, line) && line.rfind("floor", 0) != 0) {
+        }
+        std::istringstream cells(line);
+        std::string group;
+        double area = 0.0;
+        double exitance = -1.0;
+        double irradiance = 0.0;
+        cells >> group >> area >> exitance >> irradiance;
+        CHECK(irradiance > 0.1);
+    }
+}

@@ -349,7 +349,7 @@ TEST_CASE("patch size: what is seen of a patch that a block stands on is as brig
     const Solved coarse = solved(scene, Preset::standard);
     const auto error =
         estimate_patch_size_error(scene, coarse.mesh, coarse.factors, coarse.solution,
-                                  settings_of(Preset::standard), no_observer(), Gather::off, all_of_them);
+                                  settings_of(Preset::standard), no_observer(), {.effort = all_of_them});
     REQUIRE(error);
     CHECK(error->field.rms < 0.008);
 }

@@ -329,7 +329,7 @@ TEST_CASE("refinement: that memory ends it does not count where the error is met
     rows.store = [&](const PatchMesh& mesh, const FormFactors&) {
         if (patches.empty() || patches.back() != mesh.size()) {
             patches.push_back(mesh.size());
-            bytes.push_back(patch_size_error_bytes(mesh, 2.0, 0, 1));
+            bytes.push_back(patch_size_error_bytes(mesh, {.effort = 2.0, .groups = false}, 1));
         }
     };
     (void)solve_refined(scene, PatchMesh(scene), settings_of(), {}, goal, false, no_observer(),
@@ -351,20 +351,55 @@ TEST_CASE("refinement: that memory ends it does not count where the error is met
 TEST_CASE("refinement: by groups, memory ends it before their errors are no longer known", "[pipeline]") {
     const Scene scene = lamp_and_sheet(4, 4);
     const PatchMesh coarse(scene);
-    const auto groups = static_cast<std::uint32_t>(coarse.groups().size());
     RefinementGoal goal;
     goal.error_of = ErrorOf::groups;
     goal.error = 1e-6;
     goal.patches = coarse.size() + 8;
     const PatchMesh finer = solve_refined(scene, coarse, settings_of(), {}, goal).mesh;
     FactorSettings little = settings_of(); // for the rows of the finer mesh's sample, not for its groups
-    little.max_memory =
-        (patch_size_error_bytes(finer, 2.0, 0, 1) + patch_size_error_bytes(finer, 2.0, groups, 1)) / 2;
-    REQUIRE(*little.max_memory > patch_size_error_bytes(coarse, 2.0, groups, 1));
+    little.max_memory = (patch_size_error_bytes(finer, {.effort = 2.0, .groups = false}, 1) +
+                         patch_size_error_bytes(finer, {.effort = 2.0}, 1)) /
+                        2;
+    REQUIRE(*little.max_memory > patch_size_error_bytes(coarse, {.effort = 2.0}, 1));
     const Refinement found = solve_refined(scene, coarse, little, {}, goal);
     CHECK(found.mesh.size() == coarse.size());
     CHECK(found.stopped.find("memory") != std::string::npos);
     CHECK(found.steps.back().error > *goal.error);
+}
+
+TEST_CASE("refinement: what the first mesh's memory allows is known in the end, too", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(12, 1);
+    const PatchMesh coarse(scene);
+    RefinementGoal goal;
+    goal.error = 1e-6;
+    goal.gather = Gather::off;
+    for (const ErrorOf error_of : {ErrorOf::vertices, ErrorOf::groups}) {
+        goal.error_of = error_of;
+        FactorSettings little =
+            settings_of(); // for the usual sample, not for the larger one of the last mesh
+        little.max_memory = patch_size_error_bytes(coarse, {}, 1);
+        REQUIRE(*little.max_memory < patch_size_error_bytes(coarse, {.effort = 2.0, .groups = false}, 1));
+        const Refinement found = solve_refined(scene, coarse, little, {}, goal);
+        CHECK(found.stopped.find("memory") != std::string::npos);
+        CHECK(found.steps.back().error > *goal.error);
+        CHECK(found.solution.patch_size_error);
+    }
+}
+
+TEST_CASE("refinement: goes on from a mesh whose form factors were judged to a smaller error", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4, 4);
+    RefinementGoal goal;
+    goal.gather = Gather::off;
+    goal.error = 0.4;
+    RefinementRows rows;
+    rows.begin = solve_refined(scene, PatchMesh(scene), settings_of(), {}, goal).raw;
+    REQUIRE(rows.begin->reference.entries() > 0);
+    goal.error = 0.05;
+    const Refinement found = solve_refined(scene, PatchMesh(scene), settings_of(), {}, goal, false,
+                                           no_observer(), std::move(rows));
+    REQUIRE(found.steps.size() > 3);
+    CHECK(found.stopped.empty());
+    CHECK(found.steps.back().error <= 0.05);
 }
 
 TEST_CASE("refinement: sizes of patches side by side differ by a factor of two at most", "[pipeline]") {
@@ -424,7 +459,7 @@ TEST_CASE("refinement: goes on from stored rows to the bits of an undisturbed on
     const Scene scene = lamp_and_sheet(3, 1);
     const PatchMesh coarse(scene);
     RefinementGoal goal;
-    goal.patches = 150;
+    goal.patches = 600; // by more steps than have small samples where an error is to be met
     std::vector<FormFactors> kept;
     RefinementRows rows;
     rows.store = [&kept](const PatchMesh& mesh, FormFactors& raw) {
@@ -435,7 +470,7 @@ TEST_CASE("refinement: goes on from stored rows to the bits of an undisturbed on
     const FactorSettings settings = settings_of(Preset::fast);
     const Refinement whole = solve_refined(scene, coarse, settings, {}, goal, false, no_observer(), rows);
     REQUIRE(kept.size() == whole.steps.size() + 1); // with the sample of better rows in the end
-    REQUIRE(whole.steps.size() > 2);
+    REQUIRE(whole.steps.size() > 4);
     for (const std::size_t step : {std::size_t{0}, std::size_t{1}, kept.size() - 1}) {
         RefinementRows from;
         from.begin = kept[step];
@@ -446,6 +481,7 @@ TEST_CASE("refinement: goes on from stored rows to the bits of an undisturbed on
         CHECK(again.raw.reference.entries() == whole.raw.reference.entries());
     }
     // Gathered vertices on the way are the same, too, where rows are kept.
+    goal.patches = 150;
     const io_test::Folder folder;
     FactorSettings gathering = settings_of();
     std::vector<FormFactors> of_steps;

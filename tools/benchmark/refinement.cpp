@@ -35,7 +35,7 @@ Solved solve_evenly(const Scene& scene, const PatchMesh& mesh, const FactorSetti
     Solution solution = solve_radiosity(scene, mesh, factors);
     gather_at_vertices(scene, mesh, settings, Gather::automatic, solution);
     solution.patch_size_error =
-        estimate_patch_size_error(scene, mesh, factors, solution, settings, no_observer(), Gather::off, 2.0);
+        estimate_patch_size_error(scene, mesh, factors, solution, settings, no_observer(), {.effort = 2.0});
     const auto error = solution_error(solution);
     if (!error) {
         throw Error("the error of a scene of the benchmark cannot be estimated");

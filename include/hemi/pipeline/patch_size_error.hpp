@@ -3,7 +3,6 @@
 #include "hemi/pipeline/form_factors.hpp"
 #include "hemi/pipeline/observer.hpp"
 #include "hemi/pipeline/settings.hpp"
-#include "hemi/pipeline/vertex_gather.hpp"
 #include "hemi/scene/patch_mesh.hpp"
 #include "hemi/solver/solution.hpp"
 
@@ -11,6 +10,12 @@
 #include <vector>
 
 namespace hemi {
+
+/// How much is looked at to estimate what the patches' size does.
+struct PatchSizeSample {
+    double effort = 1.0; ///< times the usual number of patches in the sample
+    bool groups = true;  ///< whether errors of groups are wanted
+};
 
 /// What a radiosity is off by because patches have a size, estimated.
 ///
@@ -39,11 +44,12 @@ namespace hemi {
 /// Not included: errors of form factors; what the errors of other patches change in a patch's mean, which is
 /// of second order; whatever four rows do not see, such as light that falls through a gap between them.
 /// Quarters under other geometry do not count; of those that something stands on partly, the rest does.
-/// Memory: up to 768 rows over 4 N patches, 13 bytes an entry, and 8 bytes a patch, channel and group of up
-/// to 64; with clusters less than 1 kB a patch. Source: I. H. Sloan, "Improvement by iteration for compact
-/// operator equations", Mathematics of Computation 30, 1976; M. F. Cohen et al., "An Efficient Radiosity
-/// Approach for Realistic Image Synthesis", IEEE CG&A 6, 1986 (patches as sources, their parts as receivers);
-/// B. Smits, J. Arvo, D. Salesin, "An Importance-Driven Radiosity Algorithm", SIGGRAPH 1992.
+/// Memory: up to 768 rows (times the sample's effort) over 4 N patches, 13 bytes an entry, and 8 bytes a
+/// patch, channel and group of up to 64; with clusters less than 1 kB a patch. Source: I. H. Sloan,
+/// "Improvement by iteration for compact operator equations", Mathematics of Computation 30, 1976; M. F.
+/// Cohen et al., "An Efficient Radiosity Approach for Realistic Image Synthesis", IEEE CG&A 6, 1986 (patches
+/// as sources, their parts as receivers); B. Smits, J. Arvo, D. Salesin, "An Importance-Driven Radiosity
+/// Algorithm", SIGGRAPH 1992.
 /// @param scene     what the mesh was made of; gives reflectances
 /// @param mesh      N patches
 /// @param factors   N rows, those that the solution rests on
@@ -51,23 +57,19 @@ namespace hemi {
 /// @param settings  sample points and texels of the quarters' rows, which are unoccluded factors times
 ///   visibility whatever the preset; device, workers and the limit of memory
 /// @param observer  gets progress and may cancel; gets a warning where the memory does not allow it
-/// @param gather    on: `vertices` is what it would be, were the solution gathered (VertexGather), found by
-///   gathering at the corners of the sample; a solution that was gathered needs no such word
-/// @param effort    so many times the usual number of patches in the sample
+/// @param sample    how much is looked at
 /// @return nothing where nothing is reflected, or where memory is short
 /// @throws InvalidArgument if the solution is of another mesh; as make_visibility_engine(); Cancelled
 [[nodiscard]] std::optional<PatchSizeError>
 estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const FormFactors& factors,
                           const Solution& solution, const FactorSettings& settings,
-                          Observer& observer = no_observer(), Gather gather = Gather::off,
-                          double effort = 1.0);
+                          Observer& observer = no_observer(), const PatchSizeSample& sample = {});
 
 /// Bytes that estimate_patch_size_error() takes at most.
 /// @param mesh      whose rows are without clusters
-/// @param effort    as there
-/// @param groups    whose errors are wanted; 0: those of no group
+/// @param sample    as there; groups of no error that is wanted take none
 /// @param channels  of the solution
-[[nodiscard]] std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, double effort, std::uint32_t groups,
+[[nodiscard]] std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, const PatchSizeSample& sample,
                                                    std::uint32_t channels);
 
 /// The same where the solution must not be lost: what cannot be estimated is told to the observer as a
