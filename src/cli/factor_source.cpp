@@ -46,6 +46,21 @@ std::string preset_word(const std::optional<Preset>& preset) {
     return preset ? std::string(to_word(*preset)) : "none";
 }
 
+/// Better rows, by which errors are estimated, where a file has none: that of a refinement which was
+/// interrupted, or made without an estimate.
+void add_missing_reference(FormFactors& factors, const LoadedScene& loaded, FactorSettings settings,
+                           Observer& observer) {
+    const Provenance& made = factors.provenance;
+    if (!settings.estimate_error || factors.reference.entries() > 0 || made.method != Method::hemicube ||
+        !made.preset) {
+        return;
+    }
+    settings.preset = *made.preset;
+    settings.seed = made.seed;
+    add_reference_rows(factors, loaded.mesh, settings, observer);
+    estimate_error(factors);
+}
+
 } // namespace
 
 FormFactors read_rows(const std::filesystem::path& path, const LoadedScene& loaded,
@@ -103,6 +118,7 @@ FormFactors find_rows(const SolveArguments& arguments, const LoadedScene& loaded
     if (has_rows(arguments)) {
         factors = read_rows(*arguments.factors, loaded, arguments.rows.factors, arguments.common);
         terminal.detail(fmt::format("form factors from {}: no rows to compute", arguments.factors->string()));
+        add_missing_reference(factors, loaded, arguments.rows.factors, observer);
         if (arguments.with_irradiance() && !factors.matrix.all_known()) {
             throw InputError(fmt::format("{}: rows are missing that --result and --radiosity need",
                                          arguments.factors->string()));

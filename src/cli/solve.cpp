@@ -61,6 +61,12 @@ std::optional<ClusterObstacle> cluster_obstacle(const SolveArguments& arguments)
 
 void check_input(const SolveArguments& arguments) {
     refuse_chosen_settings(arguments.common, arguments.rows);
+    if (arguments.rows.error_target && arguments.rows.error_of == ErrorOf::factors &&
+        (arguments.refinement.patches > 0 || arguments.refinement.budget > 0.0 || arguments.parts)) {
+        throw InvalidArgument(
+            "--error-target-of factors cuts no patches: --refine, --budget and --parts do not "
+            "apply");
+    }
     if (arguments.parts && !arguments.refines() && !has_rows(arguments)) {
         throw InvalidArgument("--parts needs --error-target or --refine, by which patches are cut, or the "
                               "--factors of such patches");
@@ -134,10 +140,10 @@ Solved solve(const SolveArguments& arguments, const LoadedScene& loaded, Observe
     return {std::move(factors), std::move(solution)};
 }
 
-/// Whether an output holds the radiosity at vertices.
+/// Whether the radiosity at vertices is asked for, or an output holds it.
 bool gathers(const SolveArguments& arguments) {
     const bool is_drawn = arguments.picture.output && !arguments.picture.flat && !arguments.picture.quantity;
-    return arguments.result || is_drawn;
+    return arguments.gather == Gather::on || arguments.result || is_drawn;
 }
 
 /// What the work consists of.
@@ -177,7 +183,7 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
                               std::string& missed) {
     const Stopwatch watch;
     const RefinementGoal goal = arguments.refinement.goal(
-        arguments.rows, arguments.picture.flat && !arguments.result ? Gather::off : arguments.gather);
+        arguments.rows, arguments.picture.flat && !gathers(arguments) ? Gather::off : arguments.gather);
     FactorSettings settings = arguments.rows.factors;
     CutMesh start = has_rows(arguments) ? mesh_of_rows(loaded, arguments.scene, *arguments.factors)
                                         : CutMesh{coarse_begin(loaded, arguments.scene), loaded.mesh};
@@ -204,7 +210,7 @@ Solved solve_on_finer_patches(const SolveArguments& arguments, LoadedScene& load
     report = refinement_report(found.steps, found.stopped);
     if (!found.stopped.empty() && goal.error) {
         const double error = found.steps.back().error;
-        missed = fmt::format("an error of {} % ({}) is not met: {}; the estimated error is {}",
+        missed = fmt::format("an error of {:.6g} % ({}) is not met: {}; the estimated error is {}",
                              100.0 * *goal.error, to_word(goal.error_of), found.stopped,
                              std::isfinite(error) ? fmt::format("{:.2g} %", 100.0 * error) : "not known");
     }
@@ -354,7 +360,7 @@ ExitStatus run(const SolveArguments& given, const Terminal& terminal) {
         light_balance(factors, values, solution.radiosity, flux_weights(loaded.scene));
     report_savings(loaded, factors, solution, arguments.rows.factors.merge_lattices, terminal);
     Report report = solve_report(loaded, factors, rows_report(factors, sums, enclosure), solution, balance,
-                                 seconds, terminal.verbose());
+                                 seconds, arguments.rows.error_of, terminal.verbose());
     report.text += refinement.text + picture.text;
     report.json.update(refinement.json);
     outputs.show(report, arguments.common.json, terminal);
@@ -362,6 +368,12 @@ ExitStatus run(const SolveArguments& given, const Terminal& terminal) {
     report_lost_light(balance, factors.groups, terminal);
     if (!missed.empty()) {
         terminal.warn(missed);
+    }
+    if (solution.patch_size_error && solution.vertex_radiosity.empty() && !arguments.picture.output &&
+        should_gather(arguments.gather, arguments.rows.factors, loaded.mesh, solution)) {
+        terminal.note(
+            "the error is that of the patches' means at the vertices, since no picture and no --result "
+            "shows gathered ones; --gather on gathers them");
     }
     return enclosure.leaks.empty() && missed.empty() ? ExitStatus::ok : ExitStatus::out_of_tolerance;
 }

@@ -73,23 +73,6 @@ double rounded(double value) {
     return value;
 }
 
-/// The size of the patches as `--patch-size` has it: the longest edge, the mean over the area.
-double mean_size(const PatchMesh& mesh) {
-    double sum = 0.0;
-    double area = 0.0;
-    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
-        const PatchCorners corners = mesh.corners(i);
-        double longest = 0.0;
-        for (std::uint32_t k = 0; k < corners.count; ++k) {
-            longest =
-                std::max(longest, glm::distance(corners.points[k], corners.points[(k + 1) % corners.count]));
-        }
-        sum += mesh.areas()[i] * longest;
-        area += mesh.areas()[i];
-    }
-    return sum / area;
-}
-
 bool is_dark(const Scene& scene) {
     const auto shines = [](const std::vector<double>& values) {
         return std::any_of(values.begin(), values.end(), [](double value) { return value > 0.0; });
@@ -114,7 +97,7 @@ Answers::Answers(const Subject& subject, double budget, Observer& observer)
     } else if (subject.scene.patch_size && !subject.subdivision.patches_per_face) {
         own_patch_size_ = *subject.scene.patch_size;
     } else {
-        own_patch_size_ = rounded(mean_size(subject.mesh));
+        own_patch_size_ = rounded(mean_patch_size(subject.mesh));
     }
 }
 

@@ -191,6 +191,10 @@ private:
         if (is_met(errors)) {
             result_.stopped.clear(); // whatever ended it
         }
+        if (!goal_.error && result_.steps.size() == 1 && result_.mesh.size() > goal_.patches) {
+            observer_.note(fmt::format("the first mesh has {}, more than {}",
+                                       plural(result_.mesh.size(), "patch", "patches"), goal_.patches));
+        }
         return std::move(result_);
     }
 
@@ -237,8 +241,9 @@ private:
     /// Whether limits allow another step; says why not.
     bool may_go_on() {
         if (goal_.error && goal_.patches > 0 && result_.mesh.size() >= goal_.patches) {
-            result_.stopped = fmt::format("{} are as many as were asked for",
-                                          plural(result_.mesh.size(), "patch", "patches"));
+            const std::string patches = plural(result_.mesh.size(), "patch", "patches");
+            result_.stopped = result_.steps.size() > 1 ? patches + " are as many as were asked for"
+                                                       : "the first mesh has " + patches + " already";
         } else if (goal_.error && is_stuck()) {
             result_.stopped =
                 "smaller patches no longer make the error smaller: what is left comes from the form "
@@ -388,37 +393,41 @@ private:
         return std::sqrt(worst);
     }
 
-    /// What the estimate of an error looks at.
-    [[nodiscard]] PatchSizeSample sample(bool last, double effort) const {
-        return {effort, last || goal_.error_of == ErrorOf::groups};
+    /// What the estimate of the goal's error takes.
+    [[nodiscard]] std::uint64_t bytes_to_estimate(const PatchMesh& mesh, double effort) const {
+        return patch_size_error_bytes(mesh, {effort, goal_.error_of == ErrorOf::groups},
+                                      result_.solution.channels);
     }
 
     /// @return whether the error of the goal is known; else it was said why not
     bool estimate_by_sample(bool last, double effort) {
         const PatchMesh& mesh = result_.mesh;
-        PatchSizeSample of = sample(last, effort);
-        if (patch_size_error_bytes(mesh, of, result_.solution.channels) > memory_limit(settings_)) {
-            of.effort = 1.0;
-        }
+        const std::uint64_t limit = memory_limit(settings_);
+        effort = bytes_to_estimate(mesh, effort) > limit ? 1.0 : effort;
+        const PatchSizeSample sample{effort, last || goal_.error_of == ErrorOf::groups};
         result_.solution.patch_size_error = estimate_patch_size_error(
-            scene_, mesh, result_.factors, result_.solution, settings_, observer_, of);
+            scene_, mesh, result_.factors, result_.solution, settings_, observer_, sample);
         const bool is_estimated = result_.solution.patch_size_error.has_value();
-        std::string why;
-        if (!is_estimated) {
-            why = result_.steps.empty()
-                      ? "patches cannot be cut where it tells: nothing in the scene reflects "
-                        "light, or memory is short"
-                      : fmt::format("memory is short to estimate the error of {}",
-                                    plural(mesh.size(), "patch", "patches"));
-        } else if (std::isnan(errors_of(result_.solution, goal_.error_of).all)) {
-            why = "errors of groups cannot be estimated: there are too many, memory is short, or none gets "
-                  "light";
+        if (is_estimated && !std::isnan(errors_of(result_.solution, goal_.error_of).all)) {
+            return true;
         }
-        if (!why.empty() && result_.steps.empty()) { // nothing was found that could be lost
-            throw InvalidArgument(why, {is_estimated ? "error-target-of" : "error-target"});
+        std::string why = "no light reaches anything that reflects light";
+        if (const std::uint64_t bytes = bytes_to_estimate(mesh, effort); bytes > limit) {
+            why = fmt::format("to estimate the error of {} takes about {} of memory",
+                              plural(mesh.size(), "patch", "patches"), memory_text(bytes));
+        } else if (is_estimated) {
+            why =
+                fmt::format("errors of groups cannot be estimated: no light reaches any, or {} are too many",
+                            mesh.groups().size());
         }
-        result_.stopped = why.empty() ? result_.stopped : why;
-        return why.empty();
+        if (result_.steps.empty()) { // nothing was found that could be lost
+            throw InvalidArgument("patches cannot be cut where it tells: " + why,
+                                  {!goal_.error   ? "refine"
+                                   : is_estimated ? "error-target-of"
+                                                  : "error-target"});
+        }
+        result_.stopped = std::move(why);
+        return false;
     }
 
     /// Errors of the form factors and gathered vertices for the mesh as it is now. Where memory is short,
@@ -603,8 +612,7 @@ private:
             pair_bytes * static_cast<double>(fresh.size() * image_count(finer.mesh)) * finer.mesh.size() +
             (rows_are_in_file() ? 0.0 : entry_bytes * entries);
         const double bytes = std::max( // and the error of this mesh is to be known
-            for_rows, static_cast<double>(patch_size_error_bytes(finer.mesh, sample(false, effort_near_goal),
-                                                                 result_.solution.channels)));
+            for_rows, static_cast<double>(bytes_to_estimate(finer.mesh, effort_near_goal)));
         if (bytes > static_cast<double>(memory_limit(settings_))) {
             result_.stopped =
                 fmt::format("{} would need about {} of memory", plural(finer.mesh.size(), "patch", "patches"),

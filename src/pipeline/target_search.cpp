@@ -69,8 +69,8 @@ public:
     [[nodiscard]] bool met(double error) {
         remember(error);
         if (error > target_) {
-            observer_.detail(fmt::format("{}: error {:.2g} with all rows, more than {}", last().description(),
-                                         error, target_));
+            observer_.detail(fmt::format("{}: error {:.2g} with all rows, more than {:.6g}",
+                                         last().description(), error, target_));
         }
         return error <= target_;
     }
@@ -84,7 +84,7 @@ public:
         FormFactors factors = compute_raw_form_factors(scene_, mesh_, patches_, settings, observer_);
         factors.reference = reference_.rows;
         factors.provenance.chosen_for =
-            fmt::format("{}, for an error target of {}", candidate.description(), target_);
+            fmt::format("{}, for an error target of {:.6g}", candidate.description(), target_);
         return factors;
     }
 
@@ -99,7 +99,7 @@ private:
     }
 
     [[noreturn]] void give_up() const {
-        std::string message = fmt::format("an error target of {} cannot be met", target_);
+        std::string message = fmt::format("an error target of {:.6g} cannot be met", target_);
         if (!best_.empty()) {
             message += fmt::format(": the best settings, {}, have an error of {:.2g}", best_, best_error_);
         }

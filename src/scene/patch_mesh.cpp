@@ -278,6 +278,22 @@ Grid grid_for_size(const Surface& surface, double patch_size) {
             cells_along(std::max(glm::length(p[2] - p[1]), glm::length(p[3] - p[0])), patch_size)};
 }
 
+double mean_patch_size(const PatchMesh& mesh) {
+    double sum = 0.0;
+    double area = 0.0;
+    for (std::uint32_t i = 0; i < mesh.size(); ++i) {
+        const PatchCorners corners = mesh.corners(i);
+        double longest = 0.0;
+        for (std::uint32_t k = 0; k < corners.count; ++k) {
+            longest =
+                std::max(longest, glm::distance(corners.points[k], corners.points[(k + 1) % corners.count]));
+        }
+        sum += mesh.areas()[i] * longest;
+        area += mesh.areas()[i];
+    }
+    return sum / area;
+}
+
 PatchMesh::PatchMesh(const Scene& scene, const Subdivision& subdivision) {
     validate(scene);
     if (subdivision.patch_size &&

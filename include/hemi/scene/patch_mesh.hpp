@@ -188,6 +188,8 @@ struct WholeFaces {
 /// @param patch_size  longest edge of a patch, scene units, above 0
 /// @throws InvalidArgument if an edge would be cut into more than 1e6 pieces
 [[nodiscard]] Grid grid_for_size(const Surface& surface, double patch_size);
+/// The size of patches as a patch size has it: the longest edge, the mean over their area; scene units.
+[[nodiscard]] double mean_patch_size(const PatchMesh& mesh);
 
 /// Makes PatchMesh(scene, subdivision) a mesh again that was split or cut otherwise than the scene wants.
 /// @param scene        that the mesh is of; gets its surfaces and their grids

@@ -72,34 +72,44 @@ Json groups_json(const std::vector<double>& errors) {
     return json;
 }
 
-/// Of the group whose mean irradiance is off the most; empty where there is none.
-std::string worst_group(const std::vector<double>& errors, const std::vector<std::string>& names) {
+/// The group whose mean irradiance is off the most; as many as there are where none is known.
+std::size_t worst_group(const std::vector<double>& errors) {
     std::size_t worst = errors.size();
     for (std::size_t g = 0; g < errors.size(); ++g) {
         if (std::isfinite(errors[g]) && (worst == errors.size() || errors[g] > errors[worst])) {
             worst = g;
         }
     }
+    return worst;
+}
+
+/// Empty where none is known.
+std::string groups_sentence(const std::vector<double>& errors, const std::vector<std::string>& names) {
+    const std::size_t worst = worst_group(errors);
     return worst == errors.size() ? std::string()
                                   : fmt::format("mean irradiance of groups within {:.2g} % ({})",
                                                 100.0 * errors[worst], names[worst]);
 }
 
+/// The error that was asked for; that of the vertices where it is not known.
+double error_asked_for(const SolutionError& error, ErrorOf of) {
+    if (of == ErrorOf::groups) {
+        const std::size_t worst = worst_group(error.groups);
+        return worst < error.groups.size() ? error.groups[worst] : error.vertices.rms;
+    }
+    return of == ErrorOf::field ? error.field.rms : error.vertices.rms;
+}
+
 /// What makes the error smaller, where the patches' size makes most of it; else empty.
-std::string advice(const SolutionError& error, const PatchMesh& mesh) {
+/// @param of  which error
+std::string advice(const SolutionError& error, const PatchMesh& mesh, ErrorOf of) {
     if (error.patch_size < 2.0 * std::hypot(error.factors, error.solver)) {
         return {};
     }
-    std::string by = fmt::format("--error-target {:.2g}%", 50.0 * error.vertices.rms);
+    std::string by = fmt::format("--error-target {:.2g}%", 50.0 * error_asked_for(error, of));
     const PatchCuts cuts = mesh.cuts();
     if (std::all_of(cuts.parts.begin(), cuts.parts.end(), [](const auto& parts) { return parts.empty(); })) {
-        double area = 0.0;
-        double size = 0.0; // mean over the area
-        for (const double patch : mesh.areas()) {
-            area += patch;
-            size += patch * std::sqrt(patch);
-        }
-        by = fmt::format("--patch-size {:.2g}, half of it, or {}", 0.5 * size / area, by);
+        by = fmt::format("--patch-size {:.2g}, half of it, or {}", 0.5 * mean_patch_size(mesh), by);
     }
     return fmt::format("most of it from the patches' size: {} would halve it", by);
 }
@@ -116,14 +126,14 @@ std::string error_sentence(const SolutionError& error) {
 }
 
 /// How far the solution is from the exact one; empty where that was not estimated.
-Report solution_error_report(const Solution& solution, const PatchMesh& mesh) {
+Report solution_error_report(const Solution& solution, const PatchMesh& mesh, ErrorOf of) {
     Report report;
     report.json["error"] = nullptr;
     const auto error = solution_error(solution);
     if (!error) {
         return report;
     }
-    const auto json = [](const FieldError& of) { return Json{{"rms", of.rms}, {"p95", of.percentile95}}; };
+    const auto json = [](const FieldError& e) { return Json{{"rms", e.rms}, {"p95", e.percentile95}}; };
     report.add(
         "error", error_sentence(*error),
         {{"error",
@@ -138,17 +148,17 @@ Report solution_error_report(const Solution& solution, const PatchMesh& mesh) {
                            percent_text(error->vertices.percentile95), percent_text(error->field.rms),
                            percent_text(error->field.percentile95),
                            plural(solution.patch_size_error->sampled, "patch", "patches") + " cut in four"));
-    if (const std::string worst = worst_group(error->groups, mesh.groups()); !worst.empty()) {
+    if (const std::string worst = groups_sentence(error->groups, mesh.groups()); !worst.empty()) {
         report.add("", worst);
     }
-    if (const std::string smaller = advice(*error, mesh); !smaller.empty()) {
+    if (const std::string smaller = advice(*error, mesh, of); !smaller.empty()) {
         report.add("", smaller);
     }
     return report;
 }
 
 /// The solver and how it went, settings that the program chose, estimated errors.
-Report solution_report(const Solution& solution, const PatchMesh& mesh) {
+Report solution_report(const Solution& solution, const PatchMesh& mesh, ErrorOf of) {
     const bool gradients = solution.method == SolverMethod::conjugate_gradient;
     Report report;
     report.add("dominance",
@@ -158,19 +168,26 @@ Report solution_report(const Solution& solution, const PatchMesh& mesh) {
     report.add("", solution.reason);
     report.json["solver"]["why"] = solution.reason;
     report.add(chosen_report(solution.chosen_for));
-    report.add(solution_error_report(solution, mesh));
+    report.add(solution_error_report(solution, mesh, of));
     report.add(error_report(solution.factor_error, solution.error, !solution.patch_size_error));
     return report;
 }
 
 /// How far the solution is from the exact one, and what would make it better.
-std::string brief_error(const Solution& solution, const PatchMesh& mesh) {
+/// @param of  which error counts, besides that of the vertices
+std::string brief_error(const Solution& solution, const PatchMesh& mesh, ErrorOf of) {
     const auto error = solution_error(solution);
     if (!error) {
         return error_report(solution.factor_error, solution.error, true).text;
     }
     std::string text = summary_line("error", error_sentence(*error));
-    if (const std::string smaller = advice(*error, mesh); !smaller.empty()) {
+    if (of == ErrorOf::field) {
+        text += summary_line("", fmt::format("as one constant a patch {}", percent_text(error->field.rms)));
+    } else if (const std::string worst = groups_sentence(error->groups, mesh.groups());
+               of == ErrorOf::groups && !worst.empty()) {
+        text += summary_line("", worst);
+    }
+    if (const std::string smaller = advice(*error, mesh, of); !smaller.empty()) {
         text += summary_line("", smaller);
     }
     return text;
@@ -257,7 +274,7 @@ Report stored_solution_report(const Solution& solution, const PatchMesh& mesh) {
     report.add(solver_report(solution, plural(solution.sweeps, "sweep", "sweeps")));
     report.add(chosen_report(solution.chosen_for));
     report.json["chosen_for"] = solution.chosen_for; // "" rather than null, as the file has it
-    report.add(solution_error_report(solution, mesh));
+    report.add(solution_error_report(solution, mesh, ErrorOf::vertices));
     report.add(error_report(solution.factor_error, solution.error, !solution.patch_size_error));
     report.json["temperature"] = report.json["net_flux"] = nullptr;
     if (!solution.temperature.empty()) {
@@ -345,18 +362,18 @@ Report light_report(const LoadedScene& loaded, const Solution& solution) {
 
 Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
                     const Solution& solution, const std::optional<LightBalance>& balance,
-                    const Seconds& seconds, bool in_full) {
+                    const Seconds& seconds, ErrorOf error_of, bool in_full) {
     Report report = scene_size_report(loaded);
     report.add(rows);
     report.add(repair_report(factors, seconds["repair"]));
-    report.add(solution_report(solution, loaded.mesh));
+    report.add(solution_report(solution, loaded.mesh, error_of));
     report.add(light_balance_report(balance, loaded.scene.unit.value_or(1.0),
                                     loaded.scene.photometric ? " lm" : ""));
     report.json["photometric"] = loaded.scene.photometric;
     report.add(seconds.report());
     const Report light = light_report(loaded, solution);
     if (!in_full) {
-        report.text = chosen_report(solution.chosen_for).text + brief_error(solution, loaded.mesh) +
+        report.text = chosen_report(solution.chosen_for).text + brief_error(solution, loaded.mesh, error_of) +
                       light_balance_report(balance, loaded.scene.unit.value_or(1.0),
                                            loaded.scene.photometric ? " lm" : "")
                           .text +
@@ -406,8 +423,11 @@ void report_savings(const LoadedScene& loaded, const FormFactors& factors, const
         return;
     }
     if (!factors.work.from_file) {
-        terminal.detail(fmt::format("rows computed: {} of {} (patches from which no light comes need none)",
-                                    count_text(factors.work.rows), count_text(loaded.mesh.size())));
+        const bool more = factors.work.rows > loaded.mesh.size(); // where patches were cut
+        terminal.detail(fmt::format("rows computed: {}{}", count_text(factors.work.rows),
+                                    more ? std::string()
+                                         : fmt::format(" of {} (patches from which no light comes need none)",
+                                                       count_text(loaded.mesh.size()))));
     }
     terminal.detail(fmt::format("channels solved: {} of {}{}", solution.channels_solved, solution.channels,
                                 solution.channels_solved < solution.channels ? " (all are equal)" : ""));

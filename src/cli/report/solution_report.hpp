@@ -18,10 +18,11 @@ namespace hemi::cli {
 /// and the time.
 /// @param rows     report of the rows
 /// @param balance  of the light, where it is known
+/// @param error_of which error was asked for
 /// @param in_full  the text has all other numbers as well, as the JSON has
 [[nodiscard]] Report solve_report(const LoadedScene& loaded, const FormFactors& factors, const Report& rows,
                                   const Solution& solution, const std::optional<LightBalance>& balance,
-                                  const Seconds& seconds, bool in_full);
+                                  const Seconds& seconds, ErrorOf error_of, bool in_full);
 /// Where the light goes.
 /// @param metres  in a unit of the scene
 /// @param unit    behind powers; may be empty
