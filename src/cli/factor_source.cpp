@@ -46,19 +46,17 @@ std::string preset_word(const std::optional<Preset>& preset) {
     return preset ? std::string(to_word(*preset)) : "none";
 }
 
-/// Better rows, by which errors are estimated, where a file has none: that of a refinement which was
-/// interrupted, or made without an estimate.
-void add_missing_reference(FormFactors& factors, const LoadedScene& loaded, FactorSettings settings,
-                           Observer& observer) {
+/// Settings by which rows of a file were made, where the presets of these patches say others.
+void adopt_settings(FactorSettings& settings, const FormFactors& factors) {
     const Provenance& made = factors.provenance;
-    if (!settings.estimate_error || factors.reference.entries() > 0 || made.method != Method::hemicube ||
-        !made.preset) {
-        return;
-    }
     settings.preset = *made.preset;
     settings.seed = made.seed;
-    add_reference_rows(factors, loaded.mesh, settings, observer);
-    estimate_error(factors);
+    settings.resolution = made.resolution;
+    const HemicubeSettings usual = plan_rows(settings, factors.matrix.size()).hemicube;
+    if (factors.matrix.clusters() == nullptr &&
+        (usual.eye_points != made.eye_points || usual.near_eye_points != made.near_eye_points)) {
+        settings.eye_points = made.eye_points;
+    }
 }
 
 } // namespace
@@ -89,18 +87,39 @@ FormFactors rows_to_refine(const SolveArguments& arguments, const Scene& scene, 
     const Provenance& made = factors.provenance;
     check_setting(arguments.common, path, "--seed", settings.seed.value_or(0), made.seed);
     check_setting(arguments.common, path, "--preset", preset_word(settings.preset), preset_word(made.preset));
+    check_setting(arguments.common, path, "--resolution", settings.resolution.value_or(0), made.resolution);
+    check_setting(arguments.common, path, "--eye-points", settings.eye_points.value_or(0), made.eye_points);
     if (made.method != Method::hemicube || !made.preset) {
         throw InvalidArgument(fmt::format("{}: rows by method {}; patches are cut with hemicubes only",
                                           path.string(), to_word(made.method)));
     }
     refuse_clusters(factors, path, "cutting patches further");
-    settings.preset = *made.preset;
-    settings.seed = made.seed;
+    adopt_settings(settings, factors);
     if (!factors.matrix.all_known()) {
         throw InputError(fmt::format("{}: rows are missing; to cut patches further those of all are needed",
                                      path.string()));
     }
     return factors;
+}
+
+void add_missing_reference(FormFactors& factors, const PatchMesh& mesh, FactorSettings settings,
+                           Observer& observer) {
+    const Provenance& made = factors.provenance;
+    if (factors.reference.entries() > 0 || made.method != Method::hemicube || !made.preset) {
+        return;
+    }
+    adopt_settings(settings, factors);
+    std::string reason;
+    try {
+        add_reference_rows(factors, mesh, settings, observer,
+                           factors.cuts.any() ? reference_rows_of_cut_patches : usual_reference_rows);
+        return;
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& error) {
+        reason = error.what();
+    }
+    observer.warning(fmt::format("errors are not estimated: {}", reason), "");
 }
 
 void store_rows(const SolveArguments& arguments, FormFactors& raw, const Terminal& terminal) {
@@ -118,7 +137,6 @@ FormFactors find_rows(const SolveArguments& arguments, const LoadedScene& loaded
     if (has_rows(arguments)) {
         factors = read_rows(*arguments.factors, loaded, arguments.rows.factors, arguments.common);
         terminal.detail(fmt::format("form factors from {}: no rows to compute", arguments.factors->string()));
-        add_missing_reference(factors, loaded, arguments.rows.factors, observer);
         if (arguments.with_irradiance() && !factors.matrix.all_known()) {
             throw InputError(fmt::format("{}: rows are missing that --result and --radiosity need",
                                          arguments.factors->string()));

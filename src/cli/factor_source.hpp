@@ -34,6 +34,12 @@ namespace hemi::cli {
 /// @throws InputError if rows are missing; InvalidArgument as find_rows(), or if they are of no hemicubes
 [[nodiscard]] FormFactors rows_to_refine(const SolveArguments& arguments, const Scene& scene,
                                          const PatchMesh& mesh, FactorSettings& settings);
+/// Adds better rows, by which errors are estimated, where those of a file have none: of a refinement that was
+/// interrupted, or made without an estimate. Warns where there can be none.
+/// @param factors   raw
+/// @param settings  that the rows were not made by: device, workers, memory
+void add_missing_reference(FormFactors& factors, const PatchMesh& mesh, FactorSettings settings,
+                           Observer& observer);
 /// Writes raw form factors to the `--factors` file, if there is to be one.
 void store_rows(const SolveArguments& arguments, FormFactors& raw, const Terminal& terminal);
 

@@ -127,6 +127,9 @@ Solved solve(const SolveArguments& arguments, const LoadedScene& loaded, Observe
         with_checkpoint(arguments.factors, arguments.rows.resume, terminal, [&](RowCheckpoint* checkpoint) {
             return find_rows(arguments, loaded, patches, observer, terminal, checkpoint);
         });
+    if (arguments.rows.factors.estimate_error) {
+        add_missing_reference(factors, loaded.mesh, arguments.rows.factors, observer);
+    }
     seconds["estimate"] = factors.work.reference_seconds;
     seconds["factors"] = rows_watch.seconds() - factors.work.reference_seconds;
     const Stopwatch repair_watch;
@@ -144,6 +147,14 @@ Solved solve(const SolveArguments& arguments, const LoadedScene& loaded, Observe
 bool gathers(const SolveArguments& arguments) {
     const bool is_drawn = arguments.picture.output && !arguments.picture.flat && !arguments.picture.quantity;
     return arguments.gather == Gather::on || arguments.result || is_drawn;
+}
+
+/// Rows of a file may be of another preset.
+FactorSettings settings_to_gather(const SolveArguments& arguments, const FormFactors& factors) {
+    FactorSettings settings = arguments.rows.factors;
+    settings.method = factors.provenance.method;
+    settings.preset = factors.provenance.preset.value_or(settings.preset);
+    return settings;
 }
 
 /// What the work consists of.
@@ -262,10 +273,8 @@ void gather(const SolveArguments& arguments, const LoadedScene& loaded, const Fo
         return;
     }
     const Stopwatch watch;
-    FactorSettings settings = arguments.rows.factors; // but rows of a file may be of another preset
-    settings.method = factors.provenance.method;
-    settings.preset = factors.provenance.preset.value_or(settings.preset);
-    gather_at_vertices(loaded.scene, loaded.mesh, settings, arguments.gather, solution, observer);
+    gather_at_vertices(loaded.scene, loaded.mesh, settings_to_gather(arguments, factors), arguments.gather,
+                       solution, observer);
     seconds["gather"] = watch.seconds();
 }
 
@@ -369,8 +378,9 @@ ExitStatus run(const SolveArguments& given, const Terminal& terminal) {
     if (!missed.empty()) {
         terminal.warn(missed);
     }
-    if (solution.patch_size_error && solution.vertex_radiosity.empty() && !arguments.picture.output &&
-        should_gather(arguments.gather, arguments.rows.factors, loaded.mesh, solution)) {
+    if (solution_error(solution) && !arguments.refines() && !arguments.picture.output &&
+        !gathers(arguments) &&
+        should_gather(arguments.gather, settings_to_gather(arguments, factors), loaded.mesh, solution)) {
         terminal.note(
             "the error is that of the patches' means at the vertices, since no picture and no --result "
             "shows gathered ones; --gather on gathers them");

@@ -211,10 +211,10 @@ void add_reference_rows(FormFactors& factors, const PatchMesh& mesh, const Facto
         compute_reference(*engine, mesh, patches, [&observer](std::size_t done, std::size_t total) {
             return observer.progress(Phase::error_estimate, done, total);
         });
-    factors.work.reference_seconds = watch.seconds();
+    const double seconds = watch.seconds();
+    factors.work.reference_seconds += seconds;
     observer.detail(fmt::format("error estimate: {} compared with better ones in {}",
-                                plural(patches.size(), "row", "rows"),
-                                seconds_text(factors.work.reference_seconds)));
+                                plural(patches.size(), "row", "rows"), seconds_text(seconds)));
 }
 
 FormFactors compute_form_factors(const Scene& scene, const PatchMesh& mesh, const FactorSettings& settings,

@@ -11,6 +11,7 @@
 #include "hemi/pipeline/radiosity.hpp"
 #include "matrix/split_rows.hpp"
 #include "pipeline/corner_interpolation.hpp"
+#include "pipeline/group_importance.hpp"
 #include "pipeline/image_count.hpp"
 #include "pipeline/known_corners.hpp"
 #include "pipeline/patch_splits.hpp"
@@ -56,9 +57,6 @@ constexpr double gather_again = 3.0;
 /// Times the usual sample of patches for estimates near the goal and of the last mesh: refinement stops where
 /// they say so, and would stop too early by a lucky one.
 constexpr double effort_near_goal = 2.0;
-/// For the same reason so many of the better rows that say how far the form factors are off, where they are
-/// a small part of all: in an office of 2,600 patches 32 say 1.6 to 2.3 %, 128 say 0.5 to 0.8 %, all 0.9 %.
-constexpr std::uint32_t most_reference_rows = 128;
 /// While the error is so many times the goal, the next step does not come near it: a usual sample will do.
 constexpr double far_from_goal = 2.0;
 /// Steps after which a smaller error is looked for in vain may be the last; their estimates must be good.
@@ -157,7 +155,7 @@ public:
             observer_.detail(fmt::format("refinement: {}, error {:.2g} %",
                                          plural(step.patches, "patch", "patches"), 100.0 * step.error));
             observer_.refined(result_);
-            const bool may_end = is_enough(errors) || !may_go_on();
+            const bool may_end = is_enough(errors) || !may_go_on() || !form_factors_allow(errors);
             if (may_end) {
                 errors = finish();
                 if (!goal_.error || is_met(errors) || !may_go_on() || !can_help(errors)) {
@@ -192,7 +190,7 @@ private:
             result_.stopped.clear(); // whatever ended it
         }
         if (!goal_.error && result_.steps.size() == 1 && result_.mesh.size() > goal_.patches) {
-            observer_.note(fmt::format("the first mesh has {}, more than {}",
+            observer_.note(fmt::format("the mesh has {} already, more than {}",
                                        plural(result_.mesh.size(), "patch", "patches"), goal_.patches));
         }
         return std::move(result_);
@@ -243,7 +241,7 @@ private:
         if (goal_.error && goal_.patches > 0 && result_.mesh.size() >= goal_.patches) {
             const std::string patches = plural(result_.mesh.size(), "patch", "patches");
             result_.stopped = result_.steps.size() > 1 ? patches + " are as many as were asked for"
-                                                       : "the first mesh has " + patches + " already";
+                                                       : "the mesh has " + patches + " already";
         } else if (goal_.error && is_stuck()) {
             result_.stopped =
                 "smaller patches no longer make the error smaller: what is left comes from the form "
@@ -252,6 +250,11 @@ private:
             result_.stopped = fmt::format("the {} of the budget are over", seconds_text(goal_.seconds));
         }
         return result_.stopped.empty();
+    }
+
+    /// Whether the form factors, as far as they were judged, allow the goal to be met; says so where not.
+    bool form_factors_allow(const Errors& errors) {
+        return !goal_.error || !first_judged_ || can_help(errors);
     }
 
     /// Whether smaller patches alone can meet the goal; says so where they cannot.
@@ -348,6 +351,10 @@ private:
     /// From how the radiosity bends between gathered vertices. For the last mesh by a sample, and for the
     /// first one where nothing bends, to know whether anything reflects light at all.
     Errors estimate_by_bends(bool last) {
+        if (result_.steps.empty() && result_.solution.error) { // by stored better rows
+            others_ = result_.solution.error->rms;
+            first_judged_ = 0;
+        }
         find_bends();
         double bend = rms_of_bends();
         const auto by_bend = [&] {
@@ -402,11 +409,13 @@ private:
     /// @return whether the error of the goal is known; else it was said why not
     bool estimate_by_sample(bool last, double effort) {
         const PatchMesh& mesh = result_.mesh;
+        FactorSettings settings = settings_;
         const std::uint64_t limit = memory_limit(settings_);
+        settings.max_memory = limit; // the same for all of it
         effort = bytes_to_estimate(mesh, effort) > limit ? 1.0 : effort;
         const PatchSizeSample sample{effort, last || goal_.error_of == ErrorOf::groups};
         result_.solution.patch_size_error = estimate_patch_size_error(
-            scene_, mesh, result_.factors, result_.solution, settings_, observer_, sample);
+            scene_, mesh, result_.factors, result_.solution, settings, observer_, sample);
         const bool is_estimated = result_.solution.patch_size_error.has_value();
         if (is_estimated && !std::isnan(errors_of(result_.solution, goal_.error_of).all)) {
             return true;
@@ -415,10 +424,11 @@ private:
         if (const std::uint64_t bytes = bytes_to_estimate(mesh, effort); bytes > limit) {
             why = fmt::format("to estimate the error of {} takes about {} of memory",
                               plural(mesh.size(), "patch", "patches"), memory_text(bytes));
+        } else if (is_estimated && mesh.groups().size() > GroupImportance::most_groups) {
+            why = fmt::format("errors of at most {} groups can be estimated, and there are {}",
+                              GroupImportance::most_groups, mesh.groups().size());
         } else if (is_estimated) {
-            why =
-                fmt::format("errors of groups cannot be estimated: no light reaches any, or {} are too many",
-                            mesh.groups().size());
+            why = "no light reaches any group, or their errors could not be solved for (-v says more)";
         }
         if (result_.steps.empty()) { // nothing was found that could be lost
             throw InvalidArgument("patches cannot be cut where it tells: " + why,
@@ -430,9 +440,10 @@ private:
         return false;
     }
 
-    /// Errors of the form factors and gathered vertices for the mesh as it is now. Where memory is short,
-    /// nothing changes but Refinement::stopped.
+    /// Errors of the form factors and gathered vertices for the mesh as it is now. Where memory is short for
+    /// them, the solution and what is known of its errors stay, and Refinement::stopped says so.
     Errors finish() {
+        const std::optional<PatchSizeError> known = result_.solution.patch_size_error;
         try {
             return try_to_finish();
         } catch (const OutOfMemory& error) {
@@ -440,11 +451,13 @@ private:
         } catch (const std::bad_alloc&) {
             result_.stopped = "memory is short to find the errors of the form factors";
         }
+        result_.solution.patch_size_error = known;
         return {};
     }
     Errors try_to_finish() {
         if (result_.raw.reference.entries() == 0) { // else they were stored
-            add_reference_rows(result_.raw, result_.mesh, settings_, observer_, most_reference_rows);
+            add_reference_rows(result_.raw, result_.mesh, settings_, observer_,
+                               reference_rows_of_cut_patches);
             estimate_error(result_.raw);
             keep();
         }
@@ -608,9 +621,10 @@ private:
         const double new_ones = after * static_cast<double>(fresh.size()) / finer.mesh.size();
         // Raw and prepared ones: of the finer mesh, or, while it is made, of this one, beside new rows.
         const double entries = std::max(2.0 * after, 2.0 * before + new_ones + after);
+        const double held = settings_.max_memory ? 0.0 : 2.0 * before; // are not in what is free
         const double for_rows =
             pair_bytes * static_cast<double>(fresh.size() * image_count(finer.mesh)) * finer.mesh.size() +
-            (rows_are_in_file() ? 0.0 : entry_bytes * entries);
+            (rows_are_in_file() ? 0.0 : entry_bytes * (entries - held));
         const double bytes = std::max( // and the error of this mesh is to be known
             for_rows, static_cast<double>(bytes_to_estimate(finer.mesh, effort_near_goal)));
         if (bytes > static_cast<double>(memory_limit(settings_))) {

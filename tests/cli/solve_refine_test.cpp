@@ -180,7 +180,7 @@ TEST_CASE("solve: light from outside reaches black groups, however patches and r
     scene["surfaces"][0]["material"] = "black";
     scene["environment"] = {{"exitance", 10}};
     const std::string file = directory.write("open.json", scene);
-    for (const Words& more : {Words{}, Words{"--refine", "60"}, Words{"--error-target", "5%"},
+    for (const Words& more : {Words{}, Words{"--refine", "600"}, Words{"--error-target", "0.3%"},
                               Words{"--error-target", "5%", "--error-target-of", "factors"}}) {
         Words words{"solve", file, "--device", "cpu"};
         words.insert(words.end(), more.begin(), more.end());

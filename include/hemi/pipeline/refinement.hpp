@@ -58,7 +58,8 @@ struct Refinement {
     FormFactors factors;     ///< prepared
     Solution solution;       ///< by them, with its errors, gathered if it is to be
     std::vector<Step> steps; ///< from the coarsest mesh on
-    std::string stopped;     ///< what ended it before the goal was met, a sentence; empty: the goal is met
+    std::string
+        stopped; ///< what ended it before the goal was met, or its error was known; a sentence, or empty
 };
 
 /// Rows that a refinement begins with, and that outlast it.
@@ -84,7 +85,7 @@ struct RefinementRows {
 /// @param observer         gets progress and may cancel
 /// @param rows             to begin with, and what becomes of those that are computed
 /// @throws InvalidArgument if rows to begin with are not those of all patches, if nothing in the scene
-///   reflects light, if errors of groups are the goal and cannot be estimated, if the goal is factors or
+///   reflects light, if the error of the first mesh cannot be estimated, if the goal is factors or
 ///   nothing at all, or if the method is no hemicube; as compute_form_factors and solve_radiosity
 /// Source: M. F. Cohen, D. P. Greenberg, D. S. Immel, P. J. Brock, "An Efficient Radiosity Approach for
 /// Realistic Image Synthesis", IEEE CG&A 6, 1986; D. Lischinski, B. Smits, D. P. Greenberg, "Bounds and Error

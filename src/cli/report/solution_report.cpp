@@ -91,6 +91,13 @@ std::string groups_sentence(const std::vector<double>& errors, const std::vector
                                                 100.0 * errors[worst], names[worst]);
 }
 
+/// Whether patches were cut where it tells, as refinement does.
+bool has_cut_patches(const PatchMesh& mesh) {
+    const PatchCuts cuts = mesh.cuts();
+    return std::any_of(cuts.parts.begin(), cuts.parts.end(),
+                       [](const auto& parts) { return !parts.empty(); });
+}
+
 /// The error that was asked for; that of the vertices where it is not known.
 double error_asked_for(const SolutionError& error, ErrorOf of) {
     if (of == ErrorOf::groups) {
@@ -102,13 +109,19 @@ double error_asked_for(const SolutionError& error, ErrorOf of) {
 
 /// What makes the error smaller, where the patches' size makes most of it; else empty.
 /// @param of  which error
-std::string advice(const SolutionError& error, const PatchMesh& mesh, ErrorOf of) {
-    if (error.patch_size < 2.0 * std::hypot(error.factors, error.solver)) {
+std::string advice(const Solution& solution, const SolutionError& error, const PatchMesh& mesh, ErrorOf of) {
+    double patch_size = error.patch_size;
+    double others = std::hypot(error.factors, error.solver);
+    if (const std::size_t worst = worst_group(error.groups);
+        of == ErrorOf::groups && worst < error.groups.size()) {
+        patch_size = solution.patch_size_error->groups[worst].patch_size;
+        others = solution.patch_size_error->groups[worst].factors;
+    }
+    if (patch_size < 2.0 * others) {
         return {};
     }
     std::string by = fmt::format("--error-target {:.2g}%", 50.0 * error_asked_for(error, of));
-    const PatchCuts cuts = mesh.cuts();
-    if (std::all_of(cuts.parts.begin(), cuts.parts.end(), [](const auto& parts) { return parts.empty(); })) {
+    if (!has_cut_patches(mesh)) {
         by = fmt::format("--patch-size {:.2g}, half of it, or {}", 0.5 * mean_patch_size(mesh), by);
     }
     return fmt::format("most of it from the patches' size: {} would halve it", by);
@@ -151,7 +164,7 @@ Report solution_error_report(const Solution& solution, const PatchMesh& mesh, Er
     if (const std::string worst = groups_sentence(error->groups, mesh.groups()); !worst.empty()) {
         report.add("", worst);
     }
-    if (const std::string smaller = advice(*error, mesh, of); !smaller.empty()) {
+    if (const std::string smaller = advice(solution, *error, mesh, of); !smaller.empty()) {
         report.add("", smaller);
     }
     return report;
@@ -187,7 +200,7 @@ std::string brief_error(const Solution& solution, const PatchMesh& mesh, ErrorOf
                of == ErrorOf::groups && !worst.empty()) {
         text += summary_line("", worst);
     }
-    if (const std::string smaller = advice(*error, mesh, of); !smaller.empty()) {
+    if (const std::string smaller = advice(solution, *error, mesh, of); !smaller.empty()) {
         text += summary_line("", smaller);
     }
     return text;
@@ -423,7 +436,7 @@ void report_savings(const LoadedScene& loaded, const FormFactors& factors, const
         return;
     }
     if (!factors.work.from_file) {
-        const bool more = factors.work.rows > loaded.mesh.size(); // where patches were cut
+        const bool more = has_cut_patches(loaded.mesh); // or fewer
         terminal.detail(fmt::format("rows computed: {}{}", count_text(factors.work.rows),
                                     more ? std::string()
                                          : fmt::format(" of {} (patches from which no light comes need none)",
