@@ -200,3 +200,22 @@ TEST_CASE("solve: light from outside reaches black groups, however patches and r
         CHECK(irradiance > 0.1);
     }
 }
+
+TEST_CASE("solve: rows of a file without better ones get an estimate, unless none is wanted", "[cli]") {
+    const Directory directory;
+    const std::string scene = directory.write("cube.json", coloured(2));
+    const std::string rows = directory.path("rows.hff");
+    const Words words{"solve", scene, "--device", "cpu", "--json", "--factors", rows};
+    const auto solve = [&words](Words more) {
+        more.insert(more.begin(), words.begin(), words.end());
+        const Outcome run = run_hemi(more);
+        INFO(run.err);
+        REQUIRE(run.status == 0);
+        return run.json();
+    };
+    CHECK(solve({"--eye-points", "9", "--no-estimate"})["error"].is_null());
+    const Json later = solve({"-v"});
+    CHECK(later["error"]["vertices"]["rms"] > 0.0);
+    CHECK(later["error_estimate"].is_object());
+    CHECK(solve({"--no-estimate"})["error"].is_null());
+}

@@ -402,6 +402,28 @@ TEST_CASE("refinement: goes on from a mesh whose form factors were judged to a s
     CHECK(found.steps.back().error <= 0.05);
 }
 
+TEST_CASE("refinement: cuts nothing where better rows of the file say that it cannot help", "[pipeline]") {
+    const Scene scene = lamp_and_sheet(4, 4);
+    FactorSettings rough = settings_of(); // so that form factors are a large part of the error
+    rough.engine.device = cpu_device;
+    rough.resolution = 16;
+    rough.shadow_rays = 0;
+    for (const Gather gather : {Gather::off, Gather::on}) {
+        RefinementGoal goal;
+        goal.gather = gather;
+        goal.error = 0.5;
+        const Refinement first = solve_refined(scene, PatchMesh(scene), rough, {}, goal);
+        REQUIRE(first.solution.error);
+        RefinementRows rows;
+        rows.begin = first.raw;
+        goal.error = 0.5 * first.solution.error->rms;
+        const Refinement found =
+            solve_refined(scene, PatchMesh(scene), rough, {}, goal, false, no_observer(), std::move(rows));
+        CHECK(found.mesh.size() == first.mesh.size());
+        CHECK(found.stopped.find("better preset") != std::string::npos);
+    }
+}
+
 TEST_CASE("refinement: sizes of patches side by side differ by a factor of two at most", "[pipeline]") {
     const Scene scene = lamp_and_sheet(4, 1);
     RefinementGoal goal;
