@@ -459,8 +459,7 @@ private:
 
     /// Errors of the mean irradiance of the groups.
     /// @param sums  of A (G(s) - G_i) (h_i + rho_i z(s)) over the sample, see estimate_patch_size_error():
-    /// channel c
-    ///   of group g at [g·channels + c]
+    ///   channel c of group g at [g·channels + c]
     [[nodiscard]] std::vector<GroupError> group_errors(const std::vector<SampledSum>& sums) const {
         if (importance_.groups() == 0) {
             return {};

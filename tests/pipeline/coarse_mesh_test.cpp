@@ -1,34 +1,12 @@
 #include "hemi/pipeline/coarse_mesh.hpp"
 
+#include "support/in_triangles.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>
 
-#include <string>
-#include <vector>
-
 using namespace hemi;
 using namespace hemi::test;
-
-namespace {
-
-/// Every quadrilateral cut into two triangles.
-Scene in_triangles(const Scene& scene) {
-    Scene result = scene;
-    result.surfaces.clear();
-    for (const Surface& surface : scene.surfaces) {
-        for (const std::size_t third : {std::size_t{2}, std::size_t{3}}) {
-            Surface half = surface;
-            half.vertex_count = 3;
-            half.vertices[1] = surface.vertices[third - 1];
-            half.vertices[2] = surface.vertices[third];
-            result.surfaces.push_back(half);
-        }
-    }
-    return result;
-}
-
-} // namespace
 
 TEST_CASE("coarse mesh: some 400 patches, of quadrilaterals as of triangles", "[pipeline]") {
     Scene room = empty_scene();

@@ -33,6 +33,15 @@ FactorSettings settings_of(Preset preset = Preset::standard) {
     return settings;
 }
 
+/// By which form factors are a large part of the error.
+FactorSettings rough_settings(std::uint32_t resolution) {
+    FactorSettings settings = settings_of();
+    settings.engine.device = cpu_device;
+    settings.resolution = resolution;
+    settings.shadow_rays = 0;
+    return settings;
+}
+
 /// What the interpolated vertices of the floor are off by, at 8 x 8 points of every patch, rms over rms.
 double true_error(const PatchMesh& mesh, const Solution& solution) {
     const auto corners = solution.vertex_radiosity.empty()
@@ -254,10 +263,7 @@ TEST_CASE("refinement: an error below what the form factors allow is given up", 
 TEST_CASE("refinement: where better rows say that the error is not met, it goes on until they say it is",
           "[pipeline]") {
     const Scene scene = lamp_and_sheet(4, 4);
-    FactorSettings rough = settings_of(); // so that form factors are a large part of the error
-    rough.engine.device = cpu_device;
-    rough.resolution = 24;
-    rough.shadow_rays = 0;
+    const FactorSettings rough = rough_settings(24);
     RefinementGoal goal;
     goal.gather = Gather::on;
     std::size_t went_on = 0;
@@ -299,10 +305,7 @@ TEST_CASE("refinement: without gathered vertices, steps know of the form factors
         int later = 0;
     } steps;
     const Scene scene = lamp_and_sheet(4, 4);
-    FactorSettings rough = settings_of(); // so that form factors are a large part of the error
-    rough.engine.device = cpu_device;
-    rough.resolution = 16;
-    rough.shadow_rays = 0;
+    const FactorSettings rough = rough_settings(16);
     RefinementGoal goal;
     goal.gather = Gather::off;
     for (const double error : {0.19, 0.14, 0.13}) {
@@ -404,10 +407,7 @@ TEST_CASE("refinement: goes on from a mesh whose form factors were judged to a s
 
 TEST_CASE("refinement: cuts nothing where better rows of the file say that it cannot help", "[pipeline]") {
     const Scene scene = lamp_and_sheet(4, 4);
-    FactorSettings rough = settings_of(); // so that form factors are a large part of the error
-    rough.engine.device = cpu_device;
-    rough.resolution = 16;
-    rough.shadow_rays = 0;
+    const FactorSettings rough = rough_settings(16);
     for (const Gather gather : {Gather::off, Gather::on}) {
         RefinementGoal goal;
         goal.gather = gather;

@@ -2,6 +2,7 @@
 
 #include "hemi/scene/imprint.hpp"
 #include "pipeline/cut_mesh.hpp"
+#include "support/in_triangles.hpp"
 #include "support/scenes.hpp"
 
 #include <catch2/catch.hpp>
@@ -12,22 +13,6 @@ using namespace hemi;
 using namespace hemi::test;
 
 namespace {
-
-/// The same with every quadrilateral as two triangles, as exporters cut them.
-Scene in_triangles(const Scene& scene) {
-    Scene result = scene;
-    result.surfaces.clear();
-    for (const Surface& surface : scene.surfaces) {
-        const auto& p = surface.vertices;
-        for (const auto& [b, c] : {std::pair(p[1], p[2]), std::pair(p[2], p[3])}) {
-            Surface& half = result.surfaces.emplace_back(surface);
-            half.vertices = {p[0], b, c, Vec3(0.0)};
-            half.vertex_count = 3;
-            half.patches.reset();
-        }
-    }
-    return result;
-}
 
 Scene pair(const std::vector<Vec3>& first, const std::vector<Vec3>& second) {
     Scene scene = empty_scene();

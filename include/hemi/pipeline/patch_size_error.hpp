@@ -67,7 +67,7 @@ estimate_patch_size_error(const Scene& scene, const PatchMesh& mesh, const FormF
 
 /// Bytes that estimate_patch_size_error() takes at most.
 /// @param mesh      whose rows are without clusters
-/// @param sample    as there; groups of no error that is wanted take none
+/// @param sample    as there; without errors of groups it takes less
 /// @param channels  of the solution
 [[nodiscard]] std::uint64_t patch_size_error_bytes(const PatchMesh& mesh, const PatchSizeSample& sample,
                                                    std::uint32_t channels);

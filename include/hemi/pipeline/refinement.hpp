@@ -58,8 +58,8 @@ struct Refinement {
     FormFactors factors;     ///< prepared
     Solution solution;       ///< by them, with its errors, gathered if it is to be
     std::vector<Step> steps; ///< from the coarsest mesh on
-    std::string
-        stopped; ///< what ended it before the goal was met, or its error was known; a sentence, or empty
+    /// What ended it before the goal was met or its error was known, a sentence; empty: nothing did.
+    std::string stopped;
 };
 
 /// Rows that a refinement begins with, and that outlast it.
